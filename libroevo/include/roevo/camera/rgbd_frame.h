@@ -1,0 +1,14 @@
+#pragma once
+#include <opencv2/core/mat.hpp>
+
+namespace roevo {
+
+/// One RGB-D image pair, depth registered to the colour camera, both as the lens saw them (not yet undistorted).
+struct RgbdFrame {
+    double timestamp = 0;  ///< seconds, of the colour image
+    cv::Mat grey;          ///< CV_8UC1, height x width
+    cv::Mat depth;         ///< CV_32FC1, height x width, metres along the optical axis; 0 where unknown
+    cv::Mat colour;        ///< optional CV_8UC3 (BGR), only used to colour the map; may be empty
+};
+
+}  // namespace roevo

@@ -1,0 +1,81 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/camera/rgbd_frame.h"
+#include "roevo/edge_map.h"
+#include "roevo/options.h"
+#include "roevo/types.h"
+
+namespace roevo {
+
+enum class FrameStatus {
+    kOk,           ///< tracked
+    kInitialised,  ///< first usable frame, or re-anchored after a loss: a new keyframe with no measured motion
+    kPredicted,    ///< tracking lost: constant velocity
+    kLost,         ///< tracking lost for longer than prediction is trusted; pose held
+    kRejected      ///< bad input, not processed; no pose
+};
+const char* toString(FrameStatus status);
+
+/// Milliseconds spent in each stage of one frame.
+struct StageTimes {
+    double edges = 0, coarse = 0, fine = 0, total = 0;
+};
+
+/// What became of one frame.
+struct FrameResult {
+    double timestamp = 0;
+    FrameStatus status = FrameStatus::kRejected;
+    std::string reason;                                ///< in words; empty only when all is well
+    Pose T_world_camera = Pose::Identity();            ///< meaningless when rejected
+    Matrix6d covariance = Matrix6d::Zero();            ///< of T_world_camera; order tx ty tz (m) rx ry rz (rad), left perturbation in the world frame
+    bool is_keyframe = false;
+    int num_edges = 0, num_points = 0;                 ///< organized edges and their points in this frame
+    double matched_ratio = 0;                          ///< share of the keyframe's visible edges that were associated, 0..1
+    int inliers = 0;                                   ///< edge points that passed the chi-square test
+    StageTimes ms;
+
+    bool hasPose() const { return status != FrameStatus::kRejected; }
+    double sigmaTranslation() const;  ///< m: root of the trace of the translation block
+    double sigmaRotationDeg() const;  ///< degrees: root of the trace of the rotation block
+};
+
+/// A keyframe as the outside sees it.
+struct KeyframeInfo {
+    int id = 0;
+    double timestamp = 0;
+    Pose T_world_camera = Pose::Identity();
+};
+
+/// RGB-D visual odometry from organized edges (Liu et al., ROEVO). Feed frames in time order; not thread-safe.
+class Odometry {
+  public:
+    /// @throws std::invalid_argument when the camera or an option is unusable (one line that names it).
+    Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start = Pose::Identity());
+    ~Odometry();
+    Odometry(Odometry&&) noexcept;
+    Odometry& operator=(Odometry&&) noexcept;
+
+    /// Tracks one frame. Never throws for bad frames: they come back kRejected with a reason.
+    FrameResult processFrame(const RgbdFrame& frame);
+
+    /// Final poses of all frames that have one, in time order, unique stamps.
+    std::vector<StampedPose> trajectory() const;
+
+    std::vector<KeyframeInfo> keyframes() const;
+
+    /// The 3-D edges of all keyframes, in the world.
+    EdgeMap map() const;
+
+    const PinholeCamera& camera() const;  ///< as given (with distortion)
+    const OdometryOptions& options() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace roevo
