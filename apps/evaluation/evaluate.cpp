@@ -1,0 +1,88 @@
+#include "evaluation/evaluate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace roevo {
+namespace {
+
+constexpr std::size_t kMinPairs = 3;
+
+std::string seconds(double value, int decimals = 6) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f s", decimals, value);
+    return text;
+}
+
+std::string range(const std::vector<StampedPose>& poses) {
+    return std::to_string(poses.size()) + " poses from " + seconds(poses.front().timestamp) + " to " +
+           seconds(poses.back().timestamp);
+}
+
+double closestStamps(const std::vector<StampedPose>& a, const std::vector<StampedPose>& b) {
+    double closest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+        const double dt = a[i].timestamp - b[j].timestamp;
+        closest = std::min(closest, std::abs(dt));
+        dt < 0 ? ++i : ++j;
+    }
+    return closest;
+}
+
+double largestGap(const std::vector<StampedPose>& poses) {
+    double gap = 0;
+    for (std::size_t i = 1; i < poses.size(); ++i)
+        gap = std::max(gap, poses[i].timestamp - poses[i - 1].timestamp);
+    return gap;
+}
+
+std::string explainTooFew(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
+                          std::size_t found, double max_dt) {
+    std::string text =
+        (found == 0 ? std::string("no pose has") : "only " + std::to_string(found) + " poses have");
+    text += " a reference within " + seconds(max_dt, 3) + " (at least 3 are needed): reference has " +
+            range(reference) + " (largest gap " + seconds(largestGap(reference), 3) + "), estimate has " +
+            range(estimate) + "; the closest stamps are " + seconds(closestStamps(reference, estimate), 3) +
+            " apart";
+    const bool overlap = reference.front().timestamp <= estimate.back().timestamp &&
+                         estimate.front().timestamp <= reference.back().timestamp;
+    if (!overlap)
+        text += "; to let both start together add " +
+                seconds(reference.front().timestamp - estimate.front().timestamp) +
+                " to the estimate's stamps (--offset)";
+    else if (found < estimate.size())
+        text += "; try a larger --max-dt";
+    return text;
+}
+
+}  // namespace
+
+Evaluation evaluate(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
+                    double max_dt) {
+    if (reference.empty() || estimate.empty())
+        throw std::runtime_error(std::string("the ") + (reference.empty() ? "reference" : "estimate") +
+                                 " has no pose");
+    Evaluation result;
+    result.pairs = associate(reference, estimate, max_dt);
+    if (result.pairs.size() < kMinPairs)
+        throw std::runtime_error(explainTooFew(reference, estimate, result.pairs.size(), max_dt));
+    result.ate = absoluteTrajectoryError(reference, estimate, result.pairs);
+    result.rpe_second = relativePoseErrorOverTime(reference, estimate, result.pairs, 1.0);
+    result.rpe_frame = relativePoseErrorPerFrame(reference, estimate, result.pairs);
+    return result;
+}
+
+double pathLength(const std::vector<StampedPose>& trajectory) {
+    double length = 0;
+    for (std::size_t i = 1; i < trajectory.size(); ++i)
+        length +=
+            (trajectory[i].T_world_camera.translation() - trajectory[i - 1].T_world_camera.translation())
+                .norm();
+    return length;
+}
+
+}  // namespace roevo

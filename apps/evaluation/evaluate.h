@@ -1,0 +1,30 @@
+#pragma once
+#include <vector>
+
+#include "evaluation/association.h"
+#include "evaluation/ate.h"
+#include "evaluation/rpe.h"
+#include "roevo/types.h"
+
+namespace roevo {
+
+constexpr double kDefaultMaxDt = 0.02;  ///< s
+
+/// Every error of one trajectory against its reference, by the protocol in docs/formats.md.
+struct Evaluation {
+    std::vector<PosePair> pairs;
+    AbsoluteError ate;
+    RelativeError rpe_second;  ///< over 1 s: m/s and deg/s
+    RelativeError rpe_frame;   ///< from frame to frame: m and deg
+};
+
+/// @throws std::runtime_error with the figures that decide (both time ranges, closest stamps, an offset that
+/// would fit)
+///         when fewer than 3 poses are common
+Evaluation evaluate(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
+                    double max_dt = kDefaultMaxDt);
+
+/// Sum of the distances between successive camera centres, m.
+double pathLength(const std::vector<StampedPose>& trajectory);
+
+}  // namespace roevo

@@ -1,0 +1,38 @@
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace roevo {
+
+/// Progress of long work, on stderr: one self-updating line with the time left on a terminal, a plain line
+/// about every 10 % (or every 10 s when the total is unknown) in a log.
+class Progress {
+  public:
+    /// @param total    number of steps, 0 when unknown
+    /// @param enabled  false keeps it silent
+    Progress(std::string label, std::size_t total, bool enabled = true);
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    /// @param done  steps completed so far
+    void update(std::size_t done);
+
+    /// Ends the line. Called by the destructor when forgotten, so that an error message starts on a line of
+    /// its own.
+    void finish();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    void print(std::size_t done, bool last);
+
+    std::string label_;
+    std::size_t total_, done_ = 0;
+    std::size_t next_report_ = 0;
+    bool enabled_, terminal_, finished_ = false, printed_ = false;
+    Clock::time_point start_, last_print_;
+};
+
+}  // namespace roevo
