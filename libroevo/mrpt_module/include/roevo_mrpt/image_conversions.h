@@ -1,0 +1,29 @@
+#pragma once
+/// Pixels in: the one place where image files are decoded and converted, shared by rawlogs and dataset
+/// folders so that both give the odometry the same bytes.
+
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+namespace roevo {
+
+/// Decodes an image file as 8-bit grey or BGR, whichever the file holds (an alpha channel is dropped).
+/// @throws std::runtime_error naming the file when it is missing or cannot be decoded.
+cv::Mat readColourFile(const std::string& file);
+
+/// Decodes a 16-bit depth PNG. @return CV_16UC1.
+/// @throws std::runtime_error naming the file when it is missing, cannot be decoded or is not 16-bit with one
+/// channel.
+cv::Mat readDepthFile(const std::string& file);
+
+/// Metres per unit for a depth image of `units_per_metre`, as the float that every reader multiplies with.
+float depthUnit(double units_per_metre);
+
+/// Depth in metres: float(value) * unit. @param depth_u16 CV_16UC1, 0 where unknown  @return CV_32FC1
+cv::Mat depthToMetres(const cv::Mat& depth_u16, float unit);
+
+/// 8-bit grey of an 8-bit image with one (shared, not copied), three (BGR) or four (BGRA) channels.
+/// @throws std::runtime_error for any other type.
+cv::Mat toGrey(const cv::Mat& image);
+
+}  // namespace roevo

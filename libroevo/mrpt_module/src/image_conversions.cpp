@@ -1,0 +1,73 @@
+#include "roevo_mrpt/image_conversions.h"
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+namespace roevo {
+namespace {
+
+cv::Mat decode(const std::string& file, int flags) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+        throw std::runtime_error("image file not found: " + file);
+    cv::Mat image;
+    try {
+        image = cv::imread(file, flags);
+    } catch (const cv::Exception&) {
+        image.release();
+    }
+    if (image.empty()) throw std::runtime_error("cannot decode image (damaged or not an image): " + file);
+    return image;
+}
+
+}  // namespace
+
+cv::Mat readColourFile(const std::string& file) {
+    return decode(file, cv::IMREAD_ANYCOLOR);
+}
+
+cv::Mat readDepthFile(const std::string& file) {
+    cv::Mat depth = decode(file, cv::IMREAD_UNCHANGED);
+    if (depth.type() != CV_16UC1)
+        throw std::runtime_error("depth image must be 16-bit with one channel, but has " +
+                                 std::to_string(8 * depth.elemSize1()) + " bits and " +
+                                 std::to_string(depth.channels()) + " channel(s): " + file);
+    return depth;
+}
+
+float depthUnit(double units_per_metre) {
+    return 1.f / static_cast<float>(units_per_metre);
+}
+
+cv::Mat depthToMetres(const cv::Mat& depth_u16, float unit) {
+    if (depth_u16.type() != CV_16UC1) throw std::runtime_error("depth image must be 16-bit with one channel");
+    cv::Mat metres(depth_u16.size(), CV_32FC1);
+    for (int v = 0; v < depth_u16.rows; v++) {
+        const auto* from = depth_u16.ptr<std::uint16_t>(v);
+        auto* to = metres.ptr<float>(v);
+        for (int u = 0; u < depth_u16.cols; u++) to[u] = static_cast<float>(from[u]) * unit;
+    }
+    return metres;
+}
+
+cv::Mat toGrey(const cv::Mat& image) {
+    cv::Mat grey;
+    switch (image.type()) {
+        case CV_8UC1:
+            return image;
+        case CV_8UC3:
+            cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+            return grey;
+        case CV_8UC4:
+            cv::cvtColor(image, grey, cv::COLOR_BGRA2GRAY);
+            return grey;
+        default:
+            throw std::runtime_error("image must be 8-bit grey or colour, but has " +
+                                     std::to_string(8 * image.elemSize1()) + " bits and " +
+                                     std::to_string(image.channels()) + " channel(s)");
+    }
+}
+
+}  // namespace roevo

@@ -1,0 +1,206 @@
+#include "roevo_mrpt/rawlog_writer.h"
+
+#include <mrpt/io/CFileGZOutputStream.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <stdexcept>
+
+#include "roevo_mrpt/camera_conversions.h"
+#include "roevo_mrpt/time_conversions.h"
+
+namespace fs = std::filesystem;
+
+namespace roevo {
+namespace {
+
+/// Counts what goes into the compressor: a gz stream closes without a word when the disk is full.
+class CountingStream {
+  public:
+    mrpt::io::CFileGZOutputStream file;
+    std::uint64_t bytes = 0;
+
+    size_t Write(const void* data, size_t count) {
+        const size_t written = file.Write(data, count);
+        bytes += written;
+        return written;
+    }
+    size_t Read(void*, size_t) { throw std::logic_error("output stream"); }
+    std::string getStreamDescription() const { return file.getStreamDescription(); }
+};
+
+/// The length of the uncompressed data (modulo 2^32) as the trailer of a gz file states it.
+std::uint32_t gzTrailerLength(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::array<unsigned char, 4> b{};
+    in.seekg(-4, std::ios::end);
+    in.read(reinterpret_cast<char*>(b.data()), 4);
+    if (!in) return 0;
+    return static_cast<std::uint32_t>(b[0] | b[1] << 8 | b[2] << 16) | static_cast<std::uint32_t>(b[3]) << 24;
+}
+
+std::string fileNamePart(std::string label) {
+    for (char& c : label)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+    return label;
+}
+
+}  // namespace
+
+struct RawlogWriter::Impl {
+    fs::path path, images, temporary_path, temporary_images;
+    PinholeCamera camera;
+    RawlogWriterOptions options;
+    mrpt::img::TCamera mrpt_camera;
+    CountingStream stream;
+    std::set<std::string> names;
+    bool finished = false;
+
+    void removeTemporaries() {
+        stream.file.close();
+        std::error_code ignored;
+        fs::remove(temporary_path, ignored);
+        fs::remove_all(temporary_images, ignored);
+    }
+
+    /// A name for the next image, unique even when stamps repeat.
+    std::string nextName(double timestamp, const std::string& extension) {
+        std::array<char, 64> stamp{};
+        std::snprintf(stamp.data(), stamp.size(), "_%.6f", timestamp);
+        const std::string stem = fileNamePart(options.sensor_label) + stamp.data();
+        std::string name = stem + extension;
+        for (int i = 2; !names.insert(name).second; i++) name = stem + "_" + std::to_string(i) + extension;
+        return name;
+    }
+
+    void checkSize(const cv::Mat& image, const char* what) const {
+        if (image.cols != camera.width || image.rows != camera.height)
+            throw std::runtime_error(std::string(what) + " is " + std::to_string(image.cols) + "x" +
+                                     std::to_string(image.rows) + ", but the camera is " +
+                                     std::to_string(camera.width) + "x" + std::to_string(camera.height));
+    }
+
+    void write(double timestamp, const cv::Mat& depth_u16, const std::string& image_name) {
+        mrpt::obs::CObservation3DRangeScan scan;
+        scan.timestamp = toMrptTime(timestamp);
+        scan.sensorLabel = options.sensor_label;
+        // The sensor sits on the robot's origin, x forward; the default relativePoseIntensityWRTDepth is the
+        // turn to optical axes.
+        scan.range_is_depth = true;
+        scan.rangeUnits = options.range_units;
+        scan.maxRange = 65535.f * options.range_units;
+        scan.cameraParams = mrpt_camera;
+        scan.cameraParamsIntensity = mrpt_camera;
+        scan.hasRangeImage = true;
+        scan.rangeImage_setSize(depth_u16.rows, depth_u16.cols);
+        const size_t row_bytes = static_cast<size_t>(depth_u16.cols) * sizeof(std::uint16_t);
+        for (int v = 0; v < depth_u16.rows; v++)
+            std::memcpy(&scan.rangeImage(v, 0), depth_u16.ptr(v), row_bytes);
+        scan.hasIntensityImage = true;
+        scan.intensityImageChannel = mrpt::obs::CObservation3DRangeScan::CH_VISIBLE;
+        scan.intensityImage.setExternalStorage(image_name);
+        try {
+            mrpt::serialization::archiveFrom(stream) << scan;
+        } catch (const std::exception&) {
+            throw std::runtime_error("cannot write " + temporary_path.string() + ": disk full?");
+        }
+    }
+
+    void checkDepth(const cv::Mat& depth_u16) const {
+        if (depth_u16.type() != CV_16UC1)
+            throw std::runtime_error("depth image must be 16-bit with one channel");
+        checkSize(depth_u16, "depth image");
+    }
+};
+
+std::string RawlogWriter::imagesDirectory(const std::string& rawlog_path) {
+    const fs::path path(rawlog_path);
+    return (path.parent_path() / (path.stem().string() + "_Images")).string();
+}
+
+RawlogWriter::RawlogWriter(const std::string& path, const PinholeCamera& camera,
+                           const RawlogWriterOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+    if (const std::string fault = camera.check(); !fault.empty())
+        throw std::runtime_error("cannot write a rawlog: " + fault);
+    if (!(options.range_units > 0)) throw std::runtime_error("range_units must be above 0 m");
+    Impl& m = *impl_;
+    m.path = path;
+    m.images = imagesDirectory(path);
+    m.temporary_path = path + ".part";
+    m.temporary_images = m.images.string() + ".part";
+    m.camera = camera;
+    m.options = options;
+    m.mrpt_camera = toMrptCamera(camera, options.sensor_label);
+
+    if (fs::is_directory(m.path)) throw std::runtime_error("cannot write " + path + ": it is a directory");
+    if (fs::exists(m.images) && !fs::exists(m.path))
+        throw std::runtime_error(m.images.string() +
+                                 " exists, but its rawlog does not: move it away or choose another output");
+    std::error_code error;
+    fs::remove_all(m.temporary_images, error);
+    fs::create_directory(m.temporary_images, error);
+    if (error)
+        throw std::runtime_error("cannot create " + m.temporary_images.string() + ": " + error.message());
+    if (!m.stream.file.open(m.temporary_path.string(), options.gz_level)) {
+        fs::remove_all(m.temporary_images, error);
+        throw std::runtime_error("cannot write " + m.temporary_path.string());
+    }
+}
+
+RawlogWriter::~RawlogWriter() {
+    if (!impl_->finished) impl_->removeTemporaries();
+}
+
+void RawlogWriter::add(double timestamp, const cv::Mat& depth_u16, const cv::Mat& colour_or_grey) {
+    Impl& m = *impl_;
+    m.checkDepth(depth_u16);
+    if (colour_or_grey.type() != CV_8UC3 && colour_or_grey.type() != CV_8UC1)
+        throw std::runtime_error("image must be 8-bit grey or BGR");
+    m.checkSize(colour_or_grey, "image");
+    const std::string name = m.nextName(timestamp, ".png");
+    const std::string file = (m.temporary_images / name).string();
+    if (!cv::imwrite(file, colour_or_grey)) throw std::runtime_error("cannot write " + file + ": disk full?");
+    m.write(timestamp, depth_u16, name);
+}
+
+void RawlogWriter::addFile(double timestamp, const cv::Mat& depth_u16, const std::string& image_file) {
+    Impl& m = *impl_;
+    m.checkDepth(depth_u16);
+    if (!fs::is_regular_file(image_file)) throw std::runtime_error("image file not found: " + image_file);
+    const std::string name = m.nextName(timestamp, fs::path(image_file).extension().string());
+    const fs::path target = m.temporary_images / name;
+    const fs::path source = fs::canonical(image_file);  // a link to a symbolic link would dangle when moved
+    std::error_code error;
+    fs::create_hard_link(source, target, error);
+    if (error) fs::copy_file(source, target, error);
+    if (error)
+        throw std::runtime_error("cannot copy " + image_file + " to " + target.string() + ": " +
+                                 error.message());
+    m.write(timestamp, depth_u16, name);
+}
+
+void RawlogWriter::finish() {
+    Impl& m = *impl_;
+    if (m.finished) return;
+    m.stream.file.close();
+    if (m.options.gz_level > 0 &&
+        gzTrailerLength(m.temporary_path) != static_cast<std::uint32_t>(m.stream.bytes))
+        throw std::runtime_error("cannot write " + m.temporary_path.string() + ": disk full?");
+    // Images first: a rawlog under its final name always has them.
+    if (fs::exists(m.images)) fs::remove_all(m.images);
+    fs::rename(m.temporary_images, m.images);
+    fs::rename(m.temporary_path, m.path);
+    m.finished = true;
+}
+
+}  // namespace roevo

@@ -1,0 +1,168 @@
+#include "datasets/dataset_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+
+#include "datasets/tum.h"
+#include "roevo_mrpt/image_conversions.h"
+
+namespace fs = std::filesystem;
+
+namespace roevo {
+namespace {
+
+constexpr double kMinMedianDepth = 0.1,
+                 kMaxMedianDepth = 20;  // m: beyond these the scale is wrong, not the room
+
+struct Format {
+    const char* name;
+    bool (*recognises)(const std::string& folder);
+    DatasetDescription (*load)(const std::string& folder, const DatasetOptions& options);
+    const char* needs;
+};
+
+const Format kFormats[] = {{"tum", &isTumFolder, &loadTum, "rgb.txt and depth.txt, or associations.txt"}};
+
+/// Median of the non-zero depths, in PNG units; 0 when there are none.
+double medianDepth(const cv::Mat& depth) {
+    std::vector<std::uint16_t> values;
+    for (int v = 0; v < depth.rows; v++)
+        std::copy_if(depth.ptr<std::uint16_t>(v), depth.ptr<std::uint16_t>(v) + depth.cols,
+                     std::back_inserter(values), [](std::uint16_t d) { return d != 0; });
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// The scale in use among sensors that puts this median closest to two metres.
+double likelyDepthScale(double median_units) {
+    const double known[] = {1, 100, 256, 1000, 5000, 10000};
+    const auto off = [&](double scale) { return std::abs(std::log(median_units / scale / 2.0)); };
+    return *std::min_element(std::begin(known), std::end(known),
+                             [&](double a, double b) { return off(a) < off(b); });
+}
+
+/// A folder one level down that would have been right: people often give the parent.
+std::string betterFolder(const std::string& folder) {
+    for (const auto& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied))
+        if (entry.is_directory())
+            for (const Format& format : kFormats)
+                if (format.recognises(entry.path().string())) return entry.path().string();
+    return "";
+}
+
+}  // namespace
+
+DatasetReader::DatasetReader(DatasetDescription description) : description_(std::move(description)) {
+    checkFiles();
+    checkDepthScale();
+}
+
+float DatasetReader::depthUnit() const {
+    return roevo::depthUnit(description_.depth_scale);
+}
+
+void DatasetReader::checkFiles() const {
+    std::size_t missing = 0;
+    std::string first_missing;
+    for (const DatasetEntry& frame : description_.frames)
+        for (const std::string* file : {&frame.image, &frame.depth})
+            if (!fs::is_regular_file(*file) && missing++ == 0) first_missing = *file;
+    if (missing > 0)
+        throw std::runtime_error(std::to_string(missing) + " listed image(s) missing in " +
+                                 description_.folder + ", first: " + first_missing);
+}
+
+void DatasetReader::checkDepthScale() const {
+    for (std::size_t i = 0; i < size(); i++) {
+        cv::Mat depth;
+        try {
+            depth = readDepthFile(entry(i).depth);
+        } catch (const std::runtime_error&) {
+            if (i + 1 < size()) continue;
+            throw;
+        }
+        checkSize(depth, entry(i).depth);
+        const double median_units = medianDepth(depth);
+        if (median_units == 0) continue;
+        const double median = median_units / depthScale();
+        if (median >= kMinMedianDepth && median <= kMaxMedianDepth) return;
+        const double likely = likelyDepthScale(median_units);
+        char text[256];
+        std::snprintf(
+            text, sizeof text,
+            "median depth %.3g m with depth_scale %g makes no sense; depth_scale %g would give %.3g m",
+            median, depthScale(), likely, median_units / likely);
+        throw std::runtime_error(entry(i).depth + ": " + text + ": correct it in camera.txt");
+    }
+}
+
+void DatasetReader::checkSize(const cv::Mat& image, const std::string& file) const {
+    if (image.cols == camera().width && image.rows == camera().height) return;
+    throw std::runtime_error(file + " is " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
+                             ", but the camera is " + std::to_string(camera().width) + "x" +
+                             std::to_string(camera().height));
+}
+
+cv::Mat DatasetReader::readDepth(std::size_t i) const {
+    cv::Mat depth = readDepthFile(entry(i).depth);
+    checkSize(depth, entry(i).depth);
+    return depth;
+}
+
+cv::Mat DatasetReader::readImage(std::size_t i) const {
+    cv::Mat image = readColourFile(entry(i).image);
+    checkSize(image, entry(i).image);
+    return image;
+}
+
+RgbdFrame DatasetReader::readFrame(std::size_t i) const {
+    RgbdFrame frame;
+    frame.timestamp = entry(i).timestamp;
+    const cv::Mat image = readImage(i);
+    frame.grey = toGrey(image);
+    if (image.channels() == 3) frame.colour = image;
+    frame.depth = depthToMetres(readDepth(i), depthUnit());
+    return frame;
+}
+
+std::string DatasetReader::summary() const {
+    const PinholeCamera& c = camera();
+    char text[256];
+    std::snprintf(text, sizeof text, "camera %dx%d fx %g fy %g cx %g cy %g, %s, depth_scale %g, from ",
+                  c.width, c.height, c.fx, c.fy, c.cx, c.cy,
+                  c.isDistorted() ? "with lens distortion" : "no lens distortion", depthScale());
+    return text + description_.camera_source + "\n" + description_.association.toText();
+}
+
+DatasetReader openDataset(const std::string& folder, const DatasetOptions& options) {
+    if (!fs::exists(folder)) throw std::runtime_error("dataset folder not found: " + folder);
+    if (!fs::is_directory(folder)) throw std::runtime_error("not a folder: " + folder);
+    std::string names, needs;
+    for (const Format& format : kFormats) {
+        names += std::string(names.empty() ? "" : ", ") + format.name;
+        needs += std::string(needs.empty() ? "" : "; ") + format.name + ": " + format.needs;
+        if (options.format == format.name || (options.format == "auto" && format.recognises(folder)))
+            return DatasetReader(format.load(folder, options));
+    }
+    if (options.format != "auto")
+        throw std::runtime_error("unknown dataset format '" + options.format + "' (known: auto, " + names +
+                                 ")");
+    const std::string better = betterFolder(folder);
+    throw std::runtime_error("no dataset recognised in " + folder + " (needed: " + needs + ")" +
+                             (better.empty() ? "" : "; did you mean " + better + "?"));
+}
+
+std::vector<std::string> datasetFormats() {
+    std::vector<std::string> names = {"auto"};
+    for (const Format& format : kFormats) names.emplace_back(format.name);
+    return names;
+}
+
+}  // namespace roevo

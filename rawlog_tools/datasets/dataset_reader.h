@@ -1,0 +1,80 @@
+#pragma once
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "datasets/association.h"
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/camera/rgbd_frame.h"
+
+namespace roevo {
+
+/// One colour image and its depth image.
+struct DatasetEntry {
+    double timestamp = 0;        ///< s, of the colour image, to the microsecond
+    double depth_timestamp = 0;  ///< s
+    std::string image, depth;    ///< paths that can be opened
+};
+
+/// What a format's loader finds out about a folder.
+struct DatasetDescription {
+    std::string folder;
+    std::string format;  ///< "tum"
+    PinholeCamera camera;
+    std::string camera_source;  ///< in words: where the intrinsics come from
+    double depth_scale = 0;     ///< PNG units per metre
+    std::vector<DatasetEntry> frames;
+    AssociationReport association;
+    std::string ground_truth;  ///< path of a TUM trajectory, empty when there is none
+};
+
+struct DatasetOptions {
+    std::string format = "auto";
+    double max_time_difference = 0.02;  ///< s, between a colour and its depth image
+};
+
+/// An RGB-D dataset in a folder, read frame by frame.
+class DatasetReader {
+  public:
+    /// Checks that the files are there and that the first readable depth image makes sense.
+    /// @throws std::runtime_error with one line that says what is wrong and what to do.
+    explicit DatasetReader(DatasetDescription description);
+
+    const DatasetDescription& description() const { return description_; }
+    const PinholeCamera& camera() const { return description_.camera; }
+    double depthScale() const { return description_.depth_scale; }  ///< PNG units per metre
+    float depthUnit() const;                                        ///< metres per PNG unit
+    const std::string& groundTruthPath() const { return description_.ground_truth; }
+
+    std::size_t size() const { return description_.frames.size(); }
+    const DatasetEntry& entry(std::size_t i) const { return description_.frames.at(i); }
+
+    /// Depth as stored, CV_16UC1. @throws std::runtime_error when frame i's depth is unreadable or of another
+    /// size.
+    cv::Mat readDepth(std::size_t i) const;
+
+    /// Colour as stored, CV_8UC3 (BGR) or CV_8UC1. @throws std::runtime_error as readDepth().
+    cv::Mat readImage(std::size_t i) const;
+
+    /// Frame i, ready for the odometry. @throws std::runtime_error when one of its images is unusable; others
+    /// still are usable.
+    RgbdFrame readFrame(std::size_t i) const;
+
+    /// Two lines: the camera with its source, and how the images were matched.
+    std::string summary() const;
+
+  private:
+    void checkSize(const cv::Mat& image, const std::string& file) const;
+    void checkFiles() const;
+    void checkDepthScale() const;
+
+    DatasetDescription description_;
+};
+
+/// Opens a dataset folder. @param options.format  "auto" or one of datasetFormats()
+/// @throws std::runtime_error with one line that says what is wrong and what to do.
+DatasetReader openDataset(const std::string& folder, const DatasetOptions& options = {});
+
+std::vector<std::string> datasetFormats();
+
+}  // namespace roevo

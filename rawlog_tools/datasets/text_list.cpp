@@ -1,0 +1,63 @@
+#include "datasets/text_list.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace roevo {
+
+std::vector<TextLine> readTextLines(const std::string& file) {
+    std::ifstream in(file);
+    if (!in) throw std::runtime_error("cannot read " + file);
+    std::vector<TextLine> lines;
+    std::string text;
+    for (int number = 1; std::getline(in, text); number++) {
+        if (number == 1 && text.rfind("\xEF\xBB\xBF", 0) == 0)
+            text.erase(0, 3);  // byte order mark of some editors
+        TextLine line;
+        line.number = number;
+        std::istringstream words(text);
+        for (std::string word; words >> word;) line.words.push_back(word);
+        if (line.words.empty() || line.words[0][0] == '#') continue;
+        lines.push_back(std::move(line));
+    }
+    return lines;
+}
+
+std::string readHeaderComments(const std::string& file) {
+    std::ifstream in(file);
+    std::string comments;
+    for (std::string text; std::getline(in, text) && !text.empty() && text[0] == '#';)
+        comments += text + "\n";
+    return comments;
+}
+
+double parseNumber(const std::string& word, const std::string& where) {
+    double value = 0;
+    const char* end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, value);
+    if (error != std::errc() || stop != end || !std::isfinite(value))
+        throw std::runtime_error(where + ": '" + word + "' is not a number");
+    return value;
+}
+
+std::vector<ListEntry> readStampedList(const std::string& file, std::size_t& duplicates) {
+    std::vector<ListEntry> entries;
+    for (const TextLine& line : readTextLines(file)) {
+        const std::string where = file + ":" + std::to_string(line.number);
+        if (line.words.size() < 2) throw std::runtime_error(where + ": expected 'timestamp filename'");
+        entries.push_back({parseNumber(line.words[0], where), line.words[1]});
+    }
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const ListEntry& a, const ListEntry& b) { return a.timestamp < b.timestamp; });
+    const auto same = [](const ListEntry& a, const ListEntry& b) { return a.timestamp == b.timestamp; };
+    const auto last = std::unique(entries.begin(), entries.end(), same);
+    duplicates += static_cast<std::size_t>(entries.end() - last);
+    entries.erase(last, entries.end());
+    return entries;
+}
+
+}  // namespace roevo

@@ -1,0 +1,17 @@
+#pragma once
+#include <string>
+
+#include "datasets/dataset_reader.h"
+
+namespace roevo {
+
+/// Whether the folder has the lists of a TUM RGB-D sequence (rgb.txt or depth.txt or associations.txt).
+bool isTumFolder(const std::string& folder);
+
+/// Reads the lists of a TUM RGB-D sequence and matches colour and depth one to one. Intrinsics come from
+/// camera.txt or, for the benchmark's own sequences, from the published calibration that the folder's name or
+/// the lists' headers point to.
+/// @throws std::runtime_error naming the file and the fault.
+DatasetDescription loadTum(const std::string& folder, const DatasetOptions& options);
+
+}  // namespace roevo
