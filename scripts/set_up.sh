@@ -1,0 +1,45 @@
+# Shared by demo.sh and test.sh (sourced): installs what is missing from Debian and builds a preset.
+
+roevo_packages="build-essential cmake ninja-build ccache git pkg-config libmrpt-dev mrpt-common mrpt-apps libopencv-dev
+    libceres-dev libeigen3-dev libgtest-dev libbenchmark-dev libcli11-dev nlohmann-json3-dev"
+
+say() { printf '\n== %s\n' "$*"; }
+
+die() {
+    printf '%s: error: %s\n' "$(basename "$0")" "$*" >&2
+    exit 1
+}
+
+# Installs the packages above that are missing; does not touch apt when nothing is.
+install_packages() {
+    command -v dpkg-query >/dev/null || die "this set-up is for Debian 12; install by hand: $(echo $roevo_packages)"
+    missing=
+    for package in $roevo_packages; do
+        case "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" in
+        installed) ;;
+        *) missing="$missing $package" ;;
+        esac
+    done
+    [ -z "$missing" ] && return 0
+
+    say "Installing$missing"
+    as_root=
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || die "packages are missing and there is no sudo; as root: apt-get install$missing"
+        as_root=sudo
+    fi
+    apt="$as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0"
+    $apt update || die "apt-get update failed; is the network reachable?"
+    $apt install -y --no-install-recommends $missing || die "apt-get install failed for:$missing"
+}
+
+# build PRESET: configures when there is no build yet, or when the last configuration did not finish, and builds.
+build() {
+    say "Building (preset $1)"
+    [ -f "build/$1/build.ninja" ] || cmake --preset "$1" >"build-$1.log" 2>&1 || {
+        cat "build-$1.log"
+        die "cmake could not configure preset $1"
+    }
+    rm -f "build-$1.log"
+    cmake --build --preset "$1" -j "$(nproc)" || die "the build of preset $1 failed"
+}
