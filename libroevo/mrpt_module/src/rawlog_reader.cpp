@@ -1,0 +1,229 @@
+#include "roevo_mrpt/rawlog_reader.h"
+
+#include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/io/lazy_load_path.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CRawlog.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "roevo_mrpt/rawlog_writer.h"
+
+namespace fs = std::filesystem;
+
+namespace roevo {
+namespace {
+
+using mrpt::obs::CObservation3DRangeScan;
+
+/// Remembers how far it got and whether it ran dry, which tells a proper end from a cut one.
+class WatchedStream {
+  public:
+    mrpt::io::CFileGZInputStream file;
+    std::uint64_t bytes = 0;
+    bool ran_dry = false;
+
+    size_t Read(void* data, size_t count) {
+        size_t got = file.Read(data, count);
+        if (got > count) got = 0;  // zlib's -1: damaged data
+        if (got < count) ran_dry = true;
+        bytes += got;
+        return got;
+    }
+    size_t Write(const void*, size_t) { throw std::logic_error("input stream"); }
+    std::string getStreamDescription() const { return file.getStreamDescription(); }
+};
+
+/// Where this rawlog's external files are: <stem>_Images, or the spellings that MRPT's own programs accept.
+fs::path findImagesDirectory(const fs::path& rawlog) {
+    const fs::path usual = RawlogWriter::imagesDirectory(rawlog.string());
+    const std::string stem = rawlog.stem().string();
+    for (const fs::path& candidate :
+         {usual, rawlog.parent_path() / (stem + "_images"), rawlog.parent_path() / (stem + "_IMAGES"),
+          rawlog.parent_path() / "Images"})
+        if (fs::is_directory(candidate)) return fs::absolute(candidate);
+    return fs::absolute(usual);
+}
+
+/// Uncompressed length modulo 2^32 from the trailer of a gz file, or the length of any other file.
+double statedSize(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::array<unsigned char, 4> b{};
+    in.read(reinterpret_cast<char*>(b.data()), 2);
+    if (!in || b[0] != 0x1f || b[1] != 0x8b) return static_cast<double>(fs::file_size(file));
+    in.seekg(-4, std::ios::end);
+    in.read(reinterpret_cast<char*>(b.data()), 4);
+    return in ? b[0] + 256.0 * (b[1] + 256.0 * (b[2] + 256.0 * b[3])) : 0.0;
+}
+
+std::string listCounts(const std::map<std::string, std::size_t>& counts) {
+    std::string text;
+    for (const auto& [name, count] : counts)
+        text +=
+            (text.empty() ? "" : ", ") + std::to_string(count) + " " + (name.empty() ? "(no name)" : name);
+    return text.empty() ? "nothing" : text;
+}
+
+}  // namespace
+
+std::string RawlogReport::warning() const {
+    std::string text = fault;
+    if (labels.size() > 1) {
+        if (!text.empty()) text += "; ";
+        text += "several sensors have range images (" + listCounts(labels) + "), using '" + label +
+                "' (choose with --sensor-label)";
+    }
+    return text;
+}
+
+struct RawlogReader::Impl {
+    std::string path;
+    fs::path images;
+    bool any_label = true;
+    WatchedStream stream;
+    std::deque<mrpt::obs::CObservation::Ptr> queue;  // observations of the entry read last
+    RawlogReport report;
+    bool at_end = false;
+    double stated_size = 0, compressed_size = 0;  // bytes
+
+    /// Best guess of the uncompressed size. gz files state it modulo 4 GiB; MRPT's stream does not tell the
+    /// compressed position.
+    double uncompressedSize() const {
+        double size = stated_size;
+        while (size < static_cast<double>(stream.bytes) || size < 0.99 * compressed_size)
+            size += 4.0 * 1024 * 1024 * 1024;
+        return size;
+    }
+
+    /// Reads one top-level object into the queue; false at the end.
+    bool readEntry() {
+        const std::uint64_t start = stream.bytes;
+        mrpt::serialization::CSerializable::Ptr object;
+        try {
+            object = mrpt::serialization::archiveFrom(stream).ReadObject();
+        } catch (const std::exception&) {
+            noteEnd(stream.bytes - start);
+            return false;
+        }
+        if (!object) return noteEnd(1), false;
+        report.entries++;
+        enqueue(object);
+        return true;
+    }
+
+    void noteEnd(std::uint64_t bytes_into_object) {
+        at_end = true;
+        if (stream.ran_dry && bytes_into_object == 0 && report.entries > 0) return;
+        if (report.entries == 0)
+            throw std::runtime_error(path + (stream.bytes == 0
+                                                 ? " is empty or damaged"
+                                                 : " is not a rawlog (its first object cannot be read)"));
+        report.fault = path +
+                       (stream.ran_dry ? " is truncated: it ends in the middle of entry "
+                                       : " is damaged or holds an unknown class: reading stopped at entry ") +
+                       std::to_string(report.entries + 1) + "; what came before was kept";
+    }
+
+    void enqueue(const mrpt::serialization::CSerializable::Ptr& object) {
+        using namespace mrpt::obs;
+        if (const auto observation = std::dynamic_pointer_cast<CObservation>(object)) {
+            queue.push_back(observation);
+        } else if (const auto frame = std::dynamic_pointer_cast<CSensoryFrame>(object)) {
+            for (const auto& each : *frame) queue.push_back(each);
+        } else if (const auto whole = std::dynamic_pointer_cast<CRawlog>(object)) {
+            for (std::size_t i = 0; i < whole->size(); i++) enqueue(whole->getAsGeneric(i));
+        } else {
+            report.classes[object->GetRuntimeClass()->className]++;
+        }
+    }
+
+    /// The observation as a scan of the wanted sensor, or null.
+    CObservation3DRangeScan::Ptr accept(const mrpt::obs::CObservation::Ptr& observation) {
+        report.classes[observation->GetRuntimeClass()->className]++;
+        auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation);
+        if (!scan || !scan->hasRangeImage) return nullptr;
+        if (any_label && report.labels.empty()) report.label = scan->sensorLabel;
+        report.labels[scan->sensorLabel]++;
+        if (scan->sensorLabel != report.label) return nullptr;
+        report.range_images++;
+        return scan;
+    }
+
+    /// Makes the scan independent of MRPT's global search path for external files.
+    void locateFiles(CObservation3DRangeScan& scan) const {
+        if (scan.intensityImage.isExternallyStored()) {
+            const fs::path file = scan.intensityImage.getExternalStorageFile();
+            fs::path found = images / file;  // an absolute file stays as it is
+            if (!fs::exists(found) && fs::exists(images.parent_path() / file))
+                found = images.parent_path() / file;
+            scan.intensityImage.setExternalStorage(found.string());
+        }
+        if (!scan.rangeImage_isExternallyStored()) return;
+        mrpt::io::setLazyLoadPathBase(images.string());
+        try {
+            scan.load();
+        } catch (const std::exception&) {
+            throw std::runtime_error(path + ": cannot load the external range image " +
+                                     scan.rangeImage_getExternalStorageFileAbsolutePath(""));
+        }
+    }
+
+    [[noreturn]] void throwNothingFound() const {
+        const std::string note = report.fault.empty() ? "" : " (" + report.fault + ")";
+        if (!report.labels.empty())
+            throw std::runtime_error(path + ": no range images of sensor '" + report.label +
+                                     "'; sensors with range images: " + listCounts(report.labels) + note);
+        throw std::runtime_error(path + ": no range images (CObservation3DRangeScan with depth); it holds " +
+                                 listCounts(report.classes) + note);
+    }
+};
+
+RawlogReader::RawlogReader(const std::string& path, const std::string& sensor_label)
+    : impl_(std::make_unique<Impl>()) {
+    if (!fs::exists(path)) throw std::runtime_error("rawlog not found: " + path);
+    if (fs::is_directory(path)) throw std::runtime_error("not a rawlog but a folder: " + path);
+    if (!impl_->stream.file.open(path)) throw std::runtime_error("cannot read " + path);
+    impl_->path = path;
+    impl_->compressed_size = static_cast<double>(fs::file_size(path));
+    impl_->stated_size = statedSize(path);
+    impl_->images = findImagesDirectory(path);
+    impl_->any_label = sensor_label.empty();
+    impl_->report.label = sensor_label;
+}
+
+RawlogReader::~RawlogReader() = default;
+
+CObservation3DRangeScan::Ptr RawlogReader::next() {
+    Impl& m = *impl_;
+    for (;;) {
+        while (!m.queue.empty()) {
+            const auto observation = m.queue.front();
+            m.queue.pop_front();
+            if (auto scan = m.accept(observation)) {
+                m.locateFiles(*scan);
+                return scan;
+            }
+        }
+        if (m.at_end || !m.readEntry()) break;
+    }
+    if (m.report.range_images == 0) m.throwNothingFound();
+    return nullptr;
+}
+
+double RawlogReader::progress() const {
+    return std::min(1.0, static_cast<double>(impl_->stream.bytes) / impl_->uncompressedSize());
+}
+
+const RawlogReport& RawlogReader::report() const {
+    return impl_->report;
+}
+
+}  // namespace roevo
