@@ -1,0 +1,121 @@
+#include "scene_content.h"
+
+#include <mrpt/opengl/CAxis.h>
+#include <mrpt/opengl/CGridPlaneXY.h>
+#include <mrpt/opengl/CGridPlaneXZ.h>
+#include <mrpt/opengl/CPointCloud.h>
+#include <mrpt/opengl/CPointCloudColoured.h>
+#include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt/poses/CPose3D.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+
+namespace roevo {
+namespace {
+
+using namespace mrpt::opengl;
+
+// Calls visit(object, pose of its parent) for everything that is not a group.
+template <class Container, class Visitor>
+void visitObjects(const Container& objects, const mrpt::poses::CPose3D& parent, const Visitor& visit) {
+    for (const CRenderizable::Ptr& object : objects) {
+        if (!object || !object->isVisible()) continue;
+        if (const auto* group = dynamic_cast<const CSetOfObjects*>(object.get()))
+            visitObjects(*group, parent + mrpt::poses::CPose3D(group->getPose()), visit);
+        else
+            visit(*object, parent);
+    }
+}
+
+template <class Visitor>
+void visitObjects(const COpenGLScene& scene, const Visitor& visit) {
+    if (const auto viewport = scene.getViewport("main"))
+        visitObjects(*viewport, mrpt::poses::CPose3D(), visit);
+}
+
+Eigen::Vector3f toEigen(const mrpt::math::TPoint3D& p) {
+    return Eigen::Vector3d(p.x, p.y, p.z).cast<float>();
+}
+
+template <class Cloud>
+void addCloud(const Cloud& cloud, const mrpt::poses::CPose3D& pose, std::vector<Eigen::Vector3f>& points) {
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const auto& p = cloud.getPoint3Df(i);
+        points.push_back(toEigen(pose.composePoint(mrpt::math::TPoint3D(p.x, p.y, p.z))));
+    }
+}
+
+void addCorners(const CRenderizable& object, const mrpt::poses::CPose3D& parent,
+                std::vector<Eigen::Vector3f>& points) {
+    const auto box = object.getBoundingBox();
+    for (int corner = 0; corner < 8; ++corner)
+        points.push_back(toEigen(parent.composePoint(
+            mrpt::math::TPoint3D(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                 corner & 4 ? box.max.z : box.min.z))));
+}
+
+// Lifts a colour towards a minimum brightness, keeping its hue.
+void brighten(float& r, float& g, float& b) {
+    constexpr float kMinBrightness = 0.45f;
+    const float brightness = std::max({r, g, b});
+    if (brightness >= kMinBrightness) return;
+    const float lift = kMinBrightness - brightness;
+    r += lift, g += lift, b += lift;
+}
+
+}  // namespace
+
+COpenGLScene::Ptr loadScene(const std::string& path) {
+    if (std::error_code e; std::filesystem::is_directory(path, e))
+        throw std::runtime_error("cannot read " + path + ": it is a directory; give a .3Dscene file");
+    errno = 0;
+    if (!std::ifstream(path)) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
+    auto scene = COpenGLScene::Create();
+    bool loaded = false;
+    try {
+        loaded = scene->loadFromFile(path);
+    } catch (const std::exception&) {  // MRPT's text is about its stream classes and tells the user nothing
+    }
+    if (!loaded || !scene->getViewport("main"))
+        throw std::runtime_error(path + " is not a whole MRPT .3Dscene file");
+    return scene;
+}
+
+ViewContent sceneContent(const COpenGLScene& scene) {
+    ViewContent content;
+    visitObjects(scene, [&](const CRenderizable& object, const mrpt::poses::CPose3D& parent) {
+        const auto pose = parent + mrpt::poses::CPose3D(object.getPose());
+        if (const auto* coloured = dynamic_cast<const CPointCloudColoured*>(&object))
+            addCloud(*coloured, pose, content.cloud);
+        else if (const auto* plain = dynamic_cast<const CPointCloud*>(&object))
+            addCloud(*plain, pose, content.cloud);
+        else if (!dynamic_cast<const CGridPlaneXY*>(&object) && !dynamic_cast<const CGridPlaneXZ*>(&object) &&
+                 !dynamic_cast<const CAxis*>(&object))
+            addCorners(object, parent, content.must_see);
+    });
+    return content;
+}
+
+void preparePoints(COpenGLScene& scene, float factor) {
+    visitObjects(scene, [&](CRenderizable& object, const mrpt::poses::CPose3D&) {
+        auto* points = dynamic_cast<CRenderizableShaderPoints*>(&object);
+        if (!points) return;
+        points->enableVariablePointSize(false);
+        points->setPointSize(points->getPointSize() * factor);
+        auto* coloured = dynamic_cast<CPointCloudColoured*>(&object);
+        for (std::size_t i = 0; coloured && i < coloured->size(); ++i) {
+            float r, g, b;
+            coloured->getPointColor_fast(i, r, g, b);
+            brighten(r, g, b);
+            coloured->setPointColor_fast(i, r, g, b);
+        }
+    });
+}
+
+}  // namespace roevo
