@@ -13,7 +13,8 @@ namespace roevo {
 
 enum class FrameStatus {
     kOk,           ///< tracked
-    kInitialised,  ///< first usable frame, or re-anchored after a loss: a new keyframe with no measured motion
+    kInitialised,  ///< first usable frame, or re-anchored after a loss: a new keyframe with no measured
+                   ///< motion
     kPredicted,    ///< tracking lost: constant velocity
     kLost,         ///< tracking lost for longer than prediction is trusted; pose held
     kRejected      ///< bad input, not processed; no pose
@@ -29,13 +30,15 @@ struct StageTimes {
 struct FrameResult {
     double timestamp = 0;
     FrameStatus status = FrameStatus::kRejected;
-    std::string reason;                                ///< in words; empty only when all is well
-    Pose T_world_camera = Pose::Identity();            ///< meaningless when rejected
-    Matrix6d covariance = Matrix6d::Zero();            ///< of T_world_camera; order tx ty tz (m) rx ry rz (rad), left perturbation in the world frame
+    std::string reason;                      ///< in words; empty only when all is well
+    Pose T_world_camera = Pose::Identity();  ///< meaningless when rejected
+    /// Of T_world_camera: position (m) then orientation (rad), both along the world's axes; the orientation
+    /// error phi is meant as R <- exp(phi) R.
+    Matrix6d covariance = Matrix6d::Zero();
     bool is_keyframe = false;
-    int num_edges = 0, num_points = 0;                 ///< organized edges and their points in this frame
-    double matched_ratio = 0;                          ///< share of the keyframe's visible edges that were associated, 0..1
-    int inliers = 0;                                   ///< edge points that passed the chi-square test
+    int num_edges = 0, num_points = 0;  ///< organized edges and their points in this frame
+    double matched_ratio = 0;           ///< share of the keyframe's visible edges that were associated, 0..1
+    int inliers = 0;                    ///< edge points that passed the chi-square test
     StageTimes ms;
 
     bool hasPose() const { return status != FrameStatus::kRejected; }
@@ -50,11 +53,13 @@ struct KeyframeInfo {
     Pose T_world_camera = Pose::Identity();
 };
 
-/// RGB-D visual odometry from organized edges (Liu et al., ROEVO). Feed frames in time order; not thread-safe.
+/// RGB-D visual odometry from organized edges (Liu et al., ROEVO). Feed frames in time order; not
+/// thread-safe.
 class Odometry {
   public:
     /// @throws std::invalid_argument when the camera or an option is unusable (one line that names it).
-    Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start = Pose::Identity());
+    Odometry(const PinholeCamera& camera, const OdometryOptions& options,
+             const Pose& T_world_start = Pose::Identity());
     ~Odometry();
     Odometry(Odometry&&) noexcept;
     Odometry& operator=(Odometry&&) noexcept;

@@ -1,5 +1,6 @@
 #pragma once
-/// Every option of the odometry, one flat struct per stage, with unit and range. The same table serves config files,
+/// Every option of the odometry, one flat struct per stage, with unit and range. The same table serves config
+/// files,
 /// `--set`, config_used.ini, --help and the checks.
 
 #include <string>
@@ -11,14 +12,66 @@ namespace roevo {
 enum class Mode { kCoarse, kTracking };  ///< paper's ct and tr
 
 struct SensorOptions {
-    double depth_weight_k = 0.5;     ///< Eq. (20), 1/m
-    double min_depth = 0.15;         ///< Eq. (20) d_min, m; nearer depths are not used
-    double max_depth = 8.0;          ///< farther depths are not used, m
+    double depth_weight_k = 0.6;  ///< k of Eq. (20), 1/m
+    double min_depth = 0.2;       ///< d_min of Eq. (20), m; nearer depths are not used
+    double max_depth = 5.0;       ///< d_max of Eq. (20), m
+    double depth_limit = 9.0;     ///< farther depths are not used, m
+    double depth_noise = 2e-3;    ///< a in sigma_z = a z^2, 1/m
+};
+
+struct EdgeOptions {
+    double blur_sigma = 0.8;         ///< Gaussian blur before the Sobel filter, px (0: none)
+    double canny_high_factor = 1.0;  ///< high threshold = factor x Otsu
+    double canny_low_ratio = 0.5;    ///< low threshold = ratio x high
+    double min_high_threshold = 24;  ///< floor of the high threshold, Sobel units (8 per grey level of ramp)
+    double threshold_smoothing = 0.7;  ///< share of the previous frame's threshold that is kept
+    double angle_deg = 20;             ///< oriented BFS: largest angle between neighbouring gradients
+    int min_length = 10;               ///< shortest organized edge, px
+    int tangent_span = 3;        ///< tangents are taken between the points this many places before and after
+    int depth_patch_radius = 2;  ///< foreground depth is looked for in a square of this radius, px
+    double depth_jump = 0.05;    ///< relative depth step that separates foreground from background
+};
+
+struct CoarseOptions {
+    int levels = 4;           ///< image pyramid levels
+    int max_points = 1500;    ///< sampled edge points
+    int min_points = 30;      ///< fewer cannot carry a photometric pose
+    int max_iterations = 12;  ///< Gauss-Newton steps per level
+};
+
+struct FineOptions {
+    double search_radius = 6;     ///< first association, px
+    double final_radius = 3;      ///< last association, px
+    double normal_angle_deg = 5;  ///< between the reprojected edge's normal and the candidate's
+    double vote_ratio = 0.3;      ///< share of the shorter edge's points that must agree on a pair of edges
+    int min_votes = 5;            ///< and at least this many points
+    int max_points = 6000;        ///< keyframe edge points used
+    int max_iterations = 12;      ///< Gauss-Newton steps, associations renewed in each
+    double chi2 = 5.99;           ///< chi-square limit of a residual
+    double photometric_weight =
+        0.3;                    ///< alpha^2 of Eq. (10) after both residuals are normalised by their spread
+    double depth_weight = 0.3;  ///< weight of the depth residual of associated points (0: as in the paper)
+    int min_inliers = 40;       ///< fewer inliers: the frame is not tracked
+};
+
+struct KeyframeOptions {
+    double min_matched_ratio = 0.8;  ///< new keyframe below this share of associable edges
+    double max_rotation_deg = 15;    ///< new keyframe beyond this rotation
+    double max_translation = 0.15;   ///< new keyframe beyond this translation, relative to the median depth
+};
+
+struct LossOptions {
+    int max_predicted = 10;  ///< frames bridged by constant velocity
 };
 
 struct OdometryOptions {
     Mode mode = Mode::kTracking;
     SensorOptions sensor;
+    EdgeOptions edges;
+    CoarseOptions coarse;
+    FineOptions fine;
+    KeyframeOptions keyframe;
+    LossOptions loss;
 };
 
 /// One entry of the option table: where it lives, what it means, and a pointer into a given OdometryOptions.
@@ -31,7 +84,8 @@ struct OptionField {
 
     std::string name() const { return section + "." + key; }
     std::string toText() const;
-    /// Parses text into the option. Returns an empty string, or one line naming the option, the text and the fault.
+    /// Parses text into the option. Returns an empty string, or one line naming the option, the text and the
+    /// fault.
     std::string fromText(const std::string& text) const;
     /// Empty when the present value is in range, else one line naming the option, its value and the range.
     std::string check() const;
@@ -40,7 +94,8 @@ struct OptionField {
 /// The table over `options`; the pointers live as long as `options`.
 std::vector<OptionField> optionFields(OdometryOptions& options);
 
-/// Sets one option by "section.key". Returns an empty string or one line of error (an unknown key names the closest known one).
+/// Sets one option by "section.key". Returns an empty string or one line of error (an unknown key names the
+/// closest known one).
 std::string setOption(OdometryOptions& options, const std::string& name, const std::string& text);
 
 /// Empty when all options are in range, else the first fault in one line.

@@ -1,5 +1,6 @@
 #pragma once
-/// Aliases used everywhere in the core. Poses are named `T_a_b`: they map a point given in frame b into frame a.
+/// Aliases used everywhere in the core. Poses are named `T_a_b`: they map a point given in frame b into frame
+/// a.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -6,13 +6,13 @@
 
 namespace roevo {
 
-/// Registers a depth image to the colour camera: every depth pixel is back-projected through the depth camera, moved by
-/// `T_colour_depth` and projected (with the colour lens's distortion) into the colour image; where several fall on one
-/// pixel the nearest wins (z-buffer).
+/// Registers a depth image to the colour camera: every depth pixel is back-projected through the depth
+/// camera, moved by `T_colour_depth` and projected (with the colour lens's distortion) into the colour image;
+/// where several fall on one pixel the nearest wins (z-buffer).
 /// @param depth  CV_32FC1 metres along the optical axis, 0 where unknown, of size `depth_camera`
 /// @return CV_32FC1 of size `colour_camera`, 0 where nothing fell.
-cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera, const PinholeCamera& colour_camera,
-                      const Pose& T_colour_depth);
+cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
+                      const PinholeCamera& colour_camera, const Pose& T_colour_depth);
 
 /// Converts ranges along the viewing ray into depths along the optical axis, in place (CV_32FC1, metres).
 void rangeToDepth(cv::Mat& range, const PinholeCamera& depth_camera);

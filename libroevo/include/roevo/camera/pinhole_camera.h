@@ -8,17 +8,17 @@ namespace roevo {
 /// Pinhole camera with the Brown-Conrady lens of OpenCV and MRPT. Pixel centres are at integer coordinates.
 /// Camera frame: x right, y down, z forward, metres.
 struct PinholeCamera {
-    int width = 0, height = 0;                    ///< pixels
-    double fx = 0, fy = 0, cx = 0, cy = 0;        ///< pixels
-    std::array<double, 5> distortion{};           ///< k1 k2 p1 p2 k3, dimensionless
+    int width = 0, height = 0;              ///< pixels
+    double fx = 0, fy = 0, cx = 0, cy = 0;  ///< pixels
+    std::array<double, 5> distortion{};     ///< k1 k2 p1 p2 k3, dimensionless
 
     bool isDistorted() const;
 
     /// The same camera with an ideal lens.
     PinholeCamera undistorted() const;
 
-    /// Camera of pyramid level `level`, each level averaging 2x2 pixels of the one below. Because pixel centres are at
-    /// integers, cx' = (cx + 0.5) / 2^level - 0.5; width and height are halved and floored.
+    /// Camera of pyramid level `level`, each level averaging 2x2 pixels of the one below. Because pixel
+    /// centres are at integers, cx' = (cx + 0.5) / 2^level - 0.5; width and height are halved and floored.
     PinholeCamera atPyramidLevel(int level) const;
 
     /// Ideal projection of a camera-frame point (z > 0), metres to pixels; distortion is not applied.

@@ -3,7 +3,8 @@
 
 namespace roevo {
 
-/// One RGB-D image pair, depth registered to the colour camera, both as the lens saw them (not yet undistorted).
+/// One RGB-D image pair, depth registered to the colour camera, both as the lens saw them (not yet
+/// undistorted).
 struct RgbdFrame {
     double timestamp = 0;  ///< seconds, of the colour image
     cv::Mat grey;          ///< CV_8UC1, height x width

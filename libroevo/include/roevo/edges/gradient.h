@@ -1,0 +1,21 @@
+#pragma once
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+namespace roevo {
+
+/// Sobel gradient of a grey image (3x3, so a ramp of one grey level per pixel has magnitude 8).
+struct Gradient {
+    cv::Mat gx, gy;     ///< CV_16SC1
+    cv::Mat magnitude;  ///< CV_32FC1, Euclidean norm
+    cv::Mat blurred;    ///< CV_8UC1, the image after the optional blur
+};
+
+/// Fills `out` (its buffers are reused from frame to frame).
+/// @param blur_sigma  Gaussian blur before the filter, px; 0 for none
+void computeGradient(const cv::Mat& grey, double blur_sigma, Gradient& out);
+
+/// Otsu's threshold of the gradient magnitude (Sobel units), over every second pixel of every second row.
+double otsuThreshold(const cv::Mat& magnitude);
+
+}  // namespace roevo

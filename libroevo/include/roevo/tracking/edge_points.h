@@ -1,0 +1,33 @@
+#pragma once
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/edges/organized_edges.h"
+#include "roevo/options.h"
+
+namespace roevo {
+
+/// Organized edges with depth: 2-D points as OrganizedEdges has them, plus their position in the camera
+/// frame. Only points with depth are kept, and an edge is split where consecutive points jump in depth.
+/// Arrays read by the kernels are padded.
+struct EdgePoints3D {
+    OrganizedEdges image;                 ///< 2-D side; points without depth are gone
+    std::vector<float> x, y, z;           ///< camera frame, m; padded to a multiple of the kernels' lanes
+    std::vector<float> weight;            ///< w_s(depth), Eq. (20)
+    std::vector<std::uint8_t> occluding;  ///< 1 where the point borders a background behind it
+
+    std::size_t size() const { return image.size(); }
+    float medianDepth() const;  ///< m; 0 when empty
+};
+
+/// w_s(d) of Eq. (20).
+double depthWeight(double depth, const SensorOptions& sensor);
+
+/// Looks up the foreground depth of every edge point (`depth` is the raw image of the possibly distorted
+/// `camera`, the edges are in ideal pixels), splits edges at depth jumps and drops pieces of fewer than
+/// `min_length` points.
+EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const PinholeCamera& camera,
+                       const EdgeOptions& edge_options, const SensorOptions& sensor);
+
+}  // namespace roevo

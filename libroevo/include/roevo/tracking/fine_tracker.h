@@ -1,0 +1,66 @@
+#pragma once
+#include <vector>
+
+#include "roevo/tracking/coarse_tracker.h"
+#include "roevo/tracking/edge_association.h"
+#include "roevo/tracking/keyframe.h"
+
+namespace roevo {
+
+/// What fine tracking needs of the current frame.
+struct FineFrame {
+    const OrganizedEdges* edges = nullptr;
+    const EdgeGrid* grid = nullptr;
+    const ImagePyramid* pyramid = nullptr;
+    const cv::Mat* depth = nullptr;             ///< raw depth of `raw_camera`; may be empty
+    const PinholeCamera* raw_camera = nullptr;  ///< with distortion
+    const PinholeCamera* camera = nullptr;      ///< ideal
+};
+
+struct FineResult {
+    bool converged = false;
+    Pose T_current_keyframe = Pose::Identity();
+    int inliers = 0;           ///< associated points that passed the chi-square test
+    double scale = 0;          ///< robust spread of the point-to-tangent residual, px
+    double matched_ratio = 0;  ///< see EdgeMatches
+    int matches = 0;
+    Matrix6d covariance = Matrix6d::Zero();  ///< of the left perturbation (t, phi) of T_current_keyframe
+};
+
+/// Edge-wise registration, Eqs. (4)-(13): associations renewed as the pose moves, point-to-tangent residuals
+/// joined by photometric ones and by the depth of associated points, robust scales re-estimated in every
+/// step.
+class FineTracker {
+  public:
+    FineTracker(const FineOptions& fine, const EdgeOptions& edges, const SensorOptions& sensor)
+        : options_(fine), edge_options_(edges), sensor_(sensor), associator_(fine) {}
+
+    FineResult track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
+                     const Brightness& brightness);
+
+    const EdgeMatches& matches() const { return matches_; }  ///< of the last frame
+    const std::vector<float>& projectedU() const { return u_; }
+    const std::vector<float>& projectedV() const { return v_; }
+    const std::vector<float>& weights() const { return weight_; }  ///< 0 where rejected
+
+  private:
+    void project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera);
+    void geometricResiduals(const OrganizedEdges& current);
+    void depthResiduals(const Keyframe& keyframe, const FineFrame& frame);
+    void weigh(const Keyframe& keyframe);
+    void buildRows(const PinholeCamera& camera, const OrganizedEdges& current);
+
+    FineOptions options_;
+    EdgeOptions edge_options_;
+    SensorOptions sensor_;
+    EdgeAssociator associator_;
+    PhotometricResiduals photometric_;
+    EdgeMatches matches_;
+    std::vector<float> x_, y_, z_, u_, v_, gradient_u_, gradient_v_;
+    std::vector<float> residual_, weight_, depth_residual_, depth_weight_, current_depth_, scratch_;
+    std::vector<float> matrix_[6], vector_[3];
+    double scale_ = 1;
+    int inliers_ = 0;
+};
+
+}  // namespace roevo

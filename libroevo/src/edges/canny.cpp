@@ -1,0 +1,103 @@
+#include "roevo/edges/canny.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace roevo {
+namespace {
+
+constexpr std::uint8_t kNone = 0, kEdge = 1, kWeak = 2;
+
+/// Magnitudes one step before and after (x, y) along the gradient, interpolated between the two neighbours
+/// that the gradient line passes, and that step in pixels.
+struct Neighbours {
+    float before, after;
+    float step_x, step_y;
+};
+
+inline Neighbours alongGradient(const float* magnitude, std::ptrdiff_t stride, int gx, int gy) {
+    const int ax = std::abs(gx), ay = std::abs(gy);
+    if (ax >= ay) {
+        const float slope = static_cast<float>(gy) / static_cast<float>(gx);
+        const float share = std::abs(slope);
+        const std::ptrdiff_t side = slope >= 0 ? stride : -stride;
+        const float after = magnitude[1] + share * (magnitude[1 + side] - magnitude[1]);
+        const float before = magnitude[-1] + share * (magnitude[-1 - side] - magnitude[-1]);
+        return {before, after, 1, slope};
+    }
+    const float slope = static_cast<float>(gx) / static_cast<float>(gy);
+    const float share = std::abs(slope);
+    const std::ptrdiff_t side = slope >= 0 ? 1 : -1;
+    const float after = magnitude[stride] + share * (magnitude[stride + side] - magnitude[stride]);
+    const float before = magnitude[-stride] + share * (magnitude[-stride - side] - magnitude[-stride]);
+    return {before, after, slope, 1};
+}
+
+}  // namespace
+
+void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
+    const int width = gradient.magnitude.cols, height = gradient.magnitude.rows;
+    const auto low_f = static_cast<float>(low), high_f = static_cast<float>(high);
+    constexpr int kBorder = EdgeMask::kBorder;
+    out.mask.create(height, width, CV_8UC1);
+    out.mask.setTo(kNone);
+    out.pixels.clear();
+    if (width <= 2 * kBorder || height <= 2 * kBorder) return;
+
+    // out.pixels serves as the stack of strong pixels first, then receives every edge pixel.
+    auto& stack = out.pixels;
+    const auto stride = static_cast<std::ptrdiff_t>(gradient.magnitude.step1());
+    for (int y = kBorder; y < height - kBorder; ++y) {
+        const auto* magnitude = gradient.magnitude.ptr<float>(y);
+        const auto* gx = gradient.gx.ptr<std::int16_t>(y);
+        const auto* gy = gradient.gy.ptr<std::int16_t>(y);
+        auto* mask = out.mask.ptr<std::uint8_t>(y);
+        for (int x = kBorder; x < width - kBorder; ++x) {
+            const float m = magnitude[x];
+            if (m < low_f) continue;
+            const Neighbours n = alongGradient(magnitude + x, stride, gx[x], gy[x]);
+            // ">=" on one side only, so that a flat ridge two pixels wide keeps exactly one of them
+            if (!(m > n.before && m >= n.after)) continue;
+            if (m >= high_f) {
+                mask[x] = kEdge;
+                stack.push_back(y * width + x);
+            } else {
+                mask[x] = kWeak;
+            }
+        }
+    }
+
+    auto* mask = out.mask.ptr<std::uint8_t>();  // freshly created: continuous
+    for (std::size_t i = 0; i < stack.size(); ++i) {
+        const std::int32_t centre = stack[i];
+        for (int dy = -1; dy <= 1; ++dy) {
+            for (int dx = -1; dx <= 1; ++dx) {
+                const std::int32_t neighbour = centre + dy * width + dx;
+                if (mask[neighbour] != kWeak) continue;
+                mask[neighbour] = kEdge;
+                stack.push_back(neighbour);
+            }
+        }
+    }
+    std::sort(out.pixels.begin(), out.pixels.end());
+    for (int y = kBorder; y < height - kBorder; ++y) {
+        auto* row = out.mask.ptr<std::uint8_t>(y);
+        for (int x = kBorder; x < width - kBorder; ++x)
+            row[x] &= kEdge;  // drops the weak pixels that nothing reached
+    }
+}
+
+cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y) {
+    const auto* magnitude = gradient.magnitude.ptr<float>(y) + x;
+    const int gx = gradient.gx.at<std::int16_t>(y, x), gy = gradient.gy.at<std::int16_t>(y, x);
+    if (gx == 0 && gy == 0) return {0, 0};
+    const Neighbours n =
+        alongGradient(magnitude, static_cast<std::ptrdiff_t>(gradient.magnitude.step1()), gx, gy);
+    const float curvature = n.before - 2 * magnitude[0] + n.after;
+    if (!(curvature < 0)) return {0, 0};
+    const float vertex = std::clamp(0.5F * (n.before - n.after) / curvature, -0.5F, 0.5F);
+    return {vertex * n.step_x, vertex * n.step_y};
+}
+
+}  // namespace roevo

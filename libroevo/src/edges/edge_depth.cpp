@@ -1,0 +1,92 @@
+#include "roevo/edges/edge_depth.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace roevo {
+namespace {
+
+constexpr int kMaxRadius = 5;
+constexpr int kMinForeground = 3;  ///< fewer near pixels are speckle
+
+struct Sample {
+    float z, dx, dy;
+};
+
+/// Inverse depth at the patch's origin of the least-squares plane 1/z = a + b dx + c dy, or of the mean where
+/// the samples do not span a plane.
+float planeAtOrigin(const Sample* samples, int count) {
+    float sum_x = 0, sum_y = 0, sum_q = 0;
+    for (int i = 0; i < count; ++i) {
+        sum_x += samples[i].dx;
+        sum_y += samples[i].dy;
+        sum_q += 1 / samples[i].z;
+    }
+    const float scale = 1 / static_cast<float>(count);
+    const float mx = sum_x * scale, my = sum_y * scale, mq = sum_q * scale;
+    float xx = 0, xy = 0, yy = 0, xq = 0, yq = 0;
+    for (int i = 0; i < count; ++i) {
+        const float dx = samples[i].dx - mx, dy = samples[i].dy - my, dq = 1 / samples[i].z - mq;
+        xx += dx * dx;
+        xy += dx * dy;
+        yy += dy * dy;
+        xq += dx * dq;
+        yq += dy * dq;
+    }
+    const float determinant = xx * yy - xy * xy;
+    if (count < 6 || determinant < 0.05F * static_cast<float>(count * count)) return mq;
+    const float b = (xq * yy - yq * xy) / determinant, c = (yq * xx - xq * xy) / determinant;
+    return mq - b * mx - c * my;
+}
+
+}  // namespace
+
+EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOptions& edges,
+                          const SensorOptions& sensor) {
+    const int radius = std::min(edges.depth_patch_radius, kMaxRadius);
+    const int cu = static_cast<int>(std::lround(u)), cv_ = static_cast<int>(std::lround(v));
+    const auto near_limit = static_cast<float>(sensor.min_depth),
+               far_limit = static_cast<float>(sensor.depth_limit);
+    std::array<Sample, (2 * kMaxRadius + 1) * (2 * kMaxRadius + 1)> samples;
+    int count = 0;
+    float nearest = far_limit, farthest = near_limit;
+    for (int y = std::max(0, cv_ - radius); y <= std::min(depth.rows - 1, cv_ + radius); ++y) {
+        const auto* row = depth.ptr<float>(y);
+        for (int x = std::max(0, cu - radius); x <= std::min(depth.cols - 1, cu + radius); ++x) {
+            const float z = row[x];
+            if (!(z >= near_limit && z <= far_limit)) continue;
+            samples[static_cast<std::size_t>(count++)] = {z, static_cast<float>(x) - u,
+                                                          static_cast<float>(y) - v};
+            nearest = std::min(nearest, z);
+            farthest = std::max(farthest, z);
+        }
+    }
+    if (count < kMinForeground) return {};
+    const float jump = 1 + static_cast<float>(edges.depth_jump);
+    EdgeDepth result;
+    int begin = 0, end = count;
+    if (farthest > nearest * jump) {
+        std::sort(samples.begin(), samples.begin() + count, [](const Sample& a, const Sample& b) {
+            return a.z != b.z ? a.z < b.z : (a.dy != b.dy ? a.dy < b.dy : a.dx < b.dx);
+        });
+        end = 1;
+        while (end < count) {
+            if (samples[static_cast<std::size_t>(end)].z >
+                samples[static_cast<std::size_t>(end) - 1].z * jump) {
+                if (end - begin >= kMinForeground) break;
+                begin = end;  // speckle in front of everything else
+            }
+            ++end;
+        }
+        if (end - begin < kMinForeground) return {};
+        nearest = samples[static_cast<std::size_t>(begin)].z;
+        farthest = samples[static_cast<std::size_t>(end) - 1].z;
+        result.occluding = end < count;
+    }
+    const float inverse = planeAtOrigin(samples.data() + begin, end - begin);
+    result.depth = std::clamp(inverse > 0 ? 1 / inverse : farthest, nearest, farthest);
+    return result;
+}
+
+}  // namespace roevo

@@ -1,0 +1,62 @@
+#include "roevo/edges/gradient.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace roevo {
+
+void computeGradient(const cv::Mat& grey, double blur_sigma, Gradient& out) {
+    if (blur_sigma > 0) {
+        const int size = 2 * std::max(1, static_cast<int>(std::lround(2 * blur_sigma))) + 1;
+        cv::GaussianBlur(grey, out.blurred, {size, size}, blur_sigma, blur_sigma, cv::BORDER_REPLICATE);
+    } else {
+        grey.copyTo(out.blurred);
+    }
+    cv::spatialGradient(out.blurred, out.gx, out.gy, 3, cv::BORDER_REPLICATE);
+    out.magnitude.create(grey.size(), CV_32FC1);
+    for (int y = 0; y < grey.rows; ++y) {
+        const auto* gx = out.gx.ptr<std::int16_t>(y);
+        const auto* gy = out.gy.ptr<std::int16_t>(y);
+        auto* magnitude = out.magnitude.ptr<float>(y);
+        for (int x = 0; x < grey.cols; ++x) {
+            const auto dx = static_cast<float>(gx[x]), dy = static_cast<float>(gy[x]);
+            magnitude[x] = std::sqrt(dx * dx + dy * dy);
+        }
+    }
+}
+
+double otsuThreshold(const cv::Mat& magnitude) {
+    constexpr float kBinWidth = 4;
+    constexpr int kBins = 362;  // 4 * 255 * sqrt(2) / kBinWidth, rounded up
+    std::array<int, kBins> histogram{};
+    for (int y = 0; y < magnitude.rows; y += 2) {
+        const auto* row = magnitude.ptr<float>(y);
+        for (int x = 0; x < magnitude.cols; x += 2) {
+            ++histogram[static_cast<std::size_t>(std::min(kBins - 1, static_cast<int>(row[x] / kBinWidth)))];
+        }
+    }
+    double total = 0, sum = 0;
+    for (int i = 0; i < kBins; ++i) {
+        total += histogram[static_cast<std::size_t>(i)];
+        sum += static_cast<double>(i) * histogram[static_cast<std::size_t>(i)];
+    }
+    double below = 0, sum_below = 0, best_variance = -1;
+    int best = 0;
+    for (int i = 0; i < kBins; ++i) {
+        below += histogram[static_cast<std::size_t>(i)];
+        sum_below += static_cast<double>(i) * histogram[static_cast<std::size_t>(i)];
+        const double above = total - below;
+        if (below == 0 || above == 0) continue;
+        const double difference = sum_below / below - (sum - sum_below) / above;
+        const double variance = below * above * difference * difference;
+        if (variance > best_variance) {
+            best_variance = variance;
+            best = i;
+        }
+    }
+    return static_cast<double>(best + 1) * static_cast<double>(kBinWidth);
+}
+
+}  // namespace roevo

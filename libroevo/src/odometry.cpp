@@ -1,0 +1,334 @@
+#include "roevo/odometry.h"
+
+#include <Eigen/LU>
+#include <chrono>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "roevo/camera/undistorter.h"
+#include "roevo/edges/edge_extractor.h"
+#include "roevo/tracking/fine_tracker.h"
+#include "roevo/tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+class Stopwatch {
+  public:
+    double milliseconds() const {
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+const char* toString(FrameStatus status) {
+    switch (status) {
+        case FrameStatus::kOk:
+            return "ok";
+        case FrameStatus::kInitialised:
+            return "initialised";
+        case FrameStatus::kPredicted:
+            return "predicted";
+        case FrameStatus::kLost:
+            return "lost";
+        case FrameStatus::kRejected:
+            return "rejected";
+    }
+    return "unknown";
+}
+
+double FrameResult::sigmaTranslation() const {
+    return std::sqrt(std::max(0.0, covariance.topLeftCorner<3, 3>().trace()));
+}
+
+double FrameResult::sigmaRotationDeg() const {
+    return std::sqrt(std::max(0.0, covariance.bottomRightCorner<3, 3>().trace())) * 180 /
+           3.14159265358979323846;
+}
+
+struct Odometry::Impl {
+    Impl(const PinholeCamera& raw, const OdometryOptions& opts, const Pose& start)
+        : camera(raw),
+          ideal(raw.undistorted()),
+          options(opts),
+          undistorter(raw),
+          extractor(opts.edges),
+          coarse(opts.coarse),
+          fine(opts.fine, opts.edges, opts.sensor),
+          T_world_camera(start) {}
+
+    PinholeCamera camera, ideal;
+    OdometryOptions options;
+    Undistorter undistorter;
+    EdgeExtractor extractor;
+    CoarseTracker coarse;
+    FineTracker fine;
+
+    OrganizedEdges edges;  // of the present frame
+    EdgeGrid grid;
+    ImagePyramid pyramid;
+
+    std::unique_ptr<Keyframe> keyframe;
+    std::vector<KeyframeInfo> keyframe_infos;
+    EdgeMap edge_map;
+    std::vector<StampedPose> poses;
+    Pose T_world_camera;               // last pose
+    Pose velocity = Pose::Identity();  // T_last_current per second scale is kept in velocity_dt
+    double velocity_dt = 0;
+    double last_timestamp = -1;
+    Brightness brightness;
+    int lost_frames = 0;
+
+    std::string faultOf(const RgbdFrame& frame) const;
+    Pose predict(double timestamp) const;
+    std::string makeKeyframe(const RgbdFrame& frame, const cv::Mat& grey, const FrameResult& result);
+    void keepMapEdges(const RgbdFrame& frame, const Keyframe& kf);
+    void process(const RgbdFrame& frame, FrameResult& result);
+    bool trackFrame(const RgbdFrame& frame, FrameResult& result);
+    bool wantsKeyframe(const FrameResult& result) const;
+    void setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe, FrameResult& result) const;
+};
+
+std::string Odometry::Impl::faultOf(const RgbdFrame& frame) const {
+    if (!std::isfinite(frame.timestamp)) return "time stamp is not finite";
+    if (frame.timestamp <= last_timestamp) {
+        return frame.timestamp == last_timestamp ? "repeated time stamp" : "time stamp goes backward";
+    }
+    if (frame.grey.empty()) return "no colour image";
+    if (frame.grey.type() != CV_8UC1) return "grey image is not 8-bit with one channel";
+    const auto differs = [&](const cv::Mat& image) {
+        return image.cols != camera.width || image.rows != camera.height;
+    };
+    const auto sizeText = [](const cv::Mat& image) {
+        return std::to_string(image.cols) + "x" + std::to_string(image.rows);
+    };
+    const std::string expected = std::to_string(camera.width) + "x" + std::to_string(camera.height);
+    if (differs(frame.grey))
+        return "colour image is " + sizeText(frame.grey) + " but the camera is " + expected;
+    if (!frame.depth.empty() && frame.depth.type() != CV_32FC1) return "depth image is not 32-bit float";
+    if (!frame.depth.empty() && differs(frame.depth)) {
+        return "depth image is " + sizeText(frame.depth) + " but the camera is " + expected;
+    }
+    return {};
+}
+
+Pose Odometry::Impl::predict(double timestamp) const {
+    if (velocity_dt <= 0) return T_world_camera;
+    const double share = std::clamp((timestamp - last_timestamp) / velocity_dt, 0.0, 3.0);
+    return T_world_camera * interpolate(Pose::Identity(), velocity, share);
+}
+
+std::string Odometry::Impl::makeKeyframe(const RgbdFrame& frame, const cv::Mat& grey,
+                                         const FrameResult& result) {
+    (void)grey;
+    if (frame.depth.empty()) return "no depth image";
+    auto fresh = std::make_unique<Keyframe>();
+    fresh->edges = liftEdges(edges, frame.depth, camera, options.edges, options.sensor);
+    const auto needed = static_cast<std::size_t>(options.fine.min_inliers);
+    if (fresh->edges.size() < needed) {
+        return "only " + std::to_string(fresh->edges.size()) + " edge points with depth, " +
+               std::to_string(needed) + " needed";
+    }
+    fresh->id = static_cast<int>(keyframe_infos.size());
+    fresh->timestamp = frame.timestamp;
+    fresh->T_world_camera = result.T_world_camera;
+    fresh->covariance = result.covariance;
+    fresh->photometric = samplePhotometricPoints(fresh->edges, pyramid, options.coarse.max_points);
+    fresh->median_depth = fresh->edges.medianDepth();
+    keyframe = std::move(fresh);
+    brightness = Brightness();
+    keyframe_infos.push_back({keyframe->id, frame.timestamp, result.T_world_camera});
+    keepMapEdges(frame, *keyframe);
+    return {};
+}
+
+void Odometry::Impl::keepMapEdges(const RgbdFrame& frame, const Keyframe& kf) {
+    const bool coloured = frame.colour.type() == CV_8UC3 && frame.colour.size() == frame.grey.size();
+    for (int e = 0; e < kf.edges.image.numEdges(); ++e) {
+        MapEdge edge;
+        edge.keyframe_id = kf.id;
+        const auto first = static_cast<std::size_t>(kf.edges.image.begin[static_cast<std::size_t>(e)]);
+        const auto end = static_cast<std::size_t>(kf.edges.image.begin[static_cast<std::size_t>(e) + 1]);
+        for (std::size_t i = first; i < end; ++i) {
+            const Eigen::Vector3d p =
+                kf.T_world_camera * Eigen::Vector3d(kf.edges.x[i], kf.edges.y[i], kf.edges.z[i]);
+            edge.points.push_back(p.cast<float>());
+            Eigen::Vector2d pixel(kf.edges.image.x[i], kf.edges.image.y[i]);
+            if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
+            const int u = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, camera.width - 1);
+            const int v = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, camera.height - 1);
+            if (coloured) {
+                const auto& bgr = frame.colour.at<cv::Vec3b>(v, u);
+                edge.colours.push_back({bgr[2], bgr[1], bgr[0]});
+            } else {
+                const std::uint8_t level = frame.grey.at<std::uint8_t>(v, u);
+                edge.colours.push_back({level, level, level});
+            }
+        }
+        edge_map.push_back(std::move(edge));
+    }
+}
+
+void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe,
+                                   FrameResult& result) const {
+    // Neighbouring points of an edge err together: the information counts about one independent point in so
+    // many.
+    constexpr double kCorrelatedPoints = 5;
+    const Eigen::Matrix3d R = result.T_world_camera.linear();
+    Matrix6d to_world = Matrix6d::Zero();
+    to_world.topLeftCorner<3, 3>() = R;
+    to_world.bottomRightCorner<3, 3>() = R;
+    Matrix6d from_keyframe = Matrix6d::Identity();
+    const Pose T_keyframe_current = T_current_keyframe.inverse();
+    from_keyframe.topRightCorner<3, 3>() =
+        -skew(keyframe->T_world_camera.linear() * T_keyframe_current.translation());
+    result.covariance = from_keyframe * keyframe->covariance * from_keyframe.transpose() +
+                        kCorrelatedPoints * to_world * relative * to_world.transpose();
+}
+
+bool Odometry::Impl::wantsKeyframe(const FrameResult& result) const {
+    const Pose T_keyframe_current = keyframe->T_world_camera.inverse() * result.T_world_camera;
+    const double degrees = rotationAngle(T_keyframe_current) * 180 / 3.14159265358979323846;
+    return result.matched_ratio < options.keyframe.min_matched_ratio ||
+           degrees > options.keyframe.max_rotation_deg ||
+           T_keyframe_current.translation().norm() >
+               options.keyframe.max_translation * keyframe->median_depth;
+}
+
+bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
+    const Pose T_world_keyframe = keyframe->T_world_camera;
+    const Pose predicted = predict(frame.timestamp);
+    Stopwatch coarse_watch;
+    const std::vector<Pose> guesses = {predicted.inverse() * T_world_keyframe,
+                                       T_world_camera.inverse() * T_world_keyframe};
+    CoarseResult aligned = coarse.track(*keyframe, pyramid, ideal, guesses, brightness);
+    result.ms.coarse = coarse_watch.milliseconds();
+
+    Stopwatch fine_watch;
+    const FineFrame view{&edges, &grid, &pyramid, &frame.depth, &camera, &ideal};
+    const FineResult refined = fine.track(*keyframe, view, aligned.T_current_keyframe, aligned.brightness);
+    result.ms.fine = fine_watch.milliseconds();
+    result.inliers = refined.inliers;
+    result.matched_ratio = refined.matched_ratio;
+    const bool coarse_only = options.mode == Mode::kCoarse;
+    if (coarse_only ? !aligned.converged : !refined.converged) {
+        result.reason = coarse_only
+                            ? "coarse tracking found too few visible points"
+                            : "only " + std::to_string(refined.inliers) + " associated edge points, " +
+                                  std::to_string(options.fine.min_inliers) + " needed";
+        return false;
+    }
+    const Pose T_current_keyframe = coarse_only ? aligned.T_current_keyframe : refined.T_current_keyframe;
+    result.T_world_camera = T_world_keyframe * T_current_keyframe.inverse();
+    orthonormalise(result.T_world_camera);
+    const Matrix6d relative = coarse_only
+                                  ? Matrix6d((aligned.system.hessian + 1e-9 * Matrix6d::Identity()).inverse())
+                                  : refined.covariance;
+    setCovariance(relative, T_current_keyframe, result);
+    brightness = aligned.brightness;
+    return true;
+}
+
+void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
+    Stopwatch edge_watch;
+    const cv::Mat grey = undistorter.apply(frame.grey);
+    extractor.extract(grey, edges);
+    grid.build(edges, ideal.width, ideal.height);
+    pyramid.build(grey, options.coarse.levels);
+    result.num_edges = edges.numEdges();
+    result.num_points = static_cast<int>(edges.size());
+    result.ms.edges = edge_watch.milliseconds();
+
+    const double dt = frame.timestamp - last_timestamp;
+    if (!keyframe) {
+        result.T_world_camera = T_world_camera;
+        const std::string fault = makeKeyframe(frame, grey, result);
+        if (!fault.empty()) {
+            result.status = FrameStatus::kRejected;
+            result.reason = "cannot start here: " + fault;
+            return;
+        }
+        result.status = FrameStatus::kInitialised;
+        result.reason = "first usable frame";
+        result.is_keyframe = true;
+        last_timestamp = frame.timestamp;
+        return;
+    }
+    if (trackFrame(frame, result)) {
+        result.status = FrameStatus::kOk;
+        velocity = T_world_camera.inverse() * result.T_world_camera;
+        velocity_dt = dt;
+        T_world_camera = result.T_world_camera;
+        lost_frames = 0;
+        if (wantsKeyframe(result)) {
+            const std::string fault = makeKeyframe(frame, grey, result);
+            result.is_keyframe = fault.empty();
+            if (!fault.empty()) result.reason = "wanted as keyframe, but " + fault;
+        }
+    } else {
+        ++lost_frames;
+        const std::string why = result.reason;
+        const bool bridging = lost_frames <= options.loss.max_predicted;
+        result.T_world_camera = bridging ? predict(frame.timestamp) : T_world_camera;
+        result.status = bridging ? FrameStatus::kPredicted : FrameStatus::kLost;
+        result.reason = (bridging ? "constant velocity: " : "pose held: ") + why;
+        T_world_camera = result.T_world_camera;
+        velocity_dt = bridging ? velocity_dt : 0;
+        // A lost pose is worth little: say so, growing with every frame
+        result.covariance = keyframe->covariance + lost_frames * 1e-2 * Matrix6d::Identity();
+        if (!bridging && makeKeyframe(frame, grey, result).empty()) {
+            result.status = FrameStatus::kInitialised;
+            result.is_keyframe = true;
+            result.reason =
+                "re-anchored after " + std::to_string(lost_frames) + " frames without tracking: " + why;
+            lost_frames = 0;
+        }
+    }
+    last_timestamp = frame.timestamp;
+}
+
+Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start) {
+    if (const auto fault = camera.check(); !fault.empty()) throw std::invalid_argument(fault);
+    if (const auto fault = checkOptions(options); !fault.empty()) throw std::invalid_argument(fault);
+    impl_ = std::make_unique<Impl>(camera, options, T_world_start);
+}
+Odometry::~Odometry() = default;
+Odometry::Odometry(Odometry&&) noexcept = default;
+Odometry& Odometry::operator=(Odometry&&) noexcept = default;
+
+FrameResult Odometry::processFrame(const RgbdFrame& frame) {
+    Stopwatch watch;
+    FrameResult result;
+    result.timestamp = frame.timestamp;
+    if (auto fault = impl_->faultOf(frame); !fault.empty()) {
+        result.reason = std::move(fault);
+        return result;
+    }
+    impl_->process(frame, result);
+    if (result.hasPose()) impl_->poses.push_back({frame.timestamp, result.T_world_camera});
+    result.ms.total = watch.milliseconds();
+    return result;
+}
+
+std::vector<StampedPose> Odometry::trajectory() const {
+    return impl_->poses;
+}
+std::vector<KeyframeInfo> Odometry::keyframes() const {
+    return impl_->keyframe_infos;
+}
+EdgeMap Odometry::map() const {
+    return impl_->edge_map;
+}
+const PinholeCamera& Odometry::camera() const {
+    return impl_->camera;
+}
+const OdometryOptions& Odometry::options() const {
+    return impl_->options;
+}
+
+}  // namespace roevo

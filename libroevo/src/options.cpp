@@ -1,0 +1,187 @@
+#include "roevo/options.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+namespace roevo {
+namespace {
+
+std::string numberToText(double value) {
+    char buffer[64];  // shortest text that reads back as the same number
+    const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
+    return error == std::errc() ? std::string(buffer, end) : std::to_string(value);
+}
+
+template <class Number>
+bool parseWhole(const std::string& text, Number& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+std::string trimmed(const std::string& text) {
+    const auto first = text.find_first_not_of(" \t\r");
+    if (first == std::string::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::size_t editDistance(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t above = row[j];
+            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            diagonal = above;
+        }
+    }
+    return row.back();
+}
+
+}  // namespace
+
+const char* toString(Mode mode) {
+    return mode == Mode::kCoarse ? "ct" : "tr";
+}
+
+std::string OptionField::toText() const {
+    if (const auto* number = std::get_if<double*>(&value)) return numberToText(**number);
+    if (const auto* whole = std::get_if<int*>(&value)) return std::to_string(**whole);
+    if (const auto* flag = std::get_if<bool*>(&value)) return **flag ? "true" : "false";
+    return toString(*std::get<Mode*>(value));
+}
+
+std::string OptionField::fromText(const std::string& text) const {
+    const std::string word = trimmed(text);
+    if (const auto* number = std::get_if<double*>(&value)) {
+        if (!parseWhole(word, **number)) return "option " + name() + ": '" + word + "' is not a number";
+    } else if (const auto* whole = std::get_if<int*>(&value)) {
+        if (!parseWhole(word, **whole)) return "option " + name() + ": '" + word + "' is not a whole number";
+    } else if (const auto* flag = std::get_if<bool*>(&value)) {
+        if (word != "true" && word != "false" && word != "1" && word != "0") {
+            return "option " + name() + ": '" + word + "' is neither true nor false";
+        }
+        **flag = word == "true" || word == "1";
+    } else {
+        auto* mode = std::get<Mode*>(value);
+        if (word == "ct") {
+            *mode = Mode::kCoarse;
+        } else if (word == "tr") {
+            *mode = Mode::kTracking;
+        } else {
+            return "option " + name() + ": '" + word + "' is not one of ct, tr";
+        }
+    }
+    return check();
+}
+
+std::string OptionField::check() const {
+    double number = 0;
+    if (const auto* real = std::get_if<double*>(&value)) {
+        number = **real;
+    } else if (const auto* whole = std::get_if<int*>(&value)) {
+        number = **whole;
+    } else {
+        return {};
+    }
+    if (std::isfinite(number) && number >= min && number <= max) return {};
+    return "option " + name() + " = " + toText() + " is outside " + numberToText(min) + " to " +
+           numberToText(max) + (unit.empty() ? "" : " " + unit);
+}
+
+std::vector<OptionField> optionFields(OdometryOptions& o) {
+    auto& s = o.sensor;
+    auto& e = o.edges;
+    auto& c = o.coarse;
+    auto& f = o.fine;
+    auto& k = o.keyframe;
+    return {
+        {"odometry", "mode", "", "ct: coarse tracking only; tr: coarse and fine", 0, 0, &o.mode},
+        {"sensor", "depth_weight_k", "1/m", "k of the depth weight, Eq. (20)", 0, 10, &s.depth_weight_k},
+        {"sensor", "min_depth", "m", "d_min of Eq. (20); nearer depths are not used", 0.01, 10, &s.min_depth},
+        {"sensor", "max_depth", "m", "d_max of Eq. (20)", 0.1, 100, &s.max_depth},
+        {"sensor", "depth_limit", "m", "farther depths are not used", 0.1, 100, &s.depth_limit},
+        {"sensor", "depth_noise", "1/m", "a in sigma_z = a z^2", 1e-5, 0.1, &s.depth_noise},
+        {"edges", "blur_sigma", "px", "Gaussian blur before the Sobel filter (0: none)", 0, 5, &e.blur_sigma},
+        {"edges", "canny_high_factor", "", "high threshold = factor x Otsu of the gradient", 0.1, 10,
+         &e.canny_high_factor},
+        {"edges", "canny_low_ratio", "", "low threshold = ratio x high threshold", 0.1, 1,
+         &e.canny_low_ratio},
+        {"edges", "min_high_threshold", "Sobel units", "floor of the high threshold", 1, 1000,
+         &e.min_high_threshold},
+        {"edges", "threshold_smoothing", "", "share of the previous frame's threshold that is kept", 0, 0.99,
+         &e.threshold_smoothing},
+        {"edges", "angle_deg", "deg", "oriented BFS: largest angle between neighbouring gradients", 1, 90,
+         &e.angle_deg},
+        {"edges", "min_length", "px", "shortest organized edge", 3, 1000, &e.min_length},
+        {"edges", "tangent_span", "points",
+         "tangents run between the points this many places before and after", 1, 10, &e.tangent_span},
+        {"edges", "depth_patch_radius", "px", "radius of the square in which foreground depth is looked for",
+         1, 5, &e.depth_patch_radius},
+        {"edges", "depth_jump", "", "relative depth step that separates foreground from background", 0.005,
+         0.5, &e.depth_jump},
+        {"coarse", "levels", "", "image pyramid levels", 1, 7, &c.levels},
+        {"coarse", "max_points", "points", "sampled edge points", 50, 100000, &c.max_points},
+        {"coarse", "min_points", "points", "fewer cannot carry a photometric pose", 6, 1000, &c.min_points},
+        {"coarse", "max_iterations", "", "Gauss-Newton steps per level", 1, 100, &c.max_iterations},
+        {"fine", "search_radius", "px", "radius of the first association", 1, 15, &f.search_radius},
+        {"fine", "final_radius", "px", "radius of the last association", 1, 15, &f.final_radius},
+        {"fine", "normal_angle_deg", "deg", "largest angle between associated edge normals", 0.5, 90,
+         &f.normal_angle_deg},
+        {"fine", "vote_ratio", "", "share of the shorter edge's points that must agree on a pair of edges", 0,
+         1, &f.vote_ratio},
+        {"fine", "min_votes", "points", "and at least this many", 1, 1000, &f.min_votes},
+        {"fine", "max_points", "points", "keyframe edge points used", 100, 100000, &f.max_points},
+        {"fine", "max_iterations", "", "Gauss-Newton steps", 1, 100, &f.max_iterations},
+        {"fine", "chi2", "", "chi-square limit of a residual", 0.5, 100, &f.chi2},
+        {"fine", "photometric_weight", "",
+         "weight of the photometric residual, both normalised by their spread", 0, 100,
+         &f.photometric_weight},
+        {"fine", "depth_weight", "", "weight of the depth residual of associated points (0: as in the paper)",
+         0, 100, &f.depth_weight},
+        {"fine", "min_inliers", "points", "with fewer inliers the frame is not tracked", 6, 10000,
+         &f.min_inliers},
+        {"keyframe", "min_matched_ratio", "", "new keyframe below this share of associable edges", 0, 1,
+         &k.min_matched_ratio},
+        {"keyframe", "max_rotation_deg", "deg", "new keyframe beyond this rotation", 0.1, 180,
+         &k.max_rotation_deg},
+        {"keyframe", "max_translation", "",
+         "new keyframe beyond this translation relative to the median depth", 0.001, 10, &k.max_translation},
+        {"loss", "max_predicted", "frames", "frames bridged by constant velocity before re-anchoring", 0,
+         1000, &o.loss.max_predicted},
+    };
+}
+
+std::string setOption(OdometryOptions& options, const std::string& name, const std::string& text) {
+    const auto fields = optionFields(options);
+    const OptionField* closest = nullptr;
+    std::size_t closest_distance = 0;
+    for (const auto& field : fields) {
+        if (field.name() == name) return field.fromText(text);
+        const std::size_t distance =
+            std::min(editDistance(field.name(), name), editDistance(field.key, name));
+        if (closest == nullptr || distance < closest_distance) {
+            closest = &field;
+            closest_distance = distance;
+        }
+    }
+    return "unknown option '" + name + "'; the closest is '" + closest->name() + "' (" +
+           closest->description + ")";
+}
+
+std::string checkOptions(const OdometryOptions& options) {
+    OdometryOptions copy = options;
+    for (const auto& field : optionFields(copy)) {
+        if (auto fault = field.check(); !fault.empty()) return fault;
+    }
+    if (copy.sensor.max_depth <= copy.sensor.min_depth) {
+        return "option sensor.max_depth = " + numberToText(copy.sensor.max_depth) +
+               " must exceed sensor.min_depth = " + numberToText(copy.sensor.min_depth);
+    }
+    return {};
+}
+
+}  // namespace roevo

@@ -1,0 +1,180 @@
+#include "roevo/tracking/fine_tracker.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "roevo/edges/edge_depth.h"
+#include "roevo/tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+constexpr double kMinScale = 0.1;  ///< px; sub-pixel edges never agree better on real images
+constexpr double kMaxScale = 2.0;  ///< px
+constexpr float kUnknown = -1;     ///< depth not looked up yet
+
+}  // namespace
+
+void FineTracker::project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera) {
+    const EdgePoints3D& edges = keyframe.edges;
+    const std::size_t n = edges.size(), padded = edges.x.size();
+    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
+    gradient_u_.resize(n);
+    gradient_v_.resize(n);
+    kernels::best().project(makeProjection(pose, camera), edges.x.data(), edges.y.data(), edges.z.data(),
+                            padded, {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+    const Eigen::Vector2f turn = imageRotation(pose);
+    for (std::size_t i = 0; i < n; ++i) {
+        gradient_u_[i] = turn.x() * edges.image.gradient_x[i] - turn.y() * edges.image.gradient_y[i];
+        gradient_v_[i] = turn.y() * edges.image.gradient_x[i] + turn.x() * edges.image.gradient_y[i];
+    }
+}
+
+void FineTracker::geometricResiduals(const OrganizedEdges& current) {
+    residual_.resize(matches_.point.size());
+    scratch_.clear();
+    for (std::size_t i = 0; i < matches_.point.size(); ++i) {
+        if (matches_.point[i] < 0) continue;
+        const auto p = static_cast<std::size_t>(matches_.point[i]);
+        // Eq. (8): the component across the tangent, as a signed scalar; its square and its normal equations
+        // are the same
+        residual_[i] =
+            current.normal_x[p] * (u_[i] - current.x[p]) + current.normal_y[p] * (v_[i] - current.y[p]);
+        scratch_.push_back(std::abs(residual_[i]));
+    }
+    if (scratch_.empty()) return;
+    const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
+    std::nth_element(scratch_.begin(), middle, scratch_.end());
+    scale_ = std::clamp(1.4826 * static_cast<double>(*middle), kMinScale, kMaxScale);
+}
+
+void FineTracker::depthResiduals(const Keyframe& keyframe, const FineFrame& frame) {
+    depth_residual_.assign(matches_.point.size(), 0);
+    depth_weight_.assign(matches_.point.size(), 0);
+    if (options_.depth_weight <= 0 || frame.depth->empty()) return;
+    const bool distorted = frame.raw_camera->isDistorted();
+    const auto chi2 = static_cast<float>(options_.chi2);
+    for (std::size_t i = 0; i < matches_.point.size(); ++i) {
+        if (matches_.point[i] < 0) continue;
+        const auto p = static_cast<std::size_t>(matches_.point[i]);
+        float& measured = current_depth_[p];
+        if (measured == kUnknown) {
+            Eigen::Vector2d pixel(frame.edges->x[p], frame.edges->y[p]);
+            if (distorted) pixel = frame.raw_camera->distortPixel(pixel);
+            measured = foregroundDepth(*frame.depth, static_cast<float>(pixel.x()),
+                                       static_cast<float>(pixel.y()), edge_options_, sensor_)
+                           .depth;
+        }
+        if (measured <= 0) continue;
+        const float noise = static_cast<float>(sensor_.depth_noise);
+        const float reference = keyframe.edges.z[i];
+        const float variance =
+            noise * noise *
+                (measured * measured * measured * measured + reference * reference * reference * reference) +
+            1e-6F;
+        const float residual = z_[i] - measured;
+        const float squared = residual * residual / variance;
+        if (squared > 2 * chi2) continue;
+        depth_residual_[i] = residual;
+        depth_weight_[i] = static_cast<float>(options_.depth_weight) / (variance * (1 + squared / 5));
+    }
+}
+
+void FineTracker::weigh(const Keyframe& keyframe) {
+    weight_.assign(matches_.point.size(), 0);
+    inliers_ = 0;
+    const auto inverse = static_cast<float>(1 / (scale_ * scale_));
+    const auto chi2 = static_cast<float>(options_.chi2);
+    for (std::size_t i = 0; i < matches_.point.size(); ++i) {
+        if (matches_.point[i] < 0) continue;
+        const float squared = residual_[i] * residual_[i] * inverse;
+        if (squared > chi2) continue;
+        ++inliers_;
+        weight_[i] = keyframe.edges.weight[i] * inverse * 6 / (5 + squared);
+    }
+}
+
+void FineTracker::buildRows(const PinholeCamera& camera, const OrganizedEdges& current) {
+    const std::size_t padded = x_.size();
+    for (auto& array : matrix_) array.resize(padded);
+    for (auto& array : vector_) array.resize(padded);
+    const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
+    for (std::size_t i = 0; i < padded; ++i) {
+        float matrix[6] = {0, 0, 0, 0, 0, 0}, vector[3] = {0, 0, 0};
+        if (i < matches_.point.size() && weight_[i] > 0) {
+            const auto p = static_cast<std::size_t>(matches_.point[i]);
+            const float nx = current.normal_x[p], ny = current.normal_y[p], w = weight_[i], r = residual_[i];
+            liftInformation(x_[i], y_[i], z_[i], fx, fy, w * nx * nx, w * nx * ny, w * ny * ny, w * nx * r,
+                            w * ny * r, matrix, vector);
+            matrix[5] += depth_weight_[i];
+            vector[2] += depth_weight_[i] * depth_residual_[i];
+        }
+        for (int k = 0; k < 6; ++k) matrix_[k][i] = matrix[k];
+        for (int k = 0; k < 3; ++k) vector_[k][i] = vector[k];
+    }
+}
+
+FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
+                              const Brightness& brightness) {
+    const OrganizedEdges& current = *frame.edges;
+    const PinholeCamera& camera = *frame.camera;
+    const double depth = std::max(keyframe.median_depth, 0.1);
+    FineResult result;
+    result.T_current_keyframe = T_start;
+    current_depth_.assign(current.size(), kUnknown);
+    Pose pose = T_start;
+    Brightness gain = brightness;
+    PoseSystem system;
+    for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+        const double share = std::min(1.0, iteration / 4.0);
+        const double radius =
+            options_.search_radius + share * (options_.final_radius - options_.search_radius);
+        project(keyframe, pose, camera);
+        associator_.associate(keyframe.edges.image, u_.data(), v_.data(), gradient_u_.data(),
+                              gradient_v_.data(), edge_options_.tangent_span, current, *frame.grid,
+                              camera.width, camera.height, radius, matches_);
+        if (matches_.num_points < options_.min_inliers) break;
+        geometricResiduals(current);
+        depthResiduals(keyframe, frame);
+        weigh(keyframe);
+        buildRows(camera, current);
+        kernels::PointInformation rows{x_.data(), y_.data(), z_.data(), {}, {}};
+        for (int k = 0; k < 6; ++k) rows.matrix[k] = matrix_[k].data();
+        for (int k = 0; k < 3; ++k) rows.vector[k] = vector_[k].data();
+        kernels::NormalEquations equations;
+        kernels::best().accumulate(rows, x_.size(), equations);
+        system = PoseSystem();
+        system.add(equations);
+        if (options_.photometric_weight > 0 && keyframe.photometric.size() > 0) {
+            photometric_.evaluate(keyframe.photometric, 0, frame.pyramid->level(0), camera, pose, gain);
+            // alpha: both kinds of residual count as many points as the edges have, whatever the sample's
+            // size
+            const double count = static_cast<double>(matches_.num_points) /
+                                 std::max<double>(1, photometric_.numVisible() * kernels::kPatchSize);
+            photometric_.accumulate(keyframe.photometric, 0, camera, options_.photometric_weight * count,
+                                    equations);
+            system.add(equations);
+            gain = photometric_.fitBrightness(keyframe.photometric, 0, gain);
+        }
+        PoseSystem damped = system;
+        damped.addPrior(0.2 * depth, 0.2);
+        const Vector6d step = damped.solve();
+        pose = poseIncrement(step) * pose;
+        const double motion_px = camera.fx * (step.tail<3>().norm() + step.head<3>().norm() / depth);
+        if (motion_px < 0.01 && share >= 1) break;
+    }
+    result.inliers = matches_.num_points < options_.min_inliers ? matches_.num_points : inliers_;
+    result.matches = matches_.num_points;
+    result.scale = scale_;
+    result.matched_ratio = matches_.matchedRatio();
+    if (result.inliers < options_.min_inliers || !pose.matrix().allFinite()) return result;
+    orthonormalise(pose);
+    result.T_current_keyframe = pose;
+    result.covariance = (system.hessian + 1e-9 * Matrix6d::Identity()).inverse();
+    result.converged = true;
+    return result;
+}
+
+}  // namespace roevo

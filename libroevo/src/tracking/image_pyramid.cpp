@@ -1,0 +1,24 @@
+#include "roevo/tracking/image_pyramid.h"
+
+#include <opencv2/imgproc.hpp>
+
+namespace roevo {
+
+void ImagePyramid::build(const cv::Mat& grey, int levels) {
+    constexpr int kSmallest = 24;  // px; patches need some room
+    levels_.resize(static_cast<std::size_t>(levels));
+    levels_[0] = grey;
+    for (int i = 1; i < levels; ++i) {
+        const cv::Mat& below = levels_[static_cast<std::size_t>(i) - 1];
+        const cv::Size half(below.cols / 2, below.rows / 2);
+        if (half.width < kSmallest || half.height < kSmallest) {
+            levels_.resize(static_cast<std::size_t>(i));
+            break;
+        }
+        // An odd last row or column is left out, so that every level's pixel is the mean of exactly four
+        cv::resize(below(cv::Rect(0, 0, 2 * half.width, 2 * half.height)),
+                   levels_[static_cast<std::size_t>(i)], half, 0, 0, cv::INTER_AREA);
+    }
+}
+
+}  // namespace roevo

@@ -1,0 +1,22 @@
+#include "roevo/tracking/kernels.h"
+
+namespace roevo::kernels {
+namespace {
+#include "kernels_impl.h"
+}  // namespace
+
+const Table& baseline() {
+    static const Table table{"baseline", project, patches, accumulate};
+    return table;
+}
+
+#if !defined(ROEVO_HAVE_AVX2)
+const Table* avx2() { return nullptr; }
+#endif
+
+const Table& best() {
+    static const Table& table = avx2() != nullptr ? *avx2() : baseline();
+    return table;
+}
+
+}  // namespace roevo::kernels

@@ -1,0 +1,137 @@
+// Included by one file per instruction set, inside an anonymous namespace. No standard containers or Eigen here: an inline function
+// compiled with AVX2 must never be picked by the linker for the baseline.
+
+typedef float Lanes __attribute__((vector_size(4 * kLanes)));
+typedef std::int32_t IntLanes __attribute__((vector_size(4 * kLanes)));
+
+inline Lanes load(const float* p) {
+    Lanes v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
+}
+
+inline void store(float* p, Lanes v) { __builtin_memcpy(p, &v, sizeof v); }
+
+inline Lanes splat(float value) { return Lanes{value, value, value, value, value, value, value, value}; }
+
+/// Sum of the lanes in a fixed order.
+inline float sumLanes(Lanes v) {
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+void project(const Projection& m, const float* px, const float* py, const float* pz, std::size_t n,
+             const ProjectedPoints& out) {
+    const Lanes behind = splat(-1e6F), least = splat(1e-3F), one = splat(1);
+    for (std::size_t i = 0; i < n; i += kLanes) {
+        const Lanes x = load(px + i), y = load(py + i), z = load(pz + i);
+        const Lanes cx = m.rotation[0] * x + m.rotation[1] * y + m.rotation[2] * z + m.translation[0];
+        const Lanes cy = m.rotation[3] * x + m.rotation[4] * y + m.rotation[5] * z + m.translation[1];
+        const Lanes cz = m.rotation[6] * x + m.rotation[7] * y + m.rotation[8] * z + m.translation[2];
+        const IntLanes in_front = cz > least;
+        const Lanes inverse = one / (in_front ? cz : one);
+        store(out.x + i, cx);
+        store(out.y + i, cy);
+        store(out.z + i, cz);
+        store(out.u + i, in_front ? m.fx * cx * inverse + m.cx : behind);
+        store(out.v + i, in_front ? m.fy * cy * inverse + m.cy : behind);
+    }
+}
+
+inline IntLanes gather(const std::uint8_t* data, IntLanes index) {
+#ifdef __AVX2__
+    return (IntLanes)_mm256_i32gather_epi32(reinterpret_cast<const int*>(data), (__m256i)index, 1);
+#else
+    IntLanes out;
+    for (int l = 0; l < kLanes; ++l) {
+        // two neighbours are all that is looked at
+        out[l] = data[index[l]] | (data[index[l] + 1] << 8);
+    }
+    return out;
+#endif
+}
+
+void patches(const ImageView& image, const Patch* patch, const float* u, const float* v, const float* axis_x,
+             const float* axis_y, std::size_t n, float gain, float offset, PatchResidual* out) {
+    const Lanes du = load(kPatchU), dv = load(kPatchV);
+    constexpr float kReach = 4;  // the patch, its bilinear neighbours, and whole words when gathering
+    const float max_u = static_cast<float>(image.width - 1) - kReach;
+    const float max_v = static_cast<float>(image.height - 1) - kReach;
+    const auto stride = static_cast<std::int32_t>(image.stride);
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!(u[i] >= kReach && u[i] <= max_u && v[i] >= kReach && v[i] <= max_v)) {
+            out[i] = {-1, 0, 0, 0, 0};
+            continue;
+        }
+        const Lanes x = u[i] + axis_x[i] * du - axis_y[i] * dv;
+        const Lanes y = v[i] + axis_y[i] * du + axis_x[i] * dv;
+        const IntLanes ix = __builtin_convertvector(x, IntLanes), iy = __builtin_convertvector(y, IntLanes);
+        const Lanes fx = x - __builtin_convertvector(ix, Lanes), fy = y - __builtin_convertvector(iy, Lanes);
+        const IntLanes index = iy * stride + ix;
+        const IntLanes upper = gather(image.data, index), lower = gather(image.data + stride, index);
+        const Lanes i00 = __builtin_convertvector(upper & 255, Lanes);
+        const Lanes i01 = __builtin_convertvector((upper >> 8) & 255, Lanes);
+        const Lanes i10 = __builtin_convertvector(lower & 255, Lanes);
+        const Lanes i11 = __builtin_convertvector((lower >> 8) & 255, Lanes);
+        const Lanes top = i00 + fx * (i01 - i00), bottom = i10 + fx * (i11 - i10);
+        const Lanes current = top + fy * (bottom - top);
+        const Lanes reference = load(patch[i].intensity);
+        const Lanes e = current - gain * reference - offset;
+        out[i].squared = sumLanes(e * e);
+        out[i].gradient_u = sumLanes(load(patch[i].slope_u) * e);
+        out[i].gradient_v = sumLanes(load(patch[i].slope_v) * e);
+        out[i].current = sumLanes(current);
+        out[i].cross = sumLanes(current * reference);
+    }
+}
+
+void accumulate(const PointInformation& p, std::size_t n, NormalEquations& out) {
+    for (double& value : out.hessian) value = 0;
+    for (double& value : out.gradient) value = 0;
+    constexpr std::size_t kChunk = 256;  // summed in single precision, chunks in double
+    for (std::size_t begin = 0; begin < n; begin += kChunk) {
+        const std::size_t end = begin + kChunk < n ? begin + kChunk : n;
+        Lanes h[21], g[6];
+        for (Lanes& value : h) value = splat(0);
+        for (Lanes& value : g) value = splat(0);
+        for (std::size_t i = begin; i < end; i += kLanes) {
+            const Lanes x = load(p.x + i), y = load(p.y + i), z = load(p.z + i);
+            const Lanes xx = load(p.matrix[0] + i), xy = load(p.matrix[1] + i), xz = load(p.matrix[2] + i);
+            const Lanes yy = load(p.matrix[3] + i), yz = load(p.matrix[4] + i), zz = load(p.matrix[5] + i);
+            const Lanes vx = load(p.vector[0] + i), vy = load(p.vector[1] + i), vz = load(p.vector[2] + i);
+            // A = M (-point^), with -point^ = [0 z -y; -z 0 x; y -x 0]
+            const Lanes a00 = y * xz - z * xy, a01 = z * xx - x * xz, a02 = x * xy - y * xx;
+            const Lanes a10 = y * yz - z * yy, a11 = z * xy - x * yz, a12 = x * yy - y * xy;
+            const Lanes a20 = y * zz - z * yz, a21 = z * xz - x * zz, a22 = x * yz - y * xz;
+            h[0] += xx;
+            h[1] += xy;
+            h[2] += xz;
+            h[3] += a00;
+            h[4] += a01;
+            h[5] += a02;
+            h[6] += yy;
+            h[7] += yz;
+            h[8] += a10;
+            h[9] += a11;
+            h[10] += a12;
+            h[11] += zz;
+            h[12] += a20;
+            h[13] += a21;
+            h[14] += a22;
+            // (-point^)^T A, rows (0 -z y), (z 0 -x), (-y x 0)
+            h[15] += y * a20 - z * a10;
+            h[16] += y * a21 - z * a11;
+            h[17] += y * a22 - z * a12;
+            h[18] += z * a01 - x * a21;
+            h[19] += z * a02 - x * a22;
+            h[20] += x * a12 - y * a02;
+            g[0] += vx;
+            g[1] += vy;
+            g[2] += vz;
+            g[3] += y * vz - z * vy;
+            g[4] += z * vx - x * vz;
+            g[5] += x * vy - y * vx;
+        }
+        for (int k = 0; k < 21; ++k) out.hessian[k] += static_cast<double>(sumLanes(h[k]));
+        for (int k = 0; k < 6; ++k) out.gradient[k] += static_cast<double>(sumLanes(g[k]));
+    }
+}

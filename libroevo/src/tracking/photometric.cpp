@@ -1,0 +1,215 @@
+#include "roevo/tracking/photometric.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roevo {
+namespace {
+
+/// Bilinear sample; the caller keeps (u, v) inside.
+float sample(const cv::Mat& image, float u, float v) {
+    const int x = static_cast<int>(std::floor(u)), y = static_cast<int>(std::floor(v));
+    const float fx = u - static_cast<float>(x), fy = v - static_cast<float>(y);
+    const auto* top = image.ptr<std::uint8_t>(y) + x;
+    const auto* bottom = image.ptr<std::uint8_t>(y + 1) + x;
+    const float upper = static_cast<float>(top[0]) + fx * static_cast<float>(top[1] - top[0]);
+    const float lower = static_cast<float>(bottom[0]) + fx * static_cast<float>(bottom[1] - bottom[0]);
+    return upper + fy * (lower - upper);
+}
+
+/// False when the patch does not fit into the image.
+bool samplePatch(const cv::Mat& image, float u, float v, float axis_x, float axis_y, kernels::Patch& patch) {
+    constexpr float kReach = 4;  // patch radius 2, one for the slope, one for the bilinear neighbour
+    patch = {};
+    if (!(u >= kReach && v >= kReach && u <= static_cast<float>(image.cols) - 1 - kReach &&
+          v <= static_cast<float>(image.rows) - 1 - kReach)) {
+        return false;
+    }
+    for (int j = 0; j < kernels::kPatchSize; ++j) {
+        const float x = u + axis_x * kernels::kPatchU[j] - axis_y * kernels::kPatchV[j];
+        const float y = v + axis_y * kernels::kPatchU[j] + axis_x * kernels::kPatchV[j];
+        const float along =
+            (sample(image, x + axis_x, y + axis_y) - sample(image, x - axis_x, y - axis_y)) / 2;
+        const float across =
+            (sample(image, x - axis_y, y + axis_x) - sample(image, x + axis_y, y - axis_x)) / 2;
+        const float intensity = sample(image, x, y);
+        patch.intensity[j] = intensity;
+        patch.slope_u[j] = along;
+        patch.slope_v[j] = across;
+        patch.gram[0] += along * along;
+        patch.gram[1] += along * across;
+        patch.gram[2] += across * across;
+        patch.sum += intensity;
+        patch.sum_squared += intensity * intensity;
+    }
+    return true;
+}
+
+constexpr float kStudentNu =
+    5;  ///< degrees of freedom of the t-distribution that photometric residuals follow well
+
+}  // namespace
+
+PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const ImagePyramid& pyramid,
+                                          int max_points) {
+    PhotometricPoints points;
+    const auto step = static_cast<int>((edges.size() + static_cast<std::size_t>(max_points) - 1) /
+                                       static_cast<std::size_t>(max_points));
+    std::vector<std::size_t> chosen;
+    for (int e = 0; e < edges.image.numEdges(); ++e) {
+        const int first = edges.image.begin[static_cast<std::size_t>(e)];
+        const int end = edges.image.begin[static_cast<std::size_t>(e) + 1];
+        // centred, so that short edges give their middle point
+        for (int i = first + ((end - first - 1) % step) / 2; i < end; i += step)
+            chosen.push_back(static_cast<std::size_t>(i));
+    }
+    const std::size_t padded = kernels::paddedSize(chosen.size());
+    for (const std::size_t i : chosen) {
+        points.x.push_back(edges.x[i]);
+        points.y.push_back(edges.y[i]);
+        points.z.push_back(edges.z[i]);
+        points.axis_x.push_back(edges.image.gradient_x[i]);
+        points.axis_y.push_back(edges.image.gradient_y[i]);
+        const float slope = edges.image.strength[i] / 255;
+        points.weight.push_back(edges.weight[i] / (1 + slope * slope));  // Eq. (3)
+    }
+    points.x.resize(padded, 0);
+    points.y.resize(padded, 0);
+    points.z.resize(padded, 1);
+    points.patches.resize(static_cast<std::size_t>(pyramid.numLevels()));
+    for (int level = 0; level < pyramid.numLevels(); ++level) {
+        auto& patches = points.patches[static_cast<std::size_t>(level)];
+        patches.resize(chosen.size());
+        const float scale = 1.0F / static_cast<float>(1 << level);
+        for (std::size_t k = 0; k < chosen.size(); ++k) {
+            const float u = (edges.image.x[chosen[k]] + 0.5F) * scale - 0.5F;
+            const float v = (edges.image.y[chosen[k]] + 0.5F) * scale - 0.5F;
+            // A patch that does not fit keeps an all-zero gram and so carries no information on this level
+            samplePatch(pyramid.level(level), u, v, points.axis_x[k], points.axis_y[k], patches[k]);
+        }
+    }
+    return points;
+}
+
+kernels::Projection makeProjection(const Pose& T, const PinholeCamera& camera) {
+    kernels::Projection projection{};
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) projection.rotation[3 * r + c] = static_cast<float>(T.linear()(r, c));
+        projection.translation[r] = static_cast<float>(T.translation()[r]);
+    }
+    projection.fx = static_cast<float>(camera.fx);
+    projection.fy = static_cast<float>(camera.fy);
+    projection.cx = static_cast<float>(camera.cx);
+    projection.cy = static_cast<float>(camera.cy);
+    return projection;
+}
+
+Eigen::Vector2f imageRotation(const Pose& T) {
+    const Eigen::Vector2d turn(T.linear()(0, 0) + T.linear()(1, 1), T.linear()(1, 0) - T.linear()(0, 1));
+    return turn.normalized().cast<float>();
+}
+
+void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, const cv::Mat& image,
+                                    const PinholeCamera& camera, const Pose& T,
+                                    const Brightness& brightness) {
+    const std::size_t n = points.size(), padded = points.x.size();
+    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
+    axis_x_.resize(n);
+    axis_y_.resize(n);
+    weight_.resize(n);
+    residuals_.resize(n);
+    const auto& kernel = kernels::best();
+    kernel.project(makeProjection(T, camera), points.x.data(), points.y.data(), points.z.data(), padded,
+                   {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+    const Eigen::Vector2f turn = imageRotation(T);
+    for (std::size_t i = 0; i < n; ++i) {
+        axis_x_[i] = turn.x() * points.axis_x[i] - turn.y() * points.axis_y[i];
+        axis_y_[i] = turn.y() * points.axis_x[i] + turn.x() * points.axis_y[i];
+    }
+    const auto& patches = points.patches[static_cast<std::size_t>(level)];
+    kernel.patches(
+        {image.ptr<std::uint8_t>(), static_cast<std::ptrdiff_t>(image.step), image.cols, image.rows},
+        patches.data(), u_.data(), v_.data(), axis_x_.data(), axis_y_.data(), n,
+        static_cast<float>(brightness.gain), static_cast<float>(brightness.offset), residuals_.data());
+    scratch_.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool empty = patches[i].sum_squared == 0 && patches[i].gram[0] == 0;
+        if (empty) residuals_[i].squared = -1;
+        if (residuals_[i].squared >= 0) scratch_.push_back(residuals_[i].squared);
+    }
+    num_visible_ = static_cast<int>(scratch_.size());
+    scale_ = 1;
+    cost_ = 1e12;
+    if (scratch_.empty()) {
+        std::fill(weight_.begin(), weight_.end(), 0.0F);
+        return;
+    }
+    const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
+    std::nth_element(scratch_.begin(), middle, scratch_.end());
+    constexpr double kFloor = 1;  // grey levels; 8-bit rounding and resampling never do better
+    scale_ = std::max(kFloor, std::sqrt(static_cast<double>(*middle) / kernels::kPatchSize));
+    cost_ = std::sqrt(static_cast<double>(*middle) / kernels::kPatchSize);
+    const auto inverse = static_cast<float>(1 / (scale_ * scale_ * kernels::kPatchSize));
+    for (std::size_t i = 0; i < n; ++i) {
+        const float squared = residuals_[i].squared * inverse;
+        weight_[i] =
+            residuals_[i].squared < 0 ? 0 : points.weight[i] * (kStudentNu + 1) / (kStudentNu + squared);
+    }
+}
+
+Brightness PhotometricResiduals::fitBrightness(const PhotometricPoints& points, int level,
+                                               const Brightness& current) const {
+    const auto& patches = points.patches[static_cast<std::size_t>(level)];
+    double w = 0, reference = 0, image = 0, reference2 = 0, cross = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double weight = weight_[i];
+        if (weight == 0) continue;
+        w += weight * kernels::kPatchSize;
+        reference += weight * static_cast<double>(patches[i].sum);
+        reference2 += weight * static_cast<double>(patches[i].sum_squared);
+        image += weight * static_cast<double>(residuals_[i].current);
+        cross += weight * static_cast<double>(residuals_[i].cross);
+    }
+    const double spread = reference2 - reference * reference / std::max(w, 1e-9);
+    if (!(spread > 25 * w) || w <= 0) return current;  // less than five grey levels of contrast fix no gain
+    Brightness fitted;
+    fitted.gain = std::clamp((cross - reference * image / w) / spread, 0.3, 3.0);
+    fitted.offset = (image - fitted.gain * reference) / w;
+    return fitted;
+}
+
+void PhotometricResiduals::accumulate(const PhotometricPoints& points, int level, const PinholeCamera& camera,
+                                      double factor, kernels::NormalEquations& out) {
+    const std::size_t n = points.size(), padded = points.x.size();
+    for (auto& array : matrix_) array.resize(padded);
+    for (auto& array : vector_) array.resize(padded);
+    const auto& patches = points.patches[static_cast<std::size_t>(level)];
+    const auto scale = static_cast<float>(factor / (scale_ * scale_));
+    const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
+    for (std::size_t i = 0; i < padded; ++i) {
+        if (i >= n || weight_[i] == 0) {
+            for (auto& array : matrix_) array[i] = 0;
+            for (auto& array : vector_) array[i] = 0;
+            if (i < padded) x_[i] = y_[i] = z_[i] = 0;
+            continue;
+        }
+        // From the aligned frame to the image: M = A G A^T, v = A g with A = [c -s; s c]
+        const float c = axis_x_[i], s = axis_y_[i], w = weight_[i] * scale;
+        const float g0 = patches[i].gram[0] * w, g1 = patches[i].gram[1] * w, g2 = patches[i].gram[2] * w;
+        const float r0 = residuals_[i].gradient_u * w, r1 = residuals_[i].gradient_v * w;
+        const float m00 = c * c * g0 - 2 * c * s * g1 + s * s * g2;
+        const float m01 = c * s * (g0 - g2) + (c * c - s * s) * g1;
+        const float m11 = s * s * g0 + 2 * c * s * g1 + c * c * g2;
+        float matrix[6], vector[3];
+        liftInformation(x_[i], y_[i], z_[i], fx, fy, m00, m01, m11, c * r0 - s * r1, s * r0 + c * r1, matrix,
+                        vector);
+        for (int k = 0; k < 6; ++k) matrix_[k][i] = matrix[k];
+        for (int k = 0; k < 3; ++k) vector_[k][i] = vector[k];
+    }
+    kernels::PointInformation rows{x_.data(), y_.data(), z_.data(), {}, {}};
+    for (int k = 0; k < 6; ++k) rows.matrix[k] = matrix_[k].data();
+    for (int k = 0; k < 3; ++k) rows.vector[k] = vector_[k].data();
+    kernels::best().accumulate(rows, padded, out);
+}
+
+}  // namespace roevo
