@@ -37,8 +37,9 @@ Pose opticalPoseFromSensor(const mrpt::poses::CPose3D& T_world_sensor) {
     return toEigen(T_world_sensor) * sensorFromOptical();
 }
 
-mrpt::poses::CPose3DPDFGaussian toMrptGaussian(const Pose& T_world_body, const Matrix6d& covariance) {
-    const mrpt::poses::CPose3D mean = toMrpt(T_world_body);
+mrpt::poses::CPose3DPDFGaussian toMrptGaussian(const Pose& T_world_camera, const Matrix6d& covariance,
+                                               const Pose& T_camera_body) {
+    const mrpt::poses::CPose3D mean = toMrpt(T_world_camera * T_camera_body);
     const double cos_yaw = std::cos(mean.yaw()), sin_yaw = std::sin(mean.yaw());
     // Keep the inverse below finite at the gimbal lock.
     const double cos_pitch =
@@ -52,12 +53,12 @@ mrpt::poses::CPose3DPDFGaussian toMrptGaussian(const Pose& T_world_body, const M
     A.col(1) << -sin_yaw, cos_yaw, 0;
     A.col(2) << cos_yaw * cos_pitch, sin_yaw * cos_pitch, -sin_pitch;
 
-    const Eigen::Vector3d t = T_world_body.translation();
+    const Eigen::Vector3d lever = T_world_camera.linear() * T_camera_body.translation();
     Eigen::Matrix3d cross;
-    cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
+    cross << 0, -lever.z(), lever.y(), lever.z(), 0, -lever.x(), -lever.y(), lever.x(), 0;
     Matrix6d J = Matrix6d::Zero();
     J.topLeftCorner<3, 3>().setIdentity();
-    J.topRightCorner<3, 3>() = -cross;  // t moves by v + w x t
+    J.topRightCorner<3, 3>() = -cross;  // the body moves by phi x lever
     J.bottomRightCorner<3, 3>() = A.inverse();
 
     const Matrix6d cov = J * covariance * J.transpose();

@@ -20,11 +20,14 @@ Pose sensorFromOptical();
 mrpt::poses::CPose3D sensorPoseFromOptical(const Pose& T_world_optical);
 Pose opticalPoseFromSensor(const mrpt::poses::CPose3D& T_world_sensor);
 
-/// A pose with its covariance as MRPT's Gaussian over x y z yaw pitch roll.
-/// @param covariance  6x6 of a small motion applied from the left in the world, T = exp(d) T_world_body;
-/// order tx ty tz (m)
-///                    rx ry rz (rad)
-/// First order; yaw and roll become one near pitch = +-90 degrees, where their variance grows without bound.
-mrpt::poses::CPose3DPDFGaussian toMrptGaussian(const Pose& T_world_body, const Matrix6d& covariance);
+/// Pose of a body fixed to the camera, with its covariance as MRPT's Gaussian over x y z yaw pitch roll.
+/// @param T_camera_body  where the body sits in the optical frame (the inverse of the sensor's pose on a
+/// robot)
+/// @param covariance     as FrameResult::covariance: position (m), then orientation (rad) with R <- exp(phi)
+/// R, along the
+///                       world's axes
+/// First order. Near pitch = +-90 degrees yaw and roll are one, and their variances grow without bound.
+mrpt::poses::CPose3DPDFGaussian toMrptGaussian(const Pose& T_world_camera, const Matrix6d& covariance,
+                                               const Pose& T_camera_body = Pose::Identity());
 
 }  // namespace roevo

@@ -1,0 +1,109 @@
+#pragma once
+#include <mrpt/config/CLoadableOptions.h>
+#include <mrpt/maps/CColouredPointsMap.h>
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/poses/CPose3D.h>
+#include <mrpt/poses/CPose3DInterpolator.h>
+#include <mrpt/poses/CPose3DPDFGaussian.h>
+#include <mrpt/poses/CPosePDF.h>
+#include <mrpt/system/COutputLogger.h>
+#include <mrpt/system/CTimeLogger.h>
+
+#include <iosfwd>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "roevo/odometry.h"
+#include "roevo_mrpt/mrpt_compat.h"
+
+namespace roevo {
+
+/// roevo::Odometry with the habits of MRPT's mapping classes (the verbs of mrpt::slam::CMetricMapBuilder).
+/// Poses are those of the robot (x forward, z up): each observation's sensorPose tells where its camera sits.
+/// Not thread-safe.
+class CRoevoOdometry : public mrpt::system::COutputLogger {
+  public:
+    /// The odometry's options as MRPT loads and saves them. Option "sensor.max_depth" is key `max_depth` of
+    /// section [sensor], or of [<section>.sensor] when a section is given.
+    struct TOptions : public mrpt::config::CLoadableOptions {
+        OdometryOptions odometry;
+
+        /// @throws std::runtime_error for an unknown key (naming the closest known one) or a value out of
+        /// range.
+        void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
+                                const std::string& section) override;
+        void saveToConfigFile(mrpt::config::CConfigFileBase& target,
+                              const std::string& section) const override;
+        void dumpToTextStream(std::ostream& out) const override;
+    };
+
+    CRoevoOdometry();
+    ~CRoevoOdometry() override;
+
+    /// Takes effect at the next initialize() or first observation.
+    TOptions options;
+
+    /// Forgets everything; the robot's next pose is x0's mean (default: the origin).
+    /// @param initial_map  must be empty: this odometry cannot start from a map (throws
+    /// std::invalid_argument)
+    void initialize(const mrpt::maps::CSimpleMap& initial_map = {},
+                    const mrpt::poses::CPosePDF* x0 = nullptr);
+    void initialize(const mrpt::poses::CPose3D& robot_pose);
+
+    /// Tracks one observation. Observations that cannot be used come back kRejected with a reason and are
+    /// logged.
+    /// @return T_world_camera and its covariance are of the optical frame of the colour camera, in the
+    /// robot's world.
+    /// @throws std::runtime_error or std::invalid_argument when the first observation's intrinsics or an
+    /// option are unusable.
+    FrameResult processObservation(const mrpt::obs::CObservation3DRangeScan& scan);
+
+    /// Tracks every range image of the frame. The action is not used.
+    void processActionObservation(mrpt::obs::CActionCollection& action,
+                                  mrpt::obs::CSensoryFrame& observations);
+
+    /// The robot's latest pose with covariance (a CPose3DPDFGaussian). @return null before the first tracked
+    /// observation
+    mrpt::poses::CPose3DPDF::Ptr getCurrentPoseEstimation() const;
+
+    /// The robot's poses at all tracked observations.
+    mrpt::poses::CPose3DInterpolator getTrajectory() const;
+
+    /// The keyframes: robot pose, and the keyframe's edges as a CObservationPointCloud of a
+    /// CColouredPointsMap.
+    void getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out) const;
+    unsigned int getCurrentlyBuiltMapSize() const;
+    void saveCurrentMapToFile(const std::string& simplemap_file) const;
+
+    /// All edges as coloured points in the world.
+    mrpt::maps::CColouredPointsMap::Ptr getMap() const;
+
+    /// Edges, trajectory and keyframes, see buildScene().
+    compat::Scene::Ptr getScene() const;
+
+    /// Time spent per stage.
+    const mrpt::system::CTimeLogger& profiler() const { return profiler_; }
+
+    /// The core, null before the first observation.
+    const Odometry* odometry() const { return odometry_ ? &*odometry_ : nullptr; }
+
+  private:
+    RgbdFrame convert(const mrpt::obs::CObservation3DRangeScan& scan);
+    FrameResult track(const mrpt::obs::CObservation3DRangeScan& scan);
+    Pose robotFromOptical(double timestamp) const;
+    void report(const FrameResult& result);
+
+    Pose T_world_robot_start_ = Pose::Identity();
+    std::optional<Odometry> odometry_;
+    std::map<double, Pose>
+        mountings_;  // T_robot_optical from this time on; one entry unless the camera moves on the robot
+    std::map<double, Matrix6d> keyframe_covariances_;
+    std::optional<FrameResult> latest_;
+    mrpt::system::CTimeLogger profiler_;
+};
+
+}  // namespace roevo

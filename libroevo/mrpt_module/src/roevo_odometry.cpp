@@ -1,0 +1,176 @@
+#include "roevo_mrpt/roevo_odometry.h"
+
+#include <mrpt/obs/CObservationPointCloud.h>
+
+#include <stdexcept>
+
+#include "roevo_mrpt/observation_converter.h"
+#include "roevo_mrpt/pose_conversions.h"
+#include "roevo_mrpt/scene_builder.h"
+#include "roevo_mrpt/time_conversions.h"
+
+namespace roevo {
+namespace {
+
+using mrpt::maps::CColouredPointsMap;
+using mrpt::obs::CObservation3DRangeScan;
+
+void appendEdge(CColouredPointsMap& out, const MapEdge& edge, const Pose& T_out_world) {
+    const Eigen::Isometry3f T = T_out_world.cast<float>();
+    for (std::size_t i = 0; i < edge.points.size(); i++) {
+        const Eigen::Vector3f p = T * edge.points[i];
+        const auto& c = edge.colours.at(i);
+        out.insertPointRGB(p.x(), p.y(), p.z(), c[0] / 255.f, c[1] / 255.f, c[2] / 255.f);
+    }
+}
+
+}  // namespace
+
+CRoevoOdometry::CRoevoOdometry()
+    : mrpt::system::COutputLogger("CRoevoOdometry"), profiler_(true, "CRoevoOdometry") {}
+
+CRoevoOdometry::~CRoevoOdometry() {
+    profiler_.clear(true);  // MRPT prints the statistics on destruction otherwise; ask profiler() for them
+}
+
+void CRoevoOdometry::initialize(const mrpt::maps::CSimpleMap& initial_map, const mrpt::poses::CPosePDF* x0) {
+    if (!initial_map.empty())
+        throw std::invalid_argument("CRoevoOdometry cannot start from a map: pass an empty one");
+    initialize(x0 != nullptr ? mrpt::poses::CPose3D(x0->getMeanVal()) : mrpt::poses::CPose3D());
+}
+
+void CRoevoOdometry::initialize(const mrpt::poses::CPose3D& robot_pose) {
+    T_world_robot_start_ = toEigen(robot_pose);
+    odometry_.reset();
+    mountings_.clear();
+    keyframe_covariances_.clear();
+    latest_.reset();
+    profiler_.clear();
+}
+
+RgbdFrame CRoevoOdometry::convert(const CObservation3DRangeScan& scan) {
+    const mrpt::system::CTimeLoggerEntry entry(profiler_, "convert");
+    return toRgbdFrame(scan);
+}
+
+FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
+    const double timestamp = fromMrptTime(scan.timestamp);
+    const Pose T_robot_optical = toEigen(scan.sensorPose) * sensorFromOptical();
+    if (!odometry_)
+        odometry_.emplace(colourCameraOf(scan), options.odometry, T_world_robot_start_ * T_robot_optical);
+
+    FrameResult rejected;
+    rejected.timestamp = timestamp;
+    try {
+        if (colourCameraOf(scan) != odometry_->camera())
+            throw std::runtime_error("the camera's intrinsics changed");
+        const RgbdFrame frame = convert(scan);
+        if (mountings_.empty() || !mountings_.rbegin()->second.isApprox(T_robot_optical))
+            mountings_[timestamp] = T_robot_optical;
+        const mrpt::system::CTimeLoggerEntry entry(profiler_, "track");
+        return odometry_->processFrame(frame);
+    } catch (const std::runtime_error& error) {
+        rejected.reason = error.what();
+        return rejected;
+    }
+}
+
+FrameResult CRoevoOdometry::processObservation(const CObservation3DRangeScan& scan) {
+    const FrameResult result = track(scan);
+    if (result.hasPose()) latest_ = result;
+    if (result.is_keyframe) keyframe_covariances_[result.timestamp] = result.covariance;
+    report(result);
+    return result;
+}
+
+void CRoevoOdometry::report(const FrameResult& result) {
+    const bool well = result.status == FrameStatus::kOk || result.status == FrameStatus::kInitialised;
+    logFmt(well ? mrpt::system::LVL_DEBUG : mrpt::system::LVL_WARN, "%.6f %s%s%s", result.timestamp,
+           toString(result.status), result.reason.empty() ? "" : ": ", result.reason.c_str());
+}
+
+void CRoevoOdometry::processActionObservation(mrpt::obs::CActionCollection&,
+                                              mrpt::obs::CSensoryFrame& observations) {
+    for (const auto& observation : observations)
+        if (const auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation))
+            processObservation(*scan);
+}
+
+Pose CRoevoOdometry::robotFromOptical(double timestamp) const {
+    auto after = mountings_.upper_bound(timestamp);
+    if (after != mountings_.begin()) --after;
+    return after->second;
+}
+
+mrpt::poses::CPose3DPDF::Ptr CRoevoOdometry::getCurrentPoseEstimation() const {
+    if (!latest_) return nullptr;
+    return mrpt::poses::CPose3DPDFGaussian::Create(toMrptGaussian(
+        latest_->T_world_camera, latest_->covariance, robotFromOptical(latest_->timestamp).inverse()));
+}
+
+mrpt::poses::CPose3DInterpolator CRoevoOdometry::getTrajectory() const {
+    mrpt::poses::CPose3DInterpolator out;
+    if (!odometry_) return out;
+    for (const StampedPose& pose : odometry_->trajectory())
+        out.insert(toMrptTime(pose.timestamp),
+                   toMrpt(pose.T_world_camera * robotFromOptical(pose.timestamp).inverse()));
+    return out;
+}
+
+void CRoevoOdometry::getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out) const {
+    out.clear();
+    if (!odometry_) return;
+    const EdgeMap map = odometry_->map();
+    for (const KeyframeInfo& keyframe : odometry_->keyframes()) {
+        const Pose T_robot_optical = robotFromOptical(keyframe.timestamp);
+        auto cloud = mrpt::obs::CObservationPointCloud::Create();
+        cloud->timestamp = toMrptTime(keyframe.timestamp);
+        cloud->sensorLabel = "roevo_edges";
+        cloud->sensorPose = toMrpt(T_robot_optical * sensorFromOptical().inverse());
+        auto points = CColouredPointsMap::Create();
+        const Pose T_sensor_world = sensorFromOptical() * keyframe.T_world_camera.inverse();
+        for (const MapEdge& edge : map)
+            if (edge.keyframe_id == keyframe.id) appendEdge(*points, edge, T_sensor_world);
+        cloud->pointcloud = points;
+
+        const auto covariance = keyframe_covariances_.find(keyframe.timestamp);
+        const Matrix6d zero = Matrix6d::Zero();
+        const auto pose = toMrptGaussian(
+            keyframe.T_world_camera, covariance == keyframe_covariances_.end() ? zero : covariance->second,
+            T_robot_optical.inverse());
+        mrpt::obs::CSensoryFrame frame;
+        frame.insert(cloud);
+        out.insert(pose, frame);
+    }
+}
+
+unsigned int CRoevoOdometry::getCurrentlyBuiltMapSize() const {
+    return odometry_ ? static_cast<unsigned int>(odometry_->keyframes().size()) : 0;
+}
+
+void CRoevoOdometry::saveCurrentMapToFile(const std::string& simplemap_file) const {
+    mrpt::maps::CSimpleMap map;
+    getCurrentlyBuiltMap(map);
+    if (!map.saveToFile(simplemap_file)) throw std::runtime_error("cannot write " + simplemap_file);
+}
+
+CColouredPointsMap::Ptr CRoevoOdometry::getMap() const {
+    auto out = CColouredPointsMap::Create();
+    if (odometry_)
+        for (const MapEdge& edge : odometry_->map()) appendEdge(*out, edge, Pose::Identity());
+    return out;
+}
+
+compat::Scene::Ptr CRoevoOdometry::getScene() const {
+    SceneContent content;
+    content.T_scene_world = Pose::Identity();  // the robot's world has z up already
+    if (odometry_) {
+        content.map = odometry_->map();
+        content.trajectory = odometry_->trajectory();
+        content.keyframes = odometry_->keyframes();
+        content.camera = odometry_->camera();
+    }
+    return buildScene(content);
+}
+
+}  // namespace roevo

@@ -1,0 +1,22 @@
+#include "whole_file.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+namespace roevo {
+
+void writeWholeFile(const std::string& file, const std::function<bool(const std::string&)>& write) {
+    namespace fs = std::filesystem;
+    const std::string temporary = file + ".part";
+    std::error_code error;
+    try {
+        if (!write(temporary)) throw std::runtime_error("cannot write " + file);
+        fs::rename(temporary, file, error);
+        if (error) throw std::runtime_error("cannot write " + file + ": " + error.message());
+    } catch (...) {
+        fs::remove(temporary, error);
+        throw;
+    }
+}
+
+}  // namespace roevo

@@ -1,0 +1,13 @@
+#pragma once
+#include <functional>
+#include <string>
+
+namespace roevo {
+
+/// Lets `write` fill a temporary file beside `file` and renames it when whole; removes it when `write` throws
+/// or fails.
+/// @param write  returns false on failure
+/// @throws std::runtime_error
+void writeWholeFile(const std::string& file, const std::function<bool(const std::string& temporary)>& write);
+
+}  // namespace roevo
