@@ -1,0 +1,22 @@
+add_library(roevo_simulator STATIC
+  simulator/src/baked_light.cpp
+  simulator/src/camera_path.cpp
+  simulator/src/intersect.cpp
+  simulator/src/renderer.cpp
+  simulator/src/scene_builder.cpp
+  simulator/src/scene_corridor.cpp
+  simulator/src/scene_livingroom.cpp
+  simulator/src/scene_shadows.cpp
+  simulator/src/sensor.cpp
+  simulator/src/simulator.cpp
+  simulator/src/surface.cpp
+  simulator/src/texture.cpp
+  simulator/src/texture_pictures.cpp
+  simulator/src/view.cpp)
+target_include_directories(roevo_simulator PUBLIC ${CMAKE_CURRENT_LIST_DIR}/simulator/include PRIVATE simulator/src)
+target_link_libraries(roevo_simulator PUBLIC roevo opencv_core opencv_imgproc Threads::Threads PRIVATE roevo_build_flags)
+
+add_executable(rawlog-simulate rawlog-simulate/main.cpp rawlog-simulate/recording.cpp)
+target_link_libraries(rawlog-simulate PRIVATE roevo_simulator roevo_mrpt roevo_support opencv_imgcodecs roevo_build_flags)
+target_include_directories(rawlog-simulate SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+install(TARGETS rawlog-simulate)
