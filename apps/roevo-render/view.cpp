@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace roevo {
 namespace {
 
 constexpr double kRadians = 3.14159265358979323846 / 180;
-constexpr double kOutliers = 0.02;  // share of the cloud that each side of the picture may cut off
-constexpr double kMargin = 0.94;    // share of the picture that the content fills
+constexpr double kOutliers = 0.004;  // share of the cloud that each side of the picture may cut off
+constexpr float kReach =
+    1.6f;  // points farther from the middle than this times the 90 % distance do not count
+constexpr double kMargin = 0.94;  // share of the picture that the content fills
 
-// The distance from which `share` of the values is not smaller.
+// The value below which `share` of the values lies; reorders them.
 double lowQuantile(std::vector<double>& values, double share) {
     const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + k, values.end());
@@ -30,6 +33,23 @@ double support(const ViewContent& content, const Eigen::Vector3d& normal) {
     return std::min(lowest, lowQuantile(values, kOutliers));
 }
 
+// The cloud without the points that lie far off: wrong depths, and what is seen through a window.
+std::vector<Eigen::Vector3f> withoutOutliers(const std::vector<Eigen::Vector3f>& cloud) {
+    if (cloud.empty()) return {};
+    Eigen::Vector3f middle;
+    std::vector<double> values(cloud.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < cloud.size(); ++i) values[i] = cloud[i][axis];
+        middle[axis] = static_cast<float>(lowQuantile(values, 0.5));
+    }
+    for (std::size_t i = 0; i < cloud.size(); ++i) values[i] = (cloud[i] - middle).norm();
+    const float reach = kReach * static_cast<float>(lowQuantile(values, 0.9));
+    std::vector<Eigen::Vector3f> kept;
+    for (const auto& p : cloud)
+        if ((p - middle).norm() <= reach) kept.push_back(p);
+    return kept;
+}
+
 Eigen::Matrix3d lookingAlong(const Eigen::Vector3d& direction, const Eigen::Vector3d& up) {
     Eigen::Matrix3d R;
     R.col(2) = direction.normalized();
@@ -40,8 +60,9 @@ Eigen::Matrix3d lookingAlong(const Eigen::Vector3d& direction, const Eigen::Vect
 
 }  // namespace
 
-View frameContent(const ViewContent& content, const Eigen::Vector3d& direction, const Eigen::Vector3d& up,
+View frameContent(const ViewContent& all, const Eigen::Vector3d& direction, const Eigen::Vector3d& up,
                   double aspect) {
+    const ViewContent content{withoutOutliers(all.cloud), all.must_see};
     if (content.cloud.empty() && content.must_see.empty())
         throw std::runtime_error("the scene has nothing in it that could be shown");
     View view;

@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -10,7 +9,8 @@ namespace roevo {
 namespace {
 
 constexpr double kTerminalPeriod = 0.1;  // s
-constexpr double kLogPeriod = 10;        // s, only when the total is unknown
+constexpr double kLogStep = 0.1;         // share of the work
+constexpr double kLogPeriod = 10;        // s, when the amount of work is unknown
 
 std::string duration(double seconds) {
     const long s = static_cast<long>(seconds + 0.5);
@@ -29,7 +29,6 @@ std::string duration(double seconds) {
 Progress::Progress(std::string label, std::size_t total, bool enabled)
     : label_(std::move(label)),
       total_(total),
-      next_report_((total + 9) / 10),
       enabled_(enabled),
       terminal_(isatty(STDERR_FILENO) != 0),
       start_(Clock::now()),
@@ -39,42 +38,43 @@ Progress::~Progress() {
     if (!finished_ && printed_ && terminal_) std::fputc('\n', stderr);
 }
 
-void Progress::update(std::size_t done) {
+void Progress::update(std::size_t done, double fraction) {
     done_ = done;
+    fraction_ = total_ > 0 ? static_cast<double>(done) / static_cast<double>(total_) : fraction;
     if (!enabled_ || finished_) return;
     const double since_last = std::chrono::duration<double>(Clock::now() - last_print_).count();
     if (terminal_) {
-        if (since_last >= kTerminalPeriod) print(done, false);
-    } else if (total_ > 0 ? done >= next_report_ && done < total_ : since_last >= kLogPeriod) {
-        print(done, false);
-        while (next_report_ <= done) next_report_ += std::max<std::size_t>(1, (total_ + 9) / 10);
+        if (since_last >= kTerminalPeriod) print(false);
+    } else if (fraction_ > 0 ? fraction_ >= next_report_ && fraction_ < 1 : since_last >= kLogPeriod) {
+        print(false);
+        while (next_report_ <= fraction_) next_report_ += kLogStep;
     }
 }
 
 void Progress::finish() {
     if (finished_) return;
     finished_ = true;
-    if (enabled_) print(done_, true);
+    if (enabled_) print(true);
 }
 
-void Progress::print(std::size_t done, bool last) {
+void Progress::print(bool last) {
     last_print_ = Clock::now();
     const double elapsed = std::chrono::duration<double>(last_print_ - start_).count();
-    const double rate = elapsed > 0 ? static_cast<double>(done) / elapsed : 0;
-    std::string line = label_ + ": " + std::to_string(done);
-    if (total_ > 0) {
-        char percent[16];
-        std::snprintf(percent, sizeof percent, " (%3.0f %%)",
-                      100.0 * static_cast<double>(done) / static_cast<double>(total_));
-        line += " of " + std::to_string(total_) + percent;
+    std::string line = label_ + ": " + std::to_string(done_);
+    if (total_ > 0) line += " of " + std::to_string(total_);
+    char text[64];
+    if (fraction_ > 0 && !last) {
+        std::snprintf(text, sizeof text, " (%.0f %%)", 100 * fraction_);
+        line += text;
     }
-    char speed[32];
-    std::snprintf(speed, sizeof speed, ", %.1f/s", rate);
-    line += speed;
+    if (elapsed > 0) {
+        std::snprintf(text, sizeof text, ", %.1f/s", static_cast<double>(done_) / elapsed);
+        line += text;
+    }
     if (last)
         line += ", took " + duration(elapsed);
-    else if (total_ > done && rate > 0)
-        line += ", " + duration(static_cast<double>(total_ - done) / rate) + " left";
+    else if (fraction_ > 0 && fraction_ < 1)
+        line += ", " + duration(elapsed * (1 - fraction_) / fraction_) + " left";
     // "\033[K" wipes what a longer line before this one has left.
     std::fprintf(stderr, terminal_ ? (last ? "\r%s\033[K\n" : "\r%s\033[K") : "%s\n", line.c_str());
     std::fflush(stderr);

@@ -16,8 +16,9 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// @param done  steps completed so far
-    void update(std::size_t done);
+    /// @param done      steps completed so far
+    /// @param fraction  share of the work done, 0 to 1, for work whose number of steps is not known
+    void update(std::size_t done, double fraction = 0);
 
     /// Ends the line. Called by the destructor when forgotten, so that an error message starts on a line of
     /// its own.
@@ -26,11 +27,11 @@ class Progress {
   private:
     using Clock = std::chrono::steady_clock;
 
-    void print(std::size_t done, bool last);
+    void print(bool last);
 
     std::string label_;
     std::size_t total_, done_ = 0;
-    std::size_t next_report_ = 0;
+    double fraction_ = 0, next_report_ = 0.1;
     bool enabled_, terminal_, finished_ = false, printed_ = false;
     Clock::time_point start_, last_print_;
 };

@@ -1,0 +1,51 @@
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/camera/rgbd_frame.h"
+
+namespace roevo {
+
+/// One frame of an input, decoded, or the reason why it could not be.
+struct SourceFrame {
+    double timestamp = 0;  ///< s
+    RgbdFrame frame;       ///< empty images when there is a fault
+    std::string fault;     ///< empty when decoding went well
+    double ms_decode = 0;  ///< reading and decoding
+    double progress = 0;   ///< share of the input that has been read, 0 to 1
+};
+
+/// Frames of a rawlog or of a dataset folder, one after the other.
+class FrameSource {
+  public:
+    virtual ~FrameSource() = default;
+
+    /// The next frame, decoded; false at the end.
+    virtual bool next(SourceFrame& frame) = 0;
+
+    /// Leaves out one frame without decoding it; false at the end.
+    virtual bool skip() = 0;
+
+    virtual const PinholeCamera& camera() const = 0;
+    virtual std::string kind() const = 0;             ///< "rawlog", "tum", …
+    virtual std::string cameraSource() const = 0;     ///< where the intrinsics come from, in words
+    virtual std::string groundTruthPath() const = 0;  ///< found beside the input, or empty
+    virtual std::size_t size() const = 0;             ///< number of frames, 0 when unknown
+    virtual std::string warning() const = 0;  ///< once read: damage, things left out; one line or empty
+};
+
+/// Opens a rawlog (file) or a dataset (folder).
+/// @param sensor_label  rawlogs: read only this sensor; empty: the first with range images
+/// @throws std::runtime_error in one line
+std::unique_ptr<FrameSource> openSource(const std::string& input, const std::string& sensor_label);
+
+/// Decodes ahead in a thread of its own, a few frames at most, in order.
+std::unique_ptr<FrameSource> prefetch(std::unique_ptr<FrameSource> source);
+
+/// Empty when the depth of a frame is of a plausible scale (or there is none), else one line that says by
+/// which factor it is likely to be wrong.
+std::string depthScaleFault(const RgbdFrame& frame);
+
+}  // namespace roevo

@@ -1,0 +1,99 @@
+// roevo-odometry: a rawlog or an RGB-D dataset folder in; a trajectory, a map and a report on every frame
+// out.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <opencv2/core/utility.hpp>
+
+#include "roevo_mrpt/config_file.h"
+#include "run.h"
+#include "support/atomic_file.h"
+#include "support/program.h"
+
+namespace roevo {
+namespace {
+
+constexpr char kName[] = "roevo-odometry";
+
+constexpr char kFooter[] =
+    "Examples:\n"
+    "  roevo-odometry --input office.rawlog --output out\n"
+    "  roevo-odometry --input rgbd_dataset_freiburg1_xyz --output out --set keyframe.max_rotation_deg=10\n"
+    "Written into the output folder: trajectory.txt, trajectory_live.txt, keyframes.txt (TUM format), "
+    "frames.csv,\n"
+    "map.3Dscene, map.ply, summary.json, config_used.ini.";
+
+// The options in force: defaults, then the config file, then --set, then --mode.
+OdometryOptions collectOptions(const std::string& config_file, const std::vector<std::string>& settings,
+                               const std::string& mode) {
+    OdometryOptions options;
+    if (!config_file.empty()) loadConfigFile(config_file, options);
+    for (const std::string& setting : settings) {
+        const std::size_t equals = setting.find('=');
+        if (equals == std::string::npos)
+            throw UsageError("--set: '" + setting + "' is not section.key=value");
+        const std::string fault = setOption(options, setting.substr(0, equals), setting.substr(equals + 1));
+        if (!fault.empty()) throw UsageError("--set: " + fault);
+    }
+    if (!mode.empty())
+        if (const std::string fault = setOption(options, "odometry.mode", mode); !fault.empty())
+            throw UsageError("--mode: " + fault);
+    if (const std::string fault = checkOptions(options); !fault.empty()) throw UsageError(fault);
+    return options;
+}
+
+void writeDefaultConfig(const std::string& path) {
+    const std::string text = toConfigText(OdometryOptions());
+    if (path == "-")
+        std::fputs(text.c_str(), stdout);
+    else
+        writeTextAtomically(path, text);
+}
+
+int run(int argc, char** argv) {
+    RunSettings settings;
+    std::string config_file, mode, default_config;
+    std::vector<std::string> sets;
+    CLI::App app("RGB-D visual odometry from organized edges.", kName);
+    app.add_option("--input", settings.input, "A .rawlog file or a dataset folder (TUM RGB-D layout)");
+    app.add_option("--output", settings.output_dir, "Folder for the results; created when missing");
+    app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");
+    app.add_option("--set", sets, "section.key=value: one option on top of the config; may be repeated")
+        ->allow_extra_args(false);
+    app.add_option("--mode", mode, "ct: coarse tracking only; tr: coarse and fine (default)");
+    app.add_option(
+        "--ground-truth", settings.ground_truth,
+        "TUM trajectory to compare with (default: <stem>_groundtruth.txt beside a rawlog, groundtruth.txt "
+        "in a folder)");
+    app.add_option("--first", settings.first, "Process at most so many frames");
+    app.add_option("--skip", settings.skip, "Leave out so many frames at the start");
+    app.add_option("--sensor-label", settings.sensor_label, "Rawlogs with several cameras: which one");
+    app.add_flag("--quiet", settings.quiet, "Print errors and warnings only");
+    app.add_option("--write-default-config", default_config,
+                   "Write all options with their defaults to this file ('-': print) and end");
+    app.footer(kFooter);
+    if (auto code = parseCommandLine(app, argc, argv)) return *code;
+
+    if (!default_config.empty()) {
+        writeDefaultConfig(default_config);
+        return 0;
+    }
+    if (settings.input.empty()) throw UsageError("--input is required");
+    if (settings.output_dir.empty()) throw UsageError("--output is required");
+    settings.options = collectOptions(config_file, sets, mode);
+
+    cv::setNumThreads(
+        1);  // decoding runs beside tracking already; more threads would blur the times per frame
+    const RunReport report = runOdometry(settings);
+    if (!report.warning.empty()) std::fprintf(stderr, "%s: warning: %s\n", kName, report.warning.c_str());
+    if (!settings.quiet) printSummary(report, settings.output_dir);
+    if (!report.evaluation && !settings.ground_truth.empty())
+        throw std::runtime_error(settings.ground_truth + ": " + report.evaluation_fault);
+    return 0;
+}
+
+}  // namespace
+}  // namespace roevo
+
+int main(int argc, char** argv) {
+    return roevo::runProgram(roevo::kName, [&] { return roevo::run(argc, argv); });
+}

@@ -1,0 +1,173 @@
+#include "run.h"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include "evaluation/trajectory_io.h"
+#include "frame_source.h"
+#include "roevo_mrpt/config_file.h"
+#include "roevo_mrpt/scene_builder.h"
+#include "support/atomic_file.h"
+#include "support/progress.h"
+
+namespace roevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Fails before the work is done rather than after it.
+void prepareOutputDir(const std::string& dir) {
+    std::error_code error;
+    fs::create_directories(dir, error);
+    if (error || !fs::is_directory(dir))
+        throw std::runtime_error("cannot create the output folder " + dir + ": " +
+                                 (error ? error.message() : "a file of that name is in the way"));
+    AtomicFile probe((fs::path(dir) / "probe").string());
+    probe.stream();
+}
+
+void skipFrames(FrameSource& source, std::size_t count, const std::string& input) {
+    for (std::size_t i = 0; i < count; ++i)
+        if (!source.skip())
+            throw std::runtime_error("--skip " + std::to_string(count) + ": " + input + " has only " +
+                                     std::to_string(i) + " frames");
+}
+
+FrameResult rejected(const SourceFrame& frame) {
+    FrameResult result;
+    result.timestamp = frame.timestamp;
+    result.status = FrameStatus::kRejected;
+    result.reason = frame.fault;
+    return result;
+}
+
+std::size_t expectedFrames(const FrameSource& source, const RunSettings& settings) {
+    if (source.size() == 0) return 0;
+    const std::size_t left = source.size() - std::min(settings.skip, source.size());
+    return settings.first > 0 ? std::min(left, settings.first) : left;
+}
+
+// Feeds every frame to the odometry; the report gets one record for each.
+void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& settings, RunReport& report) {
+    Progress progress("tracking", expectedFrames(source, settings), !settings.quiet);
+    bool scale_checked = false;
+    for (SourceFrame frame; source.next(frame);) {
+        if (frame.fault.empty() && !scale_checked) {
+            if (const std::string fault = depthScaleFault(frame.frame); !fault.empty())
+                throw std::runtime_error(settings.input + ": " + fault);
+            scale_checked = true;
+        }
+        const FrameResult result = frame.fault.empty() ? odometry.processFrame(frame.frame) : rejected(frame);
+        report.frames.push_back({result, frame.ms_decode});
+        const std::size_t done = report.frames.size();
+        const double of_first =
+            settings.first > 0 ? static_cast<double>(done) / static_cast<double>(settings.first) : 0;
+        progress.update(done, std::max(frame.progress, of_first));
+        if (done == settings.first) break;
+    }
+    progress.finish();
+}
+
+void evaluateRun(RunReport& report, const std::vector<StampedPose>& ground_truth) {
+    if (ground_truth.empty()) return;
+    try {
+        report.evaluation = evaluate(ground_truth, report.trajectory);
+    } catch (const std::exception& e) {
+        report.evaluation_fault = e.what();
+    }
+}
+
+// The part of the ground truth that the run covers, moved onto the trajectory.
+std::vector<StampedPose> alignedReference(const RunReport& report,
+                                          const std::vector<StampedPose>& ground_truth) {
+    std::vector<StampedPose> aligned;
+    if (!report.evaluation) return aligned;
+    const Pose T_world_reference = report.evaluation->ate.T_reference_estimate.inverse();
+    for (const StampedPose& pose : ground_truth)
+        if (pose.timestamp >= report.trajectory.front().timestamp - kDefaultMaxDt &&
+            pose.timestamp <= report.trajectory.back().timestamp + kDefaultMaxDt)
+            aligned.push_back({pose.timestamp, T_world_reference * pose.T_world_camera});
+    return aligned;
+}
+
+std::vector<StampedPose> livePoses(const RunReport& report) {
+    std::vector<StampedPose> poses;
+    for (const FrameRecord& f : report.frames)
+        if (f.result.hasPose()) poses.push_back({f.result.timestamp, f.result.T_world_camera});
+    return poses;
+}
+
+std::vector<StampedPose> keyframePoses(const RunReport& report) {
+    std::vector<StampedPose> poses;
+    for (const KeyframeInfo& k : report.keyframes) poses.push_back({k.timestamp, k.T_world_camera});
+    return poses;
+}
+
+void writeMap(const fs::path& dir, const RunReport& report, const EdgeMap& map,
+              std::vector<StampedPose> reference) {
+    SceneContent content;
+    content.map = map;
+    content.trajectory = report.trajectory;
+    content.keyframes = report.keyframes;
+    content.camera = report.camera.undistorted();
+    content.reference = std::move(reference);
+    saveScene((dir / "map.3Dscene").string(), *buildScene(content));
+    savePly((dir / "map.ply").string(), map);
+}
+
+}  // namespace
+
+RunReport runOdometry(const RunSettings& settings) {
+    const auto start = std::chrono::steady_clock::now();
+    prepareOutputDir(settings.output_dir);
+    auto source = prefetch(openSource(settings.input, settings.sensor_label));
+
+    RunReport report;
+    report.input = settings.input;
+    report.kind = source->kind();
+    report.camera = source->camera();
+    report.camera_source = source->cameraSource();
+    report.mode = settings.options.mode;
+    report.ground_truth = settings.ground_truth.empty() ? source->groundTruthPath() : settings.ground_truth;
+    const auto ground_truth =
+        report.ground_truth.empty() ? std::vector<StampedPose>() : readTumTrajectory(report.ground_truth);
+    if (!settings.quiet)
+        std::printf("input       %s (%s), %d x %d, intrinsics from %s\n", report.input.c_str(),
+                    report.kind.c_str(), report.camera.width, report.camera.height,
+                    report.camera_source.c_str());
+    std::fflush(stdout);
+
+    Odometry odometry(source->camera(), settings.options);
+    skipFrames(*source, settings.skip, settings.input);
+    processFrames(*source, odometry, settings, report);
+    report.warning = source->warning();
+    source.reset();
+
+    report.trajectory = odometry.trajectory();
+    report.keyframes = odometry.keyframes();
+    const EdgeMap map = odometry.map();
+    report.map_edges = map.size();
+    for (const MapEdge& edge : map) report.map_points += edge.points.size();
+
+    const fs::path dir = settings.output_dir;
+    const std::string failure = report.failure();
+    if (failure.empty()) {
+        evaluateRun(report, ground_truth);
+        writeTumTrajectory((dir / "trajectory.txt").string(), report.trajectory);
+        writeTumTrajectory((dir / "trajectory_live.txt").string(), livePoses(report));
+        writeTumTrajectory((dir / "keyframes.txt").string(), keyframePoses(report));
+        writeMap(dir, report, map, alignedReference(report, ground_truth));
+    }
+    saveConfigFile((dir / "config_used.ini").string(), odometry.options());
+    writeTextAtomically((dir / "frames.csv").string(), framesCsv(report));
+    report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    writeTextAtomically((dir / "summary.json").string(), summaryJson(report));
+    if (!failure.empty())
+        throw std::runtime_error(settings.input + ": " + failure + " (see " + (dir / "frames.csv").string() +
+                                 ")");
+    return report;
+}
+
+}  // namespace roevo

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstddef>
+#include <string>
+
+#include "roevo/options.h"
+#include "run_report.h"
+
+namespace roevo {
+
+/// What to run, from the command line.
+struct RunSettings {
+    std::string input, output_dir, ground_truth, sensor_label;
+    OdometryOptions options;
+    std::size_t first = 0, skip = 0;  ///< process at most `first` frames (0: all) after leaving out `skip`
+    bool quiet = false;
+};
+
+/// Runs the odometry over the input and writes every file of the contract into output_dir.
+/// @throws std::runtime_error in one line; when no frame could be tracked, after frames.csv and summary.json
+RunReport runOdometry(const RunSettings& settings);
+
+}  // namespace roevo

@@ -1,0 +1,64 @@
+#include "run_report.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <map>
+
+namespace roevo {
+namespace {
+
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+std::string format(const char* pattern, ...) {
+    char text[512];
+    va_list arguments;
+    va_start(arguments, pattern);
+    std::vsnprintf(text, sizeof text, pattern, arguments);
+    va_end(arguments);
+    return text;
+}
+
+// RFC 4180: quoted when it holds a separator, quotes doubled.
+std::string csvField(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+}  // namespace
+
+std::size_t RunReport::count(FrameStatus status) const {
+    return static_cast<std::size_t>(std::count_if(
+        frames.begin(), frames.end(), [&](const FrameRecord& f) { return f.result.status == status; }));
+}
+
+std::string RunReport::failure() const {
+    const std::size_t initialised = count(FrameStatus::kInitialised);
+    if (count(FrameStatus::kOk) > 0 || (initialised > 0 && frames.size() == initialised)) return {};
+    std::map<std::string, std::size_t> reasons;
+    for (const FrameRecord& f : frames)
+        if (f.result.status != FrameStatus::kInitialised) ++reasons[f.result.reason];
+    if (reasons.empty()) return "the input has no frame";
+    const auto commonest = std::max_element(reasons.begin(), reasons.end(),
+                                            [](const auto& a, const auto& b) { return a.second < b.second; });
+    return format("none of the %zu frames could be tracked; %zu of them: ", frames.size(),
+                  commonest->second) +
+           commonest->first;
+}
+
+std::string framesCsv(const RunReport& report) {
+    std::string csv =
+        "timestamp,status,reason,keyframe,edges,points,matched_ratio,inliers,sigma_t_m,sigma_r_deg,"
+        "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total\n";
+    for (const FrameRecord& f : report.frames) {
+        const FrameResult& r = f.result;
+        csv += format("%.6f,%s,", r.timestamp, toString(r.status)) + csvField(r.reason) +
+               format(",%d,%d,%d,%.4f,%d,%.6f,%.5f,%.3f,%.3f,%.3f,%.3f,%.3f\n", r.is_keyframe ? 1 : 0,
+                      r.num_edges, r.num_points, r.matched_ratio, r.inliers, r.sigmaTranslation(),
+                      r.sigmaRotationDeg(), f.ms_decode, r.ms.edges, r.ms.coarse, r.ms.fine, r.ms.total);
+    }
+    return csv;
+}
+
+}  // namespace roevo

@@ -1,0 +1,46 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/evaluate.h"
+#include "roevo/odometry.h"
+
+namespace roevo {
+
+/// One input frame, for frames.csv.
+struct FrameRecord {
+    FrameResult result;
+    double ms_decode = 0;
+};
+
+/// All that a run came to.
+struct RunReport {
+    std::string input, kind, camera_source, warning, sensor_label;
+    PinholeCamera camera;
+    Mode mode = Mode::kTracking;
+    std::vector<FrameRecord> frames;
+    std::vector<StampedPose> trajectory;
+    std::vector<KeyframeInfo> keyframes;
+    std::size_t map_edges = 0, map_points = 0;
+    double wall_seconds = 0;
+    std::string ground_truth;              ///< path, empty when there is none
+    std::optional<Evaluation> evaluation;  ///< against the ground truth
+    std::string evaluation_fault;          ///< why there is none although there is a ground truth
+
+    std::size_t count(FrameStatus status) const;
+
+    /// Empty when at least one frame was tracked (or the only frame initialised), else the commonest reason.
+    std::string failure() const;
+};
+
+/// One row per frame, as the contract has it.
+std::string framesCsv(const RunReport& report);
+
+/// summary.json.
+std::string summaryJson(const RunReport& report);
+
+/// A few lines for the terminal.
+void printSummary(const RunReport& report, const std::string& output_dir);
+
+}  // namespace roevo

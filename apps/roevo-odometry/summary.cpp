@@ -1,0 +1,162 @@
+#include <mrpt/system/os.h>
+#include <sys/resource.h>
+
+#include <Eigen/Core>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <opencv2/core/version.hpp>
+
+#include "evaluation/to_json.h"
+#include "run_report.h"
+#include "support/program.h"
+
+namespace roevo {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr FrameStatus kStatuses[] = {FrameStatus::kOk, FrameStatus::kInitialised, FrameStatus::kPredicted,
+                                     FrameStatus::kLost, FrameStatus::kRejected};
+
+double memoryPeakMb() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux: kilobytes
+}
+
+struct Stage {
+    const char* name;
+    double (*time)(const FrameRecord&);
+};
+constexpr Stage kStages[] = {
+    {"decode", [](const FrameRecord& f) { return f.ms_decode; }},
+    {"edges", [](const FrameRecord& f) { return f.result.ms.edges; }},
+    {"coarse", [](const FrameRecord& f) { return f.result.ms.coarse; }},
+    {"fine", [](const FrameRecord& f) { return f.result.ms.fine; }},
+    {"total", [](const FrameRecord& f) { return f.result.ms.total; }},
+};
+const Stage& kTotal = kStages[4];
+
+// Times of one stage over the frames that went through the odometry, ms.
+std::vector<double> stageTimes(const RunReport& report, const Stage& stage) {
+    std::vector<double> times;
+    for (const FrameRecord& f : report.frames)
+        if (f.result.hasPose()) times.push_back(stage.time(f));
+    return times;
+}
+
+// Reasons of the frames that were not tracked, with how often each occurred.
+std::map<std::string, std::size_t> reasonsOf(const RunReport& report) {
+    std::map<std::string, std::size_t> reasons;
+    for (const FrameRecord& f : report.frames)
+        if (f.result.status != FrameStatus::kOk && !f.result.reason.empty())
+            ++reasons[std::string(toString(f.result.status)) + ": " + f.result.reason];
+    return reasons;
+}
+
+Json cameraJson(const RunReport& report) {
+    const PinholeCamera& c = report.camera;
+    return {{"width", c.width},
+            {"height", c.height},
+            {"fx", c.fx},
+            {"fy", c.fy},
+            {"cx", c.cx},
+            {"cy", c.cy},
+            {"distortion_k1_k2_p1_p2_k3", c.distortion},
+            {"source", report.camera_source}};
+}
+
+Json framesJson(const RunReport& report) {
+    Json json = {{"total", report.frames.size()}};
+    for (const FrameStatus status : kStatuses) json[toString(status)] = report.count(status);
+    json["keyframes"] = report.keyframes.size();
+    json["reasons"] = Json::object();
+    for (const auto& [reason, count] : reasonsOf(report)) json["reasons"][reason] = count;
+    return json;
+}
+
+Json timingsJson(const RunReport& report) {
+    Json json;
+    for (const Stage& stage : kStages) {
+        const auto times = stageTimes(report, stage);
+        json[stage.name] = {{"median", percentile(times, 0.5)},
+                            {"p95", percentile(times, 0.95)},
+                            {"p99", percentile(times, 0.99)},
+                            {"max", percentile(times, 1)}};
+    }
+    return json;
+}
+
+Json groundTruthJson(const RunReport& report) {
+    if (report.ground_truth.empty()) return nullptr;
+    Json json = {{"file", report.ground_truth}, {"max_dt_s", kDefaultMaxDt}};
+    if (report.evaluation)
+        json.update(toJson(*report.evaluation));
+    else
+        json["fault"] = report.evaluation_fault;
+    return json;
+}
+
+void printErrors(const Evaluation& e) {
+    std::printf("ATE         %.2f cm rmse, %.2f cm max (%zu poses, SE(3) alignment)\n",
+                100 * e.ate.translation.rmse, 100 * e.ate.translation.max, e.pairs.size());
+    if (e.rpe_second.translation.count > 0)
+        std::printf("RPE         %.2f cm/s, %.2f deg/s over 1 s; ", 100 * e.rpe_second.translation.rmse,
+                    e.rpe_second.rotation.rmse);
+    else
+        std::printf("RPE         too short for 1 s; ");
+    std::printf("%.2f cm, %.3f deg per frame (rmse)\n", 100 * e.rpe_frame.translation.rmse,
+                e.rpe_frame.rotation.rmse);
+}
+
+}  // namespace
+
+std::string summaryJson(const RunReport& report) {
+    const std::string eigen = std::to_string(EIGEN_WORLD_VERSION) + "." +
+                              std::to_string(EIGEN_MAJOR_VERSION) + "." + std::to_string(EIGEN_MINOR_VERSION);
+    Json json;
+    json["versions"] = {{"roevo", versionText()},
+                        {"mrpt", mrpt::system::MRPT_getVersion()},
+                        {"opencv", CV_VERSION},
+                        {"eigen", eigen}};
+    json["input"] = {{"path", report.input}, {"kind", report.kind}, {"warning", report.warning}};
+    json["mode"] = toString(report.mode);
+    json["camera"] = cameraJson(report);
+    json["frames"] = framesJson(report);
+    json["timings_ms"] = timingsJson(report);
+    json["wall_time_s"] = report.wall_seconds;
+    json["memory_peak_mb"] = memoryPeakMb();
+    json["path_length_m"] = pathLength(report.trajectory);
+    json["map"] = {{"edges", report.map_edges}, {"points", report.map_points}};
+    json["ground_truth"] = groundTruthJson(report);
+    // File names and messages may hold bytes that are not UTF-8.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void printSummary(const RunReport& report, const std::string& output_dir) {
+    std::printf("\nframes      %zu:", report.frames.size());
+    const char* separator = " ";
+    for (const FrameStatus status : kStatuses)
+        if (const std::size_t count = report.count(status)) {
+            std::printf("%s%zu %s", separator, count, toString(status));
+            separator = ", ";
+        }
+    std::printf("; %zu keyframes\n", report.keyframes.size());
+    for (const auto& [reason, count] : reasonsOf(report))
+        std::printf("            %zu %s\n", count, reason.c_str());
+    const auto total = stageTimes(report, kTotal);
+    std::printf(
+        "time        %.1f ms per frame (median), %.1f ms (95 %%), decoding apart; %.1f s in all, %.0f MB\n",
+        percentile(total, 0.5), percentile(total, 0.95), report.wall_seconds, memoryPeakMb());
+    std::printf("path        %.2f m\n", pathLength(report.trajectory));
+    std::printf("map         %zu edges, %zu points\n", report.map_edges, report.map_points);
+    if (report.evaluation)
+        printErrors(*report.evaluation);
+    else
+        std::printf("errors      %s\n",
+                    report.ground_truth.empty() ? "no ground truth" : report.evaluation_fault.c_str());
+    std::printf("files       %s\n", (std::filesystem::path(output_dir) / "").c_str());
+}
+
+}  // namespace roevo
