@@ -1,0 +1,140 @@
+#include <gtest/gtest.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
+
+#include <filesystem>
+
+#include "roevo_mrpt/pose_conversions.h"
+#include "roevo_mrpt/rawlog_reader.h"
+#include "roevo_mrpt/roevo_odometry.h"
+#include "synthetic_scan.h"
+#include "temporary_folder.h"
+
+namespace roevo {
+namespace {
+
+using mrpt::poses::CPose3D;
+using test::errorOf;
+
+mrpt::obs::CObservation3DRangeScan::Ptr kinectScan() {
+    const char* const file = "/usr/share/mrpt/datasets/tests_rgbd.rawlog";
+    return std::filesystem::exists(file) ? RawlogReader(file).next() : nullptr;
+}
+
+/// The same view at a later time.
+mrpt::obs::CObservation3DRangeScan::Ptr laterScan(const mrpt::obs::CObservation3DRangeScan& scan,
+                                                  double seconds) {
+    auto later = mrpt::obs::CObservation3DRangeScan::Create(scan);
+    later->timestamp = toMrptTime(fromMrptTime(scan.timestamp) + seconds);
+    return later;
+}
+
+class RoevoOdometryTest : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        scan_ = kinectScan();
+        if (!scan_) GTEST_SKIP() << "tests_rgbd.rawlog (package mrpt-common) not installed";
+        odometry_.setMinLoggingLevel(mrpt::system::LVL_ERROR);
+    }
+    mrpt::obs::CObservation3DRangeScan::Ptr scan_;
+    CRoevoOdometry odometry_;
+};
+
+TEST_F(RoevoOdometryTest, TheFirstObservationInitialises) {
+    EXPECT_FALSE(odometry_.getCurrentPoseEstimation());
+    const FrameResult result = odometry_.processObservation(*scan_);
+    EXPECT_EQ(result.status, FrameStatus::kInitialised) << result.reason;
+    EXPECT_EQ(odometry_.getCurrentlyBuiltMapSize(), 1u);
+    EXPECT_GT(odometry_.getMap()->size(), 500u);
+    EXPECT_TRUE(odometry_.getScene()->getByName("edges"));
+    const auto pose = odometry_.getCurrentPoseEstimation();
+    ASSERT_TRUE(pose);
+    EXPECT_TRUE(toEigen(pose->getMeanVal()).isApprox(Pose::Identity(), 1e-9));
+}
+
+TEST_F(RoevoOdometryTest, AStillCameraStaysAndTheRobotIsWhereTheSensorPoseSays) {
+    const CPose3D mounted(0.3, -0.1, 0.8, 0.4, 0.2, -0.1), start(1, 2, 0, 0.7, 0, 0);
+    scan_->sensorPose = mounted;
+    odometry_.initialize(start);
+    odometry_.processObservation(*scan_);
+    const FrameResult second = odometry_.processObservation(*laterScan(*scan_, 0.033));
+    ASSERT_EQ(second.status, FrameStatus::kOk) << second.reason;
+    const auto path = odometry_.getTrajectory();
+    ASSERT_EQ(path.size(), 2u);
+    for (const auto& [time, pose] : path) EXPECT_TRUE(toEigen(CPose3D(pose)).isApprox(toEigen(start), 1e-3));
+    EXPECT_TRUE(
+        second.T_world_camera.isApprox(toEigen(start) * toEigen(mounted) * sensorFromOptical(), 1e-3));
+
+    // Points of the map, seen from the sensor, are ahead of it by the distance of the bookcase.
+    const auto map = odometry_.getMap();
+    const Pose T_sensor_world = (toEigen(start) * toEigen(mounted)).inverse();
+    for (std::size_t i = 0; i < map->size(); i += 50) {
+        float x = 0, y = 0, z = 0;
+        map->getPoint(i, x, y, z);
+        const double ahead = (T_sensor_world * Eigen::Vector3d(x, y, z)).x();
+        EXPECT_GT(ahead, 1);
+        EXPECT_LT(ahead, 3);
+    }
+}
+
+TEST_F(RoevoOdometryTest, TheSimpleMapHoldsTheMapsPoints) {
+    scan_->sensorPose = CPose3D(0.3, -0.1, 0.8, 0.4, 0.2, -0.1);
+    odometry_.processObservation(*scan_);
+    const test::TemporaryFolder folder;
+    odometry_.saveCurrentMapToFile(folder / "a.simplemap");
+    mrpt::maps::CSimpleMap loaded;
+    ASSERT_TRUE(loaded.loadFromFile(folder / "a.simplemap"));
+    ASSERT_EQ(loaded.size(), 1u);
+    mrpt::maps::CColouredPointsMap rebuilt;
+    rebuilt.loadFromProbabilisticPosesAndObservations(loaded);
+    const auto map = odometry_.getMap();
+    ASSERT_EQ(rebuilt.size(), map->size());
+    for (std::size_t i = 0; i < map->size(); i += 50) {
+        float a[3], b[3];
+        map->getPoint(i, a[0], a[1], a[2]);
+        rebuilt.getPoint(i, b[0], b[1], b[2]);
+        for (int axis = 0; axis < 3; axis++) EXPECT_NEAR(a[axis], b[axis], 1e-4);
+    }
+}
+
+TEST_F(RoevoOdometryTest, SensoryFramesAndStartPosesOfMrpt) {
+    mrpt::poses::CPosePDFGaussian x0;
+    x0.mean = mrpt::poses::CPose2D(3, 4, 0.5);
+    odometry_.initialize({}, &x0);
+    mrpt::obs::CActionCollection action;
+    mrpt::obs::CSensoryFrame frame;
+    frame.insert(scan_);
+    odometry_.processActionObservation(action, frame);
+    ASSERT_TRUE(odometry_.getCurrentPoseEstimation());
+    EXPECT_TRUE(toEigen(odometry_.getCurrentPoseEstimation()->getMeanVal())
+                    .isApprox(toEigen(CPose3D(3, 4, 0, 0.5, 0, 0)), 1e-9));
+    std::map<std::string, mrpt::system::CTimeLogger::TCallStats> stats;
+    odometry_.profiler().getStats(stats);
+    EXPECT_EQ(stats["track"].n_calls, 1u);
+    odometry_.initialize();
+    EXPECT_EQ(odometry_.getCurrentlyBuiltMapSize(), 0u);
+    mrpt::maps::CSimpleMap not_empty;
+    not_empty.insert(mrpt::poses::CPose3DPDFGaussian(), frame);
+    EXPECT_THROW(odometry_.initialize(not_empty), std::invalid_argument);
+}
+
+TEST_F(RoevoOdometryTest, BadObservationsAreRejectedWithAReason) {
+    auto lost = laterScan(*scan_, 0.03), other_camera = laterScan(*scan_, 0.06),
+         empty = laterScan(*scan_, 0.09);
+    lost->intensityImage.setExternalStorage("/nowhere/lost.png");
+    other_camera->cameraParamsIntensity.fx(400);
+    empty->cameraParamsIntensity = {};
+    EXPECT_NE(errorOf([&] { odometry_.processObservation(*empty); }).find("no intrinsics"),
+              std::string::npos);
+    odometry_.processObservation(*scan_);
+    for (const auto& [bad, reason] :
+         {std::pair(lost, "lost.png"), {other_camera, "intrinsics changed"}, {empty, "no intrinsics"}}) {
+        const FrameResult result = odometry_.processObservation(*bad);
+        EXPECT_EQ(result.status, FrameStatus::kRejected);
+        EXPECT_NE(result.reason.find(reason), std::string::npos) << result.reason;
+    }
+    EXPECT_EQ(odometry_.getTrajectory().size(), 1u);
+    EXPECT_EQ(odometry_.processObservation(*laterScan(*scan_, 0.12)).status, FrameStatus::kOk);
+}
+
+}  // namespace
+}  // namespace roevo

@@ -1,0 +1,187 @@
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+
+#include "datasets/camera_file.h"
+#include "datasets/dataset_reader.h"
+#include "tum_folder.h"
+
+namespace roevo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::errorOf;
+using test::TumFolder;
+
+std::string openError(const TumFolder& folder, const DatasetOptions& options = {}) {
+    const std::string error = errorOf([&] { openDataset(folder.path(), options); });
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    return error;
+}
+
+#define EXPECT_CONTAINS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+TEST(Tum, ReadsFramesWithTheColourImagesTime) {
+    const TumFolder folder;
+    const DatasetReader dataset = openDataset(folder.path());
+    ASSERT_EQ(dataset.size(), 3u);
+    for (std::size_t i = 0; i < 3; i++) {
+        const int n = static_cast<int>(i);
+        const RgbdFrame frame = dataset.readFrame(i);
+        EXPECT_EQ(frame.timestamp, std::stod(TumFolder::stamp(n)));
+        EXPECT_EQ(dataset.entry(i).depth_timestamp, std::stod(TumFolder::stamp(n, 0.004)));
+        EXPECT_EQ(frame.depth.at<float>(40, 40), 10000.f * (1.f / 5000.f));
+        EXPECT_EQ(frame.depth.at<float>(n, 2), 0.f);
+        EXPECT_EQ(frame.colour.at<cv::Vec3b>(1, 1), cv::Vec3b(static_cast<std::uint8_t>(10 * n), 50, 90));
+        EXPECT_EQ(dataset.readDepth(i).at<std::uint16_t>(40, 40), 10000);
+    }
+    const PinholeCamera expected{64, 48, 60, 61, 31.5, 23.5, {0.1, -0.2, 0.001, 0.002, 0.3}};
+    EXPECT_EQ(dataset.camera(), expected);
+    EXPECT_EQ(dataset.description().association.dropped_colour, 0u);
+    EXPECT_NEAR(dataset.description().association.largest_difference, 0.004, 1e-6);
+    EXPECT_NEAR(dataset.description().association.largest_gap, 0.1, 1e-5);
+    EXPECT_CONTAINS(dataset.summary(), "camera.txt");
+    EXPECT_EQ(dataset.groundTruthPath(), "");
+}
+
+TEST(Tum, ListsMayBeUnsortedRepeatCarryBlanksAndWindowsLineEnds) {
+    const TumFolder folder;
+    folder.write("rgb.txt", "\xEF\xBB\xBF# c\r\n\r\n" + TumFolder::stamp(2) + "\t" + TumFolder::rgbName(2) +
+                                "  \r\n" + TumFolder::stamp(0) + " " + TumFolder::rgbName(0) + "\r\n   " +
+                                TumFolder::stamp(0) + " " + TumFolder::rgbName(1) + "\r\n");
+    const DatasetReader dataset = openDataset(folder.path());
+    ASSERT_EQ(dataset.size(), 2u);
+    EXPECT_EQ(dataset.entry(0).image, folder / TumFolder::rgbName(0));
+    EXPECT_EQ(dataset.entry(1).image, folder / TumFolder::rgbName(2));
+    EXPECT_EQ(dataset.description().association.duplicates, 1u);
+    EXPECT_EQ(dataset.description().association.dropped_depth, 1u);
+    EXPECT_CONTAINS(dataset.summary(), "2 frames matched, 0 colour and 1 depth images dropped, 1 repeated");
+}
+
+TEST(Tum, AssociationsFileServesWhenItIsAllThereIs) {
+    for (const bool depth_first : {false, true}) {
+        const TumFolder folder;
+        std::string text = "# comment\n";
+        for (const int i : {1, 0}) {
+            const std::string rgb = TumFolder::stamp(i) + " " + TumFolder::rgbName(i);
+            const std::string depth = TumFolder::stamp(i, 0.004) + " " + TumFolder::depthName(i);
+            text += depth_first ? depth + " " + rgb + "\n" : rgb + " " + depth + "\n";
+        }
+        folder.write("associations.txt", text);
+        folder.remove("rgb.txt");
+        folder.remove("depth.txt");
+        const DatasetReader dataset = openDataset(folder.path());
+        ASSERT_EQ(dataset.size(), 2u);
+        EXPECT_EQ(dataset.entry(0).timestamp, std::stod(TumFolder::stamp(0)));
+        EXPECT_EQ(dataset.entry(0).depth, folder / TumFolder::depthName(0));
+    }
+}
+
+TEST(Tum, PublishedCamerasAreRecognisedAndSaid) {
+    EXPECT_EQ(tumCameraNamedIn("rgbd_dataset_freiburg1_desk")->camera.fx, 517.3);
+    EXPECT_EQ(tumCameraNamedIn("# file: 'rgbd_dataset_freiburg2_desk.bag'")->camera.distortion[4], 0.9172);
+    EXPECT_FALSE(tumCameraNamedIn("rgbd_dataset_freiburg3_office")->camera.isDistorted());
+    EXPECT_FALSE(tumCameraNamedIn("my_dataset"));
+
+    const TumFolder folder;
+    folder.remove("camera.txt");
+    EXPECT_CONTAINS(openError(folder), "no intrinsics");
+    folder.write("groundtruth.txt", "# ground truth trajectory\n# file: 'rgbd_dataset_freiburg2_desk.bag'\n");
+    EXPECT_CONTAINS(openError(folder),
+                    "64x48, but the camera is 640x480");  // recognised; these images are another camera's
+    const fs::path named = fs::path(folder.path()) / "rgbd_dataset_freiburg1_x";
+    fs::create_directories(named / "rgb");
+    fs::create_directories(named / "depth");
+    std::ofstream(named / "rgb.txt") << "1.0 rgb/1.png\n";
+    std::ofstream(named / "depth.txt") << "1.0 depth/1.png\n";
+    cv::imwrite((named / "rgb/1.png").string(), cv::Mat(480, 640, CV_8UC3, cv::Scalar(1)));
+    cv::imwrite((named / "depth/1.png").string(), cv::Mat(480, 640, CV_16UC1, cv::Scalar(6000)));
+    EXPECT_CONTAINS(openDataset(named.string()).summary(),
+                    "freiburg1 camera of the TUM benchmark (named by the folder)");
+    EXPECT_CONTAINS(openDataset(named.string() + "/").summary(), "freiburg1");
+}
+
+TEST(Tum, CameraFileErrorsNameTheKey) {
+    const TumFolder folder;
+    folder.write("camera.txt", "width: 64\nheight: 48\nfx: 60\ncx: 31.5\ncy: 23.5\n");
+    EXPECT_CONTAINS(openError(folder), "lacks fy, depth_scale");
+    folder.write("camera.txt", "width: 64\nfx: sixty\n");
+    EXPECT_CONTAINS(openError(folder), "camera.txt:2: 'sixty' is not a number");
+    folder.write("camera.txt",
+                 "width: 64\nheight: 48\nfx: 60\nfy: 60\ncx: 31.5\ncy: 23.5\ndepth_scale: 5000\n"
+                 "distortion_k1_k2_p1_p2_k3: 0 0 0\n");
+    EXPECT_CONTAINS(openError(folder), "needs 5 number(s), found 3");
+}
+
+TEST(Tum, ADepthScaleThatMakesNoSenseIsNamedWithTheLikelyOne) {
+    TumFolder folder(2, 1500);  // 1.5 m in millimetres
+    folder.writeCamera("50");
+    const std::string too_far = openError(folder);
+    EXPECT_CONTAINS(too_far, "median depth 30 m");
+    EXPECT_CONTAINS(too_far, "depth_scale 1000 would give 1.5 m");
+    folder.writeCamera("50000");
+    EXPECT_CONTAINS(openError(folder), "median depth 0.03 m");
+    folder.writeCamera("1000");
+    EXPECT_EQ(openError(folder), "");
+    const TumFolder blind(2, 0);  // no depth at all says nothing about the scale
+    EXPECT_EQ(openError(blind), "");
+}
+
+TEST(Tum, WrongFoldersAndLists) {
+    const TumFolder folder;
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder / "none"); }), "not found");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder / "rgb.txt"); }), "not a folder");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder / "rgb"); }), "no dataset recognised");
+    const fs::path parent = fs::path(folder.path()) / "parent";
+    fs::create_directories(parent / "child");
+    fs::copy(folder / "rgb.txt", parent / "child" / "rgb.txt");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(parent.string()); }),
+                    "did you mean " + (parent / "child").string());
+    EXPECT_CONTAINS(errorOf([&] { openDataset((parent / "child").string()); }), "has no depth.txt");
+    EXPECT_CONTAINS(openError(folder, {"oni", 0.02}), "unknown dataset format 'oni' (known: auto, tum)");
+    EXPECT_CONTAINS(openError(folder, {"tum", 0.001}), "closest pair 0.004 s apart");
+    folder.write("rgb.txt", "# nothing\n");
+    EXPECT_CONTAINS(openError(folder), "0 colour, 3 depth images");
+    folder.write("rgb.txt", "soon rgb/x.png\n");
+    EXPECT_CONTAINS(openError(folder), "rgb.txt:1: 'soon' is not a number");
+    folder.write("rgb.txt", "# c\n1.0\n");
+    EXPECT_CONTAINS(openError(folder), "rgb.txt:2: expected 'timestamp filename'");
+}
+
+TEST(Tum, AMissingImageIsNamed) {
+    const TumFolder folder;
+    folder.remove(TumFolder::depthName(1));
+    const std::string error = openError(folder);
+    EXPECT_CONTAINS(error, "1 listed image(s) missing");
+    EXPECT_CONTAINS(error, TumFolder::depthName(1));
+}
+
+TEST(Tum, EightBitDepthIsRefusedAtOnce) {
+    const TumFolder folder;
+    for (int i = 0; i < 3; i++)
+        cv::imwrite(folder / TumFolder::depthName(i), cv::Mat(48, 64, CV_8UC1, cv::Scalar(9)));
+    EXPECT_CONTAINS(openError(folder), "must be 16-bit");
+}
+
+TEST(Tum, OneUnusableImageSpoilsOneFrameOnly) {
+    for (const int bad : {0, 1}) {
+        const TumFolder folder;
+        fs::resize_file(folder / TumFolder::rgbName(bad), 60);
+        const DatasetReader dataset = openDataset(folder.path());
+        for (std::size_t i = 0; i < 3; i++) {
+            const std::string error = errorOf([&] { dataset.readFrame(i); });
+            EXPECT_EQ(error.find(TumFolder::rgbName(bad)) != std::string::npos, static_cast<int>(i) == bad)
+                << error;
+        }
+    }
+    const TumFolder folder;
+    fs::resize_file(folder / TumFolder::depthName(0), 60);
+    cv::imwrite(folder / TumFolder::rgbName(2), cv::Mat(24, 32, CV_8UC3, cv::Scalar(1)));
+    const DatasetReader dataset = openDataset(folder.path());
+    EXPECT_CONTAINS(errorOf([&] { dataset.readFrame(0); }), TumFolder::depthName(0));
+    EXPECT_EQ(errorOf([&] { dataset.readFrame(1); }), "");
+    EXPECT_CONTAINS(errorOf([&] { dataset.readFrame(2); }), "32x24, but the camera is 64x48");
+}
+
+}  // namespace
+}  // namespace roevo
