@@ -2,6 +2,8 @@ add_library(roevo_simulator STATIC
   simulator/src/baked_light.cpp
   simulator/src/camera_path.cpp
   simulator/src/intersect.cpp
+  simulator/src/livingroom_furniture.cpp
+  simulator/src/occlusion.cpp
   simulator/src/renderer.cpp
   simulator/src/scene_builder.cpp
   simulator/src/scene_corridor.cpp
@@ -15,6 +17,8 @@ add_library(roevo_simulator STATIC
   simulator/src/view.cpp)
 target_include_directories(roevo_simulator PUBLIC ${CMAKE_CURRENT_LIST_DIR}/simulator/include PRIVATE simulator/src)
 target_link_libraries(roevo_simulator PUBLIC roevo opencv_core opencv_imgproc Threads::Threads PRIVATE roevo_build_flags)
+# Lets the compiler inline square roots and floors; results stay those of IEEE arithmetic.
+target_compile_options(roevo_simulator PRIVATE -fno-math-errno -fno-trapping-math)
 
 add_executable(rawlog-simulate rawlog-simulate/main.cpp rawlog-simulate/recording.cpp)
 target_link_libraries(rawlog-simulate PRIVATE roevo_simulator roevo_mrpt roevo_support opencv_imgcodecs roevo_build_flags)

@@ -3,6 +3,9 @@
 
 namespace roevo::simulator {
 
+/// For colours that a texture does not use.
+inline const Colour kNone{0, 0, 0};
+
 /// Helpers that keep the scene descriptions short. All lengths in metres, z up.
 class SceneBuilder {
   public:

@@ -39,7 +39,7 @@ Scene makeCorridor() {
     m.door = b.material(Texture::kPlain, {0.62f, 0.56f, 0.46f});
     m.red = b.material(Texture::kPlain, {0.72f, 0.12f, 0.10f});
     m.metal = b.material(Texture::kPlain, {0.72f, 0.73f, 0.74f});
-    m.lamp = b.material(Texture::kPlain, {0.98f, 0.98f, 0.95f}, {}, {}, 1, 1);
+    m.lamp = b.material(Texture::kPlain, {0.98f, 0.98f, 0.95f}, kNone, kNone, 1, 1);
     const int floor = b.material(Texture::kPlain, {0.46f, 0.47f, 0.46f});
     const int wall = b.material(Texture::kPlain, {0.80f, 0.79f, 0.75f});
     b.room({kLength, kWidth, kHeight}, floor, m.white, wall, wall, wall, wall);
@@ -87,9 +87,10 @@ Scene makeCorridor() {
         b.box({std::min(x, x + 0.5 * out), 0.9, 1.3}, {std::max(x, x + 0.5 * out), 1.5, 1.9}, m.dark);
     }
 
-    b.scene.ambient = 0.52f;
+    b.scene.light_spacing = 0.16;
+    b.scene.ambient = 0.62f;
     for (const double x : {kLength / 6, kLength / 2, kLength * 5 / 6})
-        b.scene.lights.push_back({{x, kWidth / 2, 2.4}, 0.5f, 9.f, 0.6f, false, {1, 1, 0.97f}});
+        b.scene.lights.push_back({{x, kWidth / 2, 2.4}, 0.55f, 12.f, 0.6f, false, {1, 1, 0.97f}});
 
     // Along one side, round at the end, back along the other. The sight sweeps from wall to wall as a
     // person's does.

@@ -15,7 +15,7 @@ Colour plasterColour(const Material& m, const SurfacePoint& p) {
 }
 
 float woodGrain(float along, float across, float w, uint32_t seed) {
-    const float warp = 0.25f * fractalNoise(along / 0.5f, across / 0.08f, 2, w / 0.08f, seed);
+    const float warp = 0.25f * fractalNoise(along / 0.5f, across / 0.08f, 1, w / 0.08f, seed);
     const float rings = fractalNoise(along / 0.35f, across / 0.012f + 3 * warp, 3, w / 0.012f, seed + 3);
     return 0.7f * rings + warp;
 }

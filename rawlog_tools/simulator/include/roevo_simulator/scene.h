@@ -88,6 +88,7 @@ struct Scene {
     std::vector<Motion> motions;
     std::vector<Light> lights;
     float ambient = 0.35f;
+    double light_spacing = 0.09;          ///< metres between the points for which soft light is computed
     std::vector<Waypoint> handheld_loop;  ///< also of the path back-and-forth
     std::vector<Waypoint> walk_loop;
 };
