@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr double kIntervalTolerance = 0.1;  // share of the interval
+constexpr double kClockJitter = 2e-3;       // s
 
 using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
@@ -39,6 +40,7 @@ RelativeError relativePoseErrorOverTime(const std::vector<StampedPose>& referenc
     std::size_t j = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const double target = time(i) + interval;
+        if (target > time(pairs.size() - 1) + kClockJitter) break;
         while (j + 1 < pairs.size() && std::abs(time(j + 1) - target) <= std::abs(time(j) - target)) ++j;
         if (std::abs(time(j) - target) <= kIntervalTolerance * interval) intervals.emplace_back(i, j);
     }

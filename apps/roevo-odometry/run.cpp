@@ -121,8 +121,8 @@ void writeMap(const fs::path& dir, const RunReport& report, const EdgeMap& map,
 
 RunReport runOdometry(const RunSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
-    prepareOutputDir(settings.output_dir);
     auto source = prefetch(openSource(settings.input, settings.sensor_label));
+    prepareOutputDir(settings.output_dir);
 
     RunReport report;
     report.input = settings.input;

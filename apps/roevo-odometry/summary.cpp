@@ -2,6 +2,7 @@
 #include <sys/resource.h>
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -80,10 +81,9 @@ Json timingsJson(const RunReport& report) {
     Json json;
     for (const Stage& stage : kStages) {
         const auto times = stageTimes(report, stage);
-        json[stage.name] = {{"median", percentile(times, 0.5)},
-                            {"p95", percentile(times, 0.95)},
-                            {"p99", percentile(times, 0.99)},
-                            {"max", percentile(times, 1)}};
+        const auto rounded = [&](double share) { return std::round(percentile(times, share) * 1000) / 1000; };
+        json[stage.name] = {
+            {"median", rounded(0.5)}, {"p95", rounded(0.95)}, {"p99", rounded(0.99)}, {"max", rounded(1)}};
     }
     return json;
 }
@@ -116,10 +116,9 @@ std::string summaryJson(const RunReport& report) {
     const std::string eigen = std::to_string(EIGEN_WORLD_VERSION) + "." +
                               std::to_string(EIGEN_MAJOR_VERSION) + "." + std::to_string(EIGEN_MINOR_VERSION);
     Json json;
-    json["versions"] = {{"roevo", versionText()},
-                        {"mrpt", mrpt::system::MRPT_getVersion()},
-                        {"opencv", CV_VERSION},
-                        {"eigen", eigen}};
+    std::string mrpt = mrpt::system::MRPT_getVersion();  // "MRPT 2.5.8"
+    mrpt.erase(0, mrpt.find_first_of("0123456789"));
+    json["versions"] = {{"roevo", versionText()}, {"mrpt", mrpt}, {"opencv", CV_VERSION}, {"eigen", eigen}};
     json["input"] = {{"path", report.input}, {"kind", report.kind}, {"warning", report.warning}};
     json["mode"] = toString(report.mode);
     json["camera"] = cameraJson(report);

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kTerminalPeriod = 0.1;  // s
 constexpr double kLogStep = 0.1;         // share of the work
+constexpr double kLogMinPeriod = 2;      // s, so that short work does not fill a log
 constexpr double kLogPeriod = 10;        // s, when the amount of work is unknown
 
 std::string duration(double seconds) {
@@ -45,7 +46,8 @@ void Progress::update(std::size_t done, double fraction) {
     const double since_last = std::chrono::duration<double>(Clock::now() - last_print_).count();
     if (terminal_) {
         if (since_last >= kTerminalPeriod) print(false);
-    } else if (fraction_ > 0 ? fraction_ >= next_report_ && fraction_ < 1 : since_last >= kLogPeriod) {
+    } else if (fraction_ > 0 ? fraction_ >= next_report_ && fraction_ < 1 && since_last >= kLogMinPeriod
+                             : since_last >= kLogPeriod) {
         print(false);
         while (next_report_ <= fraction_) next_report_ += kLogStep;
     }

@@ -1,0 +1,13 @@
+add_library(roevo_test_support STATIC support/tum_folder.cpp)
+target_include_directories(roevo_test_support PUBLIC ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PUBLIC ${OpenCV_INCLUDE_DIRS})
+target_link_libraries(roevo_test_support PUBLIC opencv_core opencv_imgproc opencv_imgcodecs PRIVATE roevo_build_flags)
+
+roevo_test(test_evaluation
+  SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_support.cpp
+  LIBS roevo_evaluation roevo_support roevo_test_support)
+
+roevo_test(test_programs
+  SOURCES apps/test_every_program.cpp apps/test_eval_program.cpp apps/test_render_program.cpp
+          apps/test_odometry_program.cpp apps/test_bad_folders.cpp apps/test_bad_rawlogs.cpp
+  LIBS roevo_test_support roevo_evaluation roevo_mrpt nlohmann_json::nlohmann_json)
+add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog)

@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "support/run_program.h"
+
+namespace roevo {
+namespace {
+
+using test::expectError;
+using test::TemporaryFolder;
+using test::writeFile;
+
+constexpr char kName[] = "roevo-eval";
+
+const std::string kReference = "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n3 1 1 0 0 0 0 1\n4 1 1 1 0 0 0 1\n";
+
+TEST(EvalProgram, GoldenFiguresOfFr2Desk) {
+    const std::string data = std::string(ROEVO_DATA_DIR) + "/eval_fr2_desk/";
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << "no " << data;
+    const TemporaryFolder folder;
+    const auto result = test::runProgram(kName, {"--reference", data + "groundtruth.txt", "--estimate",
+                                                 data + "estimate.txt", "--json", folder / "e.json"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_NE(result.out.find("0.8144"), std::string::npos) << "centimetres, in the table:\n" << result.out;
+    const auto json = nlohmann::json::parse(test::readFile(folder / "e.json"));
+    EXPECT_NEAR(json["ate_m"]["rmse"].get<double>(), 0.008144, 0.5e-6);
+    EXPECT_EQ(json["max_dt_s"], 0.02);
+    EXPECT_GT(json["rpe_per_second"]["translation_m"]["rmse"].get<double>(), 0);
+}
+
+TEST(EvalProgram, OffsetShiftsTheEstimate) {
+    const TemporaryFolder folder;
+    writeFile(folder / "r.txt", kReference);
+    writeFile(folder / "e.txt", "11 0 0 0 0 0 0 1\n12 1 0 0 0 0 0 1\n13 1 1 0 0 0 0 1\n14 1 1 1 0 0 0 1\n");
+    const std::vector<std::string> arguments{"--reference", folder / "r.txt", "--estimate", folder / "e.txt"};
+    expectError(test::runProgram(kName, arguments), 1, kName,
+                {"1.000000 s", "14.000000 s", "-10.000000", "--offset"});
+    auto shifted = arguments;
+    shifted.insert(shifted.end(), {"--offset", "-10"});
+    const auto result = test::runProgram(kName, shifted);
+    EXPECT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_NE(result.out.find("4 of 4"), std::string::npos) << result.out;
+}
+
+TEST(EvalProgram, FailuresAreOneLine) {
+    const TemporaryFolder folder;
+    writeFile(folder / "r.txt", kReference);
+    writeFile(folder / "bad.txt", "1 0 0 0 0 0 0 1\n2 0 0\n");
+    writeFile(folder / "two.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+    const auto with = [&](const std::string& estimate, std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments{"--reference", folder / "r.txt", "--estimate", estimate};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return test::runProgram(kName, arguments);
+    };
+    expectError(with(folder / "none.txt"), 1, kName, {"none.txt", "No such file"});
+    expectError(with(folder.path().string()), 1, kName, {"directory"});
+    expectError(with(folder / "bad.txt"), 1, kName, {"bad.txt:2:", "found 3"});
+    expectError(with(folder / "two.txt"), 1, kName, {"only 2 poses"});
+    expectError(with(folder / "r.txt", {"--max-dt", "-1"}), 2, kName, {"--max-dt"});
+    expectError(with(folder / "r.txt", {"--max-dt", "much"}), 2, kName, {"--max-dt"});
+    expectError(with(folder / "r.txt", {"--json", folder / "no/such/e.json"}), 1, kName,
+                {"cannot write", "e.json"});
+}
+
+}  // namespace
+}  // namespace roevo

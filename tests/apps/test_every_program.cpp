@@ -1,0 +1,42 @@
+#include <gtest/gtest.h>
+
+#include "support/run_program.h"
+
+namespace roevo {
+namespace {
+
+using test::expectError;
+
+class EveryProgram : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryProgram, HelpShowsAnExample) {
+    const auto result = test::runProgram(GetParam(), {"--help"});
+    EXPECT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_NE(result.out.find("Example"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find(std::string("\n  ") + GetParam() + " --"), std::string::npos) << result.out;
+    EXPECT_EQ(result.err, "");
+}
+
+TEST_P(EveryProgram, VersionIsNameAndNumber) {
+    const auto result = test::runProgram(GetParam(), {"--version"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.out.find(std::string(GetParam()) + " "), 0u) << result.out;
+    EXPECT_NE(result.out.find('.'), std::string::npos) << result.out;
+}
+
+TEST_P(EveryProgram, WrongUsageIsExitCode2) {
+    expectError(test::runProgram(GetParam(), {"--no-such-option"}), 2, GetParam(),
+                {"--no-such-option", "--help"});
+    expectError(test::runProgram(GetParam(), {}), 2, GetParam(), {"required"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram,
+                         testing::Values("roevo-odometry", "roevo-eval", "roevo-render"),
+                         [](const auto& info) {
+                             std::string name = info.param;
+                             name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
+                             return name;
+                         });
+
+}  // namespace
+}  // namespace roevo

@@ -1,0 +1,149 @@
+#include <filesystem>
+
+#include "evaluation/trajectory_io.h"
+#include "odometry_fixture.h"
+
+namespace roevo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::expectError;
+using test::OdometryProgram;
+using test::readFile;
+using test::slidingRecording;
+
+TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
+    const auto result = runFrames(slidingRecording(40));
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    for (const char* name : {"trajectory.txt", "trajectory_live.txt", "keyframes.txt", "frames.csv",
+                             "map.3Dscene", "map.ply", "summary.json", "config_used.ini"})
+        EXPECT_GT(fs::file_size(output() + "/" + name), 0u) << name;
+    EXPECT_EQ(std::distance(fs::directory_iterator(output()), fs::directory_iterator()), 8)
+        << "and nothing else";
+
+    EXPECT_EQ(readFile(output() + "/frames.csv").substr(0, 140),
+              "timestamp,status,reason,keyframe,edges,points,matched_ratio,inliers,sigma_t_m,sigma_r_deg,"
+              "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total\n100.0");
+    ASSERT_EQ(rows().size(), 40u);
+    for (const auto& row : rows()) EXPECT_EQ(row.size(), 15u);
+    EXPECT_EQ(status(0), "initialised");
+    EXPECT_EQ(readTumTrajectory(output() + "/trajectory.txt").size(), 40u);
+    EXPECT_EQ(readTumTrajectory(output() + "/trajectory_live.txt").size(), 40u);
+
+    const auto json = summary();
+    EXPECT_EQ(json["mode"], "tr");
+    EXPECT_EQ(json["frames"]["total"], 40);
+    EXPECT_EQ(json["frames"]["ok"], 39);
+    EXPECT_EQ(json["camera"]["width"], 320);
+    EXPECT_GT(json["timings_ms"]["total"]["median"].get<double>(), 0);
+    EXPECT_GT(json["memory_peak_mb"].get<double>(), 0);
+    EXPECT_NEAR(json["path_length_m"].get<double>(), 0.39, 0.05);
+    // groundtruth.txt in the folder is found without being named.
+    EXPECT_LT(json["ground_truth"]["ate_m"]["rmse"].get<double>(), 0.005);
+    EXPECT_LT(json["ground_truth"]["rpe_per_second"]["translation_m"]["rmse"].get<double>(), 0.01);
+    for (const char* words : {"39 ok", "1 initialised", "ATE", "RPE", "ms per frame"})
+        EXPECT_NE(result.out.find(words), std::string::npos) << words << " in\n" << result.out;
+}
+
+TEST_F(OdometryProgram, BothModesRunAndSayWhichTheyAre) {
+    for (const std::string mode : {"ct", "tr"}) {
+        ASSERT_EQ(runFrames(slidingRecording(5), {"--mode", mode}).exit_code, 0);
+        EXPECT_EQ(summary()["mode"], mode);
+        EXPECT_NE(readFile(output() + "/config_used.ini").find("mode = " + mode), std::string::npos);
+    }
+    expectError(run(folder_ / "recording", {"--mode", "ba"}), 2, kName, {"'ba'", "ct, tr"});
+}
+
+TEST_F(OdometryProgram, FirstAndSkipChooseFrames) {
+    ASSERT_EQ(runFrames(slidingRecording(12), {"--skip", "3", "--first", "4", "--quiet"}).exit_code, 0);
+    ASSERT_EQ(rows().size(), 4u);
+    EXPECT_EQ(rows()[0][0], "100.100000");
+    expectError(run(folder_ / "recording", {"--skip", "13"}), 1, kName, {"--skip", "12 frames"});
+}
+
+TEST_F(OdometryProgram, QuietSaysNothing) {
+    const auto result = runFrames(slidingRecording(4), {"--quiet"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST_F(OdometryProgram, SameInputGivesSameBytes) {
+    ASSERT_EQ(runFrames(slidingRecording(25)).exit_code, 0);
+    const std::string first = readFile(output() + "/trajectory.txt"), map = readFile(output() + "/map.ply");
+    ASSERT_EQ(run(folder_ / "recording").exit_code, 0);
+    EXPECT_EQ(readFile(output() + "/trajectory.txt"), first);
+    EXPECT_TRUE(readFile(output() + "/map.ply") == map);
+}
+
+TEST_F(OdometryProgram, FolderAndItsRawlogGiveSameBytes) {
+    ASSERT_EQ(runFrames(slidingRecording(25)).exit_code, 0);
+    const std::string from_folder = readFile(output() + "/trajectory.txt");
+    const auto made = test::runProgram(
+        "rgbd2rawlog", {"--input", folder_ / "recording", "--output", folder_ / "r.rawlog", "--verify"});
+    ASSERT_EQ(made.exit_code, 0) << made.all();
+    ASSERT_EQ(run(folder_ / "r.rawlog").exit_code, 0);
+    EXPECT_EQ(readFile(output() + "/trajectory.txt"), from_folder);
+    EXPECT_EQ(summary()["ground_truth"]["pairs"], 25) << "<stem>_groundtruth.txt beside the rawlog is found";
+}
+
+TEST_F(OdometryProgram, RealFolderAndItsRawlogGiveSameBytes) {
+    const std::string clip = std::string(ROEVO_DATA_DIR) + "/tum_fr1_desk_9";
+    if (!fs::exists(clip)) GTEST_SKIP() << "no " << clip;
+    ASSERT_EQ(run(clip).exit_code, 0);
+    const std::string from_folder = readFile(output() + "/trajectory.txt");
+    EXPECT_EQ(summary()["frames"]["ok"], 8);
+    ASSERT_EQ(
+        test::runProgram("rgbd2rawlog", {"--input", clip, "--output", folder_ / "desk.rawlog"}).exit_code, 0);
+    ASSERT_EQ(run(folder_ / "desk.rawlog").exit_code, 0);
+    EXPECT_EQ(readFile(output() + "/trajectory.txt"), from_folder);
+}
+
+TEST_F(OdometryProgram, RawlogWithTwoCamerasIsRegisteredAndInitialises) {
+    const std::string rawlog = "/usr/share/mrpt/datasets/tests_rgbd.rawlog";
+    if (!fs::exists(rawlog)) GTEST_SKIP() << "no " << rawlog << " (package mrpt-common)";
+    const auto result = run(rawlog);
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    ASSERT_EQ(rows().size(), 1u);
+    EXPECT_EQ(status(0), "initialised");
+    EXPECT_GT(std::stoi(rows()[0][4]), 50) << "organized edges";
+}
+
+TEST_F(OdometryProgram, OptionsComeFromConfigThenSet) {
+    test::writeFile(folder_ / "c.ini", "[edges]\nmin_length = 17\nangle_deg = 25\n");
+    const auto result = runFrames(slidingRecording(3), {"--config", folder_ / "c.ini", "--set",
+                                                        "edges.min_length=19", "--set", "fine.chi2=7"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    const std::string used = readFile(output() + "/config_used.ini");
+    for (const char* words : {"min_length = 19", "angle_deg = 25", "chi2 = 7"})
+        EXPECT_NE(used.find(words), std::string::npos) << words;
+    // What was used can be used again, and means the same.
+    const std::string trajectory = readFile(output() + "/trajectory.txt");
+    fs::copy_file(output() + "/config_used.ini", folder_ / "again.ini");
+    ASSERT_EQ(run(folder_ / "recording", {"--config", folder_ / "again.ini"}).exit_code, 0);
+    EXPECT_EQ(readFile(output() + "/config_used.ini"), used);
+    EXPECT_EQ(readFile(output() + "/trajectory.txt"), trajectory);
+}
+
+TEST_F(OdometryProgram, WrongOptionsNameTheClosestAndTheRange) {
+    test::writeTumFolder(folder_ / "recording", slidingRecording(2));
+    const auto set = [&](const std::string& text) { return run(folder_ / "recording", {"--set", text}); };
+    expectError(set("edges.min_lenght=12"), 2, kName, {"edges.min_lenght", "'edges.min_length'"});
+    expectError(set("edges.min_length=long"), 2, kName, {"edges.min_length", "'long'"});
+    expectError(set("edges.angle_deg=1e9"), 2, kName, {"edges.angle_deg", "1 to 90"});
+    expectError(set("nonsense"), 2, kName, {"section.key=value"});
+    test::writeFile(folder_ / "c.ini", "[edges]\nmin_lenght = 17\n");
+    expectError(run(folder_ / "recording", {"--config", folder_ / "c.ini"}), 1, kName,
+                {"c.ini:2", "edges.min_length"});
+    expectError(run(folder_ / "recording", {"--config", folder_ / "none.ini"}), 1, kName, {"none.ini"});
+    EXPECT_FALSE(fs::exists(output())) << "nothing is made before the options are right";
+}
+
+TEST(DefaultConfig, TheShippedFileIsWhatIsBuiltIn) {
+    const auto result = test::runProgram("roevo-odometry", {"--write-default-config", "-"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_EQ(result.out, readFile(std::string(ROEVO_SOURCE_DIR) + "/config_ini/roevo.ini"))
+        << "after a change of defaults run: roevo-odometry --write-default-config config_ini/roevo.ini";
+}
+
+}  // namespace
+}  // namespace roevo

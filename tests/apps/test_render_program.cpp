@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "evaluation/trajectory_io.h"
+#include "roevo_mrpt/scene_builder.h"
+#include "support/run_program.h"
+
+namespace roevo {
+namespace {
+
+using test::expectError;
+using test::TemporaryFolder;
+
+constexpr char kName[] = "roevo-render";
+
+// A room of 4 x 3 x 2.5 m seen from its middle, with a few points 500 m away that must not make it a speck.
+void writeRoom(const std::string& scene_file, const std::string& trajectory_file) {
+    SceneContent content;
+    const auto line = [&](Eigen::Vector3f a, Eigen::Vector3f b, std::array<std::uint8_t, 3> colour) {
+        MapEdge edge;
+        for (int i = 0; i <= 300; ++i) {
+            edge.points.push_back(a + (b - a) * static_cast<float>(i) / 300);
+            edge.colours.push_back(colour);
+        }
+        content.map.push_back(edge);
+    };
+    for (const float y : {-1.25f, 1.25f}) {  // optical axes: y down, z forward
+        line({-2, y, -1}, {2, y, -1}, {255, 255, 255});
+        line({-2, y, 2}, {2, y, 2}, {255, 255, 255});
+        line({-2, y, -1}, {-2, y, 2}, {250, 30, 30});
+        line({2, y, -1}, {2, y, 2}, {30, 250, 30});
+    }
+    MapEdge stray;
+    for (int i = 0; i < 5; ++i) stray.points.emplace_back(0.f, 0.f, 500.f + static_cast<float>(i));
+    stray.colours.resize(5);
+    content.map.push_back(stray);
+    for (int i = 0; i < 20; ++i) {
+        StampedPose pose;
+        pose.timestamp = i;
+        pose.T_world_camera.translation().x() = 0.03 * i;
+        content.trajectory.push_back(pose);
+    }
+    content.keyframes.push_back({0, 0, Pose::Identity()});
+    content.camera = PinholeCamera{640, 480, 525, 525, 319.5, 239.5, {}};
+    saveScene(scene_file, *buildScene(content));
+    writeTumTrajectory(trajectory_file, content.trajectory);
+}
+
+class RenderProgram : public testing::Test {
+  protected:
+    RenderProgram() { writeRoom(folder_ / "room.3Dscene", folder_ / "trajectory.txt"); }
+
+    test::ProgramResult render(const std::vector<std::string>& more) const {
+        std::vector<std::string> arguments{"--scene", folder_ / "room.3Dscene", "--output",
+                                           folder_ / "room.png"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return test::runProgram(kName, arguments);
+    }
+
+    // The picture's part that is clearly brighter than the background, 0..1, by bounding box.
+    static cv::Rect brightBox(const cv::Mat& picture) {
+        cv::Mat channels[3], brightest;
+        cv::split(picture, channels);
+        cv::max(channels[0], channels[1], brightest);
+        cv::max(brightest, channels[2], brightest);
+        return cv::boundingRect(brightest > 100);
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(RenderProgram, EveryViewFillsThePicture) {
+    for (const std::string view : {"iso", "top", "front"}) {
+        const auto result =
+            render({"--view", view, "--size", "402x300"});  // a width that is no multiple of 4
+        ASSERT_EQ(result.exit_code, 0) << view << ' ' << result.all();
+        const cv::Mat picture = cv::imread(folder_ / "room.png");
+        ASSERT_EQ(picture.size(), cv::Size(402, 300)) << view;
+        const cv::Rect box = brightBox(picture);
+        EXPECT_TRUE(box.width > 300 || box.height > 225) << view << " shows the room only in " << box;
+    }
+}
+
+TEST_F(RenderProgram, FollowLooksFromBehindTheLastCamera) {
+    const auto result = render({"--view", "follow", "--size", "400x300"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    const cv::Mat picture = cv::imread(folder_ / "room.png");
+    ASSERT_FALSE(picture.empty());
+    // The trajectory's end, drawn in a warm red, is straight ahead of us.
+    const cv::Mat middle = picture(cv::Rect(170, 100, 60, 150));
+    int red = 0;
+    for (int y = 0; y < middle.rows; ++y)
+        for (int x = 0; x < middle.cols; ++x) {
+            const auto& p = middle.at<cv::Vec3b>(y, x);
+            red += p[2] > 110 && p[2] > 2 * p[0] && p[2] > 2 * p[1];
+        }
+    EXPECT_GT(red, 5);
+}
+
+TEST_F(RenderProgram, FailuresAreOneLine) {
+    namespace fs = std::filesystem;
+    expectError(render({"--size", "1000"}), 2, kName, {"--size", "1000"});
+    expectError(render({"--size", "8x8"}), 2, kName, {"16"});
+    expectError(render({"--view", "inside"}), 2, kName, {"--view"});
+    expectError(render({"--view", "follow", "--trajectory", folder_ / "none.txt"}), 1, kName, {"none.txt"});
+    const std::string png = folder_ / "x.png";
+    expectError(test::runProgram(kName, {"--scene", folder_ / "none.3Dscene", "--output", png}), 1, kName,
+                {"none.3Dscene", "No such file"});
+    expectError(test::runProgram(kName, {"--scene", folder_ / "trajectory.txt", "--output", png}), 1, kName,
+                {"not a whole MRPT .3Dscene"});
+    fs::copy_file(folder_ / "room.3Dscene", folder_ / "cut.3Dscene");
+    fs::resize_file(folder_ / "cut.3Dscene", fs::file_size(folder_ / "cut.3Dscene") / 2);
+    expectError(test::runProgram(kName, {"--scene", folder_ / "cut.3Dscene", "--output", png}), 1, kName,
+                {"cut.3Dscene"});
+    expectError(
+        test::runProgram(kName, {"--scene", folder_ / "room.3Dscene", "--output", folder_ / "no/such/x.png"}),
+        1, kName, {"cannot write"});
+    expectError(test::runProgram(kName, {"--scene", folder_ / "room.3Dscene", "--output", folder_ / "x.txt"}),
+                2, kName, {".png"});
+    EXPECT_FALSE(fs::exists(png));
+}
+
+}  // namespace
+}  // namespace roevo
