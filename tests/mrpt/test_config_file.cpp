@@ -4,13 +4,14 @@
 #include <fstream>
 #include <sstream>
 
+#include "mrpt/test_helpers.h"
 #include "roevo_mrpt/config_file.h"
 #include "roevo_mrpt/roevo_odometry.h"
-#include "temporary_folder.h"
 
 namespace roevo {
 namespace {
 
+using test::countEntries;
 using test::errorOf;
 
 std::vector<std::string> values(OdometryOptions options) {
@@ -40,7 +41,7 @@ TEST(ConfigFile, RoundTripsEveryOption) {
     ASSERT_EQ(checkOptions(options), "");
     ASSERT_NE(values(options), values({}));
     saveConfigFile(folder / "config.ini", options);
-    EXPECT_EQ(folder.count(), 1u);
+    EXPECT_EQ(countEntries(folder.path()), 1);
     OdometryOptions read;
     loadConfigFile(folder / "config.ini", read);
     EXPECT_EQ(values(read), values(options));

@@ -5,11 +5,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
+#include "mrpt/test_helpers.h"
 #include "roevo_mrpt/camera_conversions.h"
 #include "roevo_mrpt/image_conversions.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/time_conversions.h"
-#include "temporary_folder.h"
 
 namespace roevo {
 namespace {

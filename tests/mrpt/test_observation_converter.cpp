@@ -4,11 +4,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "mrpt/synthetic_scan.h"
+#include "mrpt/test_helpers.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/rawlog_reader.h"
-#include "synthetic_scan.h"
-#include "temporary_folder.h"
 
 namespace roevo {
 namespace {

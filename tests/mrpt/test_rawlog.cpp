@@ -12,16 +12,17 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "mrpt/synthetic_scan.h"
+#include "mrpt/test_helpers.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_mrpt/rawlog_writer.h"
-#include "synthetic_scan.h"
-#include "temporary_folder.h"
 
 namespace roevo {
 namespace {
 
 namespace fs = std::filesystem;
+using test::countEntries;
 using test::errorOf;
 using test::makeScan;
 using test::patternColour;
@@ -71,7 +72,7 @@ TEST_P(RawlogRoundTrip, IsLosslessAtEveryCompressionLevel) {
     options.range_units = 0.001f;
     options.sensor_label = "front camera/left";
     writeFrames(folder / "a.rawlog", 4, options);
-    EXPECT_EQ(folder.count(), 2u);  // the rawlog and its images, nothing temporary
+    EXPECT_EQ(countEntries(folder.path()), 2);  // the rawlog and its images, nothing temporary
     RawlogReader reader(folder / "a.rawlog");
     for (int i = 0; i < 4; i++) {
         const auto scan = reader.next();
@@ -120,7 +121,7 @@ TEST(RawlogWriter, WithoutFinishLeavesNothing) {
         writer.add(stamp(0), patternDepth(smallCamera(), 0), patternColour(smallCamera(), 0));
         EXPECT_FALSE(fs::exists(folder / "a.rawlog"));
     }
-    EXPECT_EQ(folder.count(), 0u);
+    EXPECT_EQ(countEntries(folder.path()), 0);
 }
 
 TEST(RawlogWriter, ReplacesAnOlderRawlogOnlyWhenFinished) {
@@ -135,7 +136,7 @@ TEST(RawlogWriter, ReplacesAnOlderRawlogOnlyWhenFinished) {
     writeFrames(folder / "a.rawlog", 2);
     RawlogReader new_one(folder / "a.rawlog");
     EXPECT_EQ(countScans(new_one), 2u);
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder / "a_Images"), fs::directory_iterator()), 2);
+    EXPECT_EQ(countEntries(folder / "a_Images"), 2);
 }
 
 TEST(RawlogWriter, RefusesWhatItCannotWrite) {

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
+#include "mrpt/synthetic_scan.h"
+#include "mrpt/test_helpers.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_mrpt/roevo_odometry.h"
-#include "synthetic_scan.h"
-#include "temporary_folder.h"
 
 namespace roevo {
 namespace {

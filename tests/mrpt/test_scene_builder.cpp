@@ -7,12 +7,13 @@
 #include <fstream>
 #include <sstream>
 
+#include "mrpt/test_helpers.h"
 #include "roevo_mrpt/scene_builder.h"
-#include "temporary_folder.h"
 
 namespace roevo {
 namespace {
 
+using test::countEntries;
 using test::errorOf;
 
 SceneContent someContent() {
@@ -48,7 +49,7 @@ TEST(SceneBuilder, ComesBackFromAFileWithEverythingInIt) {
     const test::TemporaryFolder folder;
     const auto scene = buildScene(someContent());
     saveScene(folder / "map.3Dscene", *scene);
-    EXPECT_EQ(folder.count(), 1u);
+    EXPECT_EQ(countEntries(folder.path()), 1);
 
     compat::Scene loaded;
     ASSERT_TRUE(loaded.loadFromFile(folder / "map.3Dscene"));

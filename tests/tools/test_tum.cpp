@@ -4,16 +4,16 @@
 
 #include "datasets/camera_file.h"
 #include "datasets/dataset_reader.h"
-#include "tum_folder.h"
+#include "tools/small_tum_folder.h"
 
 namespace roevo {
 namespace {
 
 namespace fs = std::filesystem;
 using test::errorOf;
-using test::TumFolder;
+using test::SmallTumFolder;
 
-std::string openError(const TumFolder& folder, const DatasetOptions& options = {}) {
+std::string openError(const SmallTumFolder& folder, const DatasetOptions& options = {}) {
     const std::string error = errorOf([&] { openDataset(folder.path(), options); });
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
     return error;
@@ -22,14 +22,14 @@ std::string openError(const TumFolder& folder, const DatasetOptions& options = {
 #define EXPECT_CONTAINS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 TEST(Tum, ReadsFramesWithTheColourImagesTime) {
-    const TumFolder folder;
+    const SmallTumFolder folder;
     const DatasetReader dataset = openDataset(folder.path());
     ASSERT_EQ(dataset.size(), 3u);
     for (std::size_t i = 0; i < 3; i++) {
         const int n = static_cast<int>(i);
         const RgbdFrame frame = dataset.readFrame(i);
-        EXPECT_EQ(frame.timestamp, std::stod(TumFolder::stamp(n)));
-        EXPECT_EQ(dataset.entry(i).depth_timestamp, std::stod(TumFolder::stamp(n, 0.004)));
+        EXPECT_EQ(frame.timestamp, std::stod(SmallTumFolder::stamp(n)));
+        EXPECT_EQ(dataset.entry(i).depth_timestamp, std::stod(SmallTumFolder::stamp(n, 0.004)));
         EXPECT_EQ(frame.depth.at<float>(40, 40), 10000.f * (1.f / 5000.f));
         EXPECT_EQ(frame.depth.at<float>(n, 2), 0.f);
         EXPECT_EQ(frame.colour.at<cv::Vec3b>(1, 1), cv::Vec3b(static_cast<std::uint8_t>(10 * n), 50, 90));
@@ -45,14 +45,15 @@ TEST(Tum, ReadsFramesWithTheColourImagesTime) {
 }
 
 TEST(Tum, ListsMayBeUnsortedRepeatCarryBlanksAndWindowsLineEnds) {
-    const TumFolder folder;
-    folder.write("rgb.txt", "\xEF\xBB\xBF# c\r\n\r\n" + TumFolder::stamp(2) + "\t" + TumFolder::rgbName(2) +
-                                "  \r\n" + TumFolder::stamp(0) + " " + TumFolder::rgbName(0) + "\r\n   " +
-                                TumFolder::stamp(0) + " " + TumFolder::rgbName(1) + "\r\n");
+    const SmallTumFolder folder;
+    folder.write("rgb.txt", "\xEF\xBB\xBF# c\r\n\r\n" + SmallTumFolder::stamp(2) + "\t" +
+                                SmallTumFolder::rgbName(2) + "  \r\n" + SmallTumFolder::stamp(0) + " " +
+                                SmallTumFolder::rgbName(0) + "\r\n   " + SmallTumFolder::stamp(0) + " " +
+                                SmallTumFolder::rgbName(1) + "\r\n");
     const DatasetReader dataset = openDataset(folder.path());
     ASSERT_EQ(dataset.size(), 2u);
-    EXPECT_EQ(dataset.entry(0).image, folder / TumFolder::rgbName(0));
-    EXPECT_EQ(dataset.entry(1).image, folder / TumFolder::rgbName(2));
+    EXPECT_EQ(dataset.entry(0).image, folder / SmallTumFolder::rgbName(0));
+    EXPECT_EQ(dataset.entry(1).image, folder / SmallTumFolder::rgbName(2));
     EXPECT_EQ(dataset.description().association.duplicates, 1u);
     EXPECT_EQ(dataset.description().association.dropped_depth, 1u);
     EXPECT_CONTAINS(dataset.summary(), "2 frames matched, 0 colour and 1 depth images dropped, 1 repeated");
@@ -60,11 +61,11 @@ TEST(Tum, ListsMayBeUnsortedRepeatCarryBlanksAndWindowsLineEnds) {
 
 TEST(Tum, AssociationsFileServesWhenItIsAllThereIs) {
     for (const bool depth_first : {false, true}) {
-        const TumFolder folder;
+        const SmallTumFolder folder;
         std::string text = "# comment\n";
         for (const int i : {1, 0}) {
-            const std::string rgb = TumFolder::stamp(i) + " " + TumFolder::rgbName(i);
-            const std::string depth = TumFolder::stamp(i, 0.004) + " " + TumFolder::depthName(i);
+            const std::string rgb = SmallTumFolder::stamp(i) + " " + SmallTumFolder::rgbName(i);
+            const std::string depth = SmallTumFolder::stamp(i, 0.004) + " " + SmallTumFolder::depthName(i);
             text += depth_first ? depth + " " + rgb + "\n" : rgb + " " + depth + "\n";
         }
         folder.write("associations.txt", text);
@@ -72,8 +73,8 @@ TEST(Tum, AssociationsFileServesWhenItIsAllThereIs) {
         folder.remove("depth.txt");
         const DatasetReader dataset = openDataset(folder.path());
         ASSERT_EQ(dataset.size(), 2u);
-        EXPECT_EQ(dataset.entry(0).timestamp, std::stod(TumFolder::stamp(0)));
-        EXPECT_EQ(dataset.entry(0).depth, folder / TumFolder::depthName(0));
+        EXPECT_EQ(dataset.entry(0).timestamp, std::stod(SmallTumFolder::stamp(0)));
+        EXPECT_EQ(dataset.entry(0).depth, folder / SmallTumFolder::depthName(0));
     }
 }
 
@@ -83,7 +84,7 @@ TEST(Tum, PublishedCamerasAreRecognisedAndSaid) {
     EXPECT_FALSE(tumCameraNamedIn("rgbd_dataset_freiburg3_office")->camera.isDistorted());
     EXPECT_FALSE(tumCameraNamedIn("my_dataset"));
 
-    const TumFolder folder;
+    const SmallTumFolder folder;
     folder.remove("camera.txt");
     EXPECT_CONTAINS(openError(folder), "no intrinsics");
     folder.write("groundtruth.txt", "# ground truth trajectory\n# file: 'rgbd_dataset_freiburg2_desk.bag'\n");
@@ -102,7 +103,7 @@ TEST(Tum, PublishedCamerasAreRecognisedAndSaid) {
 }
 
 TEST(Tum, CameraFileErrorsNameTheKey) {
-    const TumFolder folder;
+    const SmallTumFolder folder;
     folder.write("camera.txt", "width: 64\nheight: 48\nfx: 60\ncx: 31.5\ncy: 23.5\n");
     EXPECT_CONTAINS(openError(folder), "lacks fy, depth_scale");
     folder.write("camera.txt", "width: 64\nfx: sixty\n");
@@ -114,7 +115,7 @@ TEST(Tum, CameraFileErrorsNameTheKey) {
 }
 
 TEST(Tum, ADepthScaleThatMakesNoSenseIsNamedWithTheLikelyOne) {
-    TumFolder folder(2, 1500);  // 1.5 m in millimetres
+    SmallTumFolder folder(2, 1500);  // 1.5 m in millimetres
     folder.writeCamera("50");
     const std::string too_far = openError(folder);
     EXPECT_CONTAINS(too_far, "median depth 30 m");
@@ -123,12 +124,12 @@ TEST(Tum, ADepthScaleThatMakesNoSenseIsNamedWithTheLikelyOne) {
     EXPECT_CONTAINS(openError(folder), "median depth 0.03 m");
     folder.writeCamera("1000");
     EXPECT_EQ(openError(folder), "");
-    const TumFolder blind(2, 0);  // no depth at all says nothing about the scale
+    const SmallTumFolder blind(2, 0);  // no depth at all says nothing about the scale
     EXPECT_EQ(openError(blind), "");
 }
 
 TEST(Tum, WrongFoldersAndLists) {
-    const TumFolder folder;
+    const SmallTumFolder folder;
     EXPECT_CONTAINS(errorOf([&] { openDataset(folder / "none"); }), "not found");
     EXPECT_CONTAINS(errorOf([&] { openDataset(folder / "rgb.txt"); }), "not a folder");
     EXPECT_CONTAINS(errorOf([&] { openDataset(folder / "rgb"); }), "no dataset recognised");
@@ -149,36 +150,37 @@ TEST(Tum, WrongFoldersAndLists) {
 }
 
 TEST(Tum, AMissingImageIsNamed) {
-    const TumFolder folder;
-    folder.remove(TumFolder::depthName(1));
+    const SmallTumFolder folder;
+    folder.remove(SmallTumFolder::depthName(1));
     const std::string error = openError(folder);
     EXPECT_CONTAINS(error, "1 listed image(s) missing");
-    EXPECT_CONTAINS(error, TumFolder::depthName(1));
+    EXPECT_CONTAINS(error, SmallTumFolder::depthName(1));
 }
 
 TEST(Tum, EightBitDepthIsRefusedAtOnce) {
-    const TumFolder folder;
+    const SmallTumFolder folder;
     for (int i = 0; i < 3; i++)
-        cv::imwrite(folder / TumFolder::depthName(i), cv::Mat(48, 64, CV_8UC1, cv::Scalar(9)));
+        cv::imwrite(folder / SmallTumFolder::depthName(i), cv::Mat(48, 64, CV_8UC1, cv::Scalar(9)));
     EXPECT_CONTAINS(openError(folder), "must be 16-bit");
 }
 
 TEST(Tum, OneUnusableImageSpoilsOneFrameOnly) {
     for (const int bad : {0, 1}) {
-        const TumFolder folder;
-        fs::resize_file(folder / TumFolder::rgbName(bad), 60);
+        const SmallTumFolder folder;
+        fs::resize_file(folder / SmallTumFolder::rgbName(bad), 60);
         const DatasetReader dataset = openDataset(folder.path());
         for (std::size_t i = 0; i < 3; i++) {
             const std::string error = errorOf([&] { dataset.readFrame(i); });
-            EXPECT_EQ(error.find(TumFolder::rgbName(bad)) != std::string::npos, static_cast<int>(i) == bad)
+            EXPECT_EQ(error.find(SmallTumFolder::rgbName(bad)) != std::string::npos,
+                      static_cast<int>(i) == bad)
                 << error;
         }
     }
-    const TumFolder folder;
-    fs::resize_file(folder / TumFolder::depthName(0), 60);
-    cv::imwrite(folder / TumFolder::rgbName(2), cv::Mat(24, 32, CV_8UC3, cv::Scalar(1)));
+    const SmallTumFolder folder;
+    fs::resize_file(folder / SmallTumFolder::depthName(0), 60);
+    cv::imwrite(folder / SmallTumFolder::rgbName(2), cv::Mat(24, 32, CV_8UC3, cv::Scalar(1)));
     const DatasetReader dataset = openDataset(folder.path());
-    EXPECT_CONTAINS(errorOf([&] { dataset.readFrame(0); }), TumFolder::depthName(0));
+    EXPECT_CONTAINS(errorOf([&] { dataset.readFrame(0); }), SmallTumFolder::depthName(0));
     EXPECT_EQ(errorOf([&] { dataset.readFrame(1); }), "");
     EXPECT_CONTAINS(errorOf([&] { dataset.readFrame(2); }), "32x24, but the camera is 64x48");
 }

@@ -3,16 +3,16 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
-#include "mrpt/temporary_folder.h"
+#include "mrpt/test_helpers.h"
 
 namespace roevo::test {
 
 inline constexpr double kTumStart = 1305031453.359684;
 
 /// A small TUM sequence on disk: `count` frames at 10 Hz, depth 4 ms later, everything two metres away.
-class TumFolder {
+class SmallTumFolder {
   public:
-    explicit TumFolder(int count = 3, int depth_value = 10000) {
+    explicit SmallTumFolder(int count = 3, int depth_value = 10000) {
         std::filesystem::create_directories(folder_ / "rgb");
         std::filesystem::create_directories(folder_ / "depth");
         std::string rgb = "# color images\n# timestamp filename\n", depth = "# depth maps\n";
