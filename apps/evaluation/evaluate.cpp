@@ -53,7 +53,7 @@ std::string explainTooFew(const std::vector<StampedPose>& reference, const std::
     if (!overlap)
         text += "; to let both start together add " +
                 seconds(reference.front().timestamp - estimate.front().timestamp) +
-                " to the estimate's stamps (--offset)";
+                " to the estimate's stamps (roevo-eval --offset)";
     else if (found < estimate.size())
         text += "; try a larger --max-dt";
     return text;

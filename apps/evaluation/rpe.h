@@ -15,8 +15,8 @@ struct RelativeError {
 };
 
 /// Over `interval` seconds: i is every pair, j the pair nearest to t_i + interval by the estimate's clock,
-/// left out when none is within a tenth of the interval. Empty statistics when the trajectory is shorter than
-/// that.
+/// left out when none is within a tenth of the interval or the trajectory ends before it. Empty statistics
+/// when the trajectory is shorter than that.
 RelativeError relativePoseErrorOverTime(const std::vector<StampedPose>& reference,
                                         const std::vector<StampedPose>& estimate,
                                         const std::vector<PosePair>& pairs, double interval);

@@ -142,8 +142,10 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
             separator = ", ";
         }
     std::printf("; %zu keyframes\n", report.keyframes.size());
+    const std::string initialised = toString(FrameStatus::kInitialised);
     for (const auto& [reason, count] : reasonsOf(report))
-        std::printf("            %zu %s\n", count, reason.c_str());
+        if (reason.compare(0, initialised.size(), initialised) != 0 || count > 1)
+            std::printf("            %zu %s\n", count, reason.c_str());
     const auto total = stageTimes(report, kTotal);
     std::printf(
         "time        %.1f ms per frame (median), %.1f ms (95 %%), decoding apart; %.1f s in all, %.0f MB\n",

@@ -23,7 +23,7 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
 
     EXPECT_EQ(readFile(output() + "/frames.csv").substr(0, 140),
               "timestamp,status,reason,keyframe,edges,points,matched_ratio,inliers,sigma_t_m,sigma_r_deg,"
-              "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total\n100.0");
+              "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total\n100.");
     ASSERT_EQ(rows().size(), 40u);
     for (const auto& row : rows()) EXPECT_EQ(row.size(), 15u);
     EXPECT_EQ(status(0), "initialised");
