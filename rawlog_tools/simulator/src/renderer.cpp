@@ -38,7 +38,7 @@ struct Renderer::Band {
 };
 
 Renderer::Renderer(const Scene& scene, const PinholeCamera& camera, int threads)
-    : scene_(scene), camera_(camera), threads_(threads), baked_(scene, threads) {
+    : scene_(scene), camera_(camera), threads_(threads) {
     rays_.create(camera.height, camera.width, CV_64FC2);
     for (int row = 0; row < camera.height; ++row) {
         for (int col = 0; col < camera.width; ++col) {
@@ -60,6 +60,7 @@ void Renderer::forEachBand(int count, const std::function<void(int)>& work) cons
 }
 
 Rendering Renderer::render(const std::function<Instant(double row)>& instant_of_row, bool by_row) const {
+    std::call_once(bake_once_, [&] { baked_ = std::make_unique<const BakedLight>(scene_, threads_); });
     const int rows = by_row ? 1 : kBandRows;
     std::vector<Band> bands;
     for (int row = 0; row < camera_.height; row += rows) {
@@ -197,7 +198,7 @@ Colour Renderer::shade(const View& view, double x, double y, const ViewHit& hit,
     const Colour albedo = textureColour(material, surface);
     if (material.emission >= 1) return albedo.cwiseMin(1.f);
 
-    const BakedLight::Shares shares = baked_.at(hit.primitive, face);
+    const BakedLight::Shares shares = baked_->at(hit.primitive, face);
     // Light from the surroundings comes from above rather than from below.
     Colour light =
         Colour::Constant(scene_.ambient * shares[0] * (0.85f + 0.15f * static_cast<float>(normal.z())));

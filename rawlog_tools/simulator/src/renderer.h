@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <opencv2/core/mat.hpp>
 
 #include "baked_light.h"
@@ -39,7 +40,8 @@ class Renderer {
     PinholeCamera camera_;
     int threads_;
     cv::Mat rays_;  ///< CV_64FC2: ideal image coordinates x/z, y/z of every pixel's centre
-    BakedLight baked_;
+    mutable std::once_flag bake_once_;  ///< soft light takes a second: only when a picture is wanted
+    mutable std::unique_ptr<const BakedLight> baked_;
 };
 
 }  // namespace roevo::simulator

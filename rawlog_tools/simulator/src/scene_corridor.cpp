@@ -51,7 +51,7 @@ Scene makeCorridor() {
         // The rhythm is uneven, as in real buildings, so that no two stretches look alike.
         const double x = 1.9 + 4.0 * i + 0.35 * std::sin(2.1 * i);
         addDoor(b, m, x, 1);
-        addDoor(b, m, x + 1.6 + 0.3 * std::cos(1.3 * i), -1);
+        if (i < 9) addDoor(b, m, x + 1.6 + 0.3 * std::cos(1.3 * i), -1);
         b.box({x + 2.9, 0, 2.45}, {x + 3.1, kWidth, kHeight}, m.white);  // beam
         for (const double y : {0.0, kWidth - 0.12})
             b.box({x + 2.9, y, 0}, {x + 3.1, y + 0.12, 2.45}, m.white);
@@ -77,6 +77,11 @@ Scene makeCorridor() {
             b.box({x - 0.2, kWidth - 0.25, 0}, {x + 0.3, kWidth, 0.9}, m.grey);  // locker
         }
     }
+    // What is looked at while turning round at the far end.
+    addDoor(b, m, kLength - 3.0, -1);
+    b.cylinder({kLength - 1.45, kWidth - 0.11, 0.75}, 0.08, 0.45, m.red);
+    b.box({kLength - 1.1, kWidth - 0.03, 1.1}, {kLength - 0.3, kWidth, 1.8}, m.grey);
+    b.box({kLength - 1.06, kWidth - 0.032, 1.14}, {kLength - 0.34, kWidth - 0.03, 1.76}, m.white);
     b.rod({0, kWidth - 0.2, 2.6}, {kLength, kWidth - 0.2, 2.6}, 0.035, m.metal);  // pipe
     for (const double x : {0.0, kLength}) {
         const double out = x > 0 ? -0.04 : 0.04;

@@ -1,0 +1,121 @@
+// rawlog-simulate as a user calls it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+class SimulateProgram : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string pattern = (fs::temp_directory_path() / "simulate_XXXXXX").string();
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    /// Exit code; what was printed on stderr is left in errors_.
+    int run(const std::string& arguments) {
+        const fs::path log = folder_ / "stderr";
+        const std::string command = std::string(ROEVO_BIN_DIR) + "/rawlog-simulate " + arguments + " >" +
+                                    (folder_ / "stdout").string() + " 2>" + log.string();
+        const int status = std::system(command.c_str());
+        errors_ = contents(log);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+    /// Relative path -> bytes of everything below a folder.
+    static std::map<std::string, std::string> tree(const fs::path& root) {
+        std::map<std::string, std::string> files;
+        for (const auto& entry : fs::recursive_directory_iterator(root))
+            if (entry.is_regular_file())
+                files[fs::relative(entry.path(), root).string()] = contents(entry.path());
+        return files;
+    }
+
+    fs::path folder_;
+    std::string errors_;
+};
+
+constexpr char kSmall[] =
+    "--scene livingroom --size 128x96 --frames 3 --noise kinect --rolling-shutter 0.02 ";
+
+TEST_F(SimulateProgram, SameSeedSameBytes) {
+    const std::string tum = std::string(kSmall) + "--layout tum ";
+    ASSERT_EQ(run(tum + "--seed 5 --threads 1 --output " + path("a")), 0) << errors_;
+    ASSERT_EQ(run(tum + "--seed 5 --threads 2 --output " + path("b")), 0) << errors_;
+    ASSERT_EQ(run(tum + "--seed 6 --output " + path("c")), 0) << errors_;
+    const auto a = tree(path("a")), b = tree(path("b")), c = tree(path("c"));
+    EXPECT_EQ(a.size(), 3u + 3u + 5u);
+    EXPECT_TRUE(a == b);
+    EXPECT_FALSE(a == c);
+    EXPECT_NE(a.at("camera.txt").find("fx: 105\n"), std::string::npos);
+}
+
+TEST_F(SimulateProgram, WritesRawlogImagesAndGroundTruth) {
+    for (const std::string name : {"x/room.rawlog", "y/room.rawlog"}) {
+        fs::create_directory(fs::path(path(name)).parent_path());
+        ASSERT_EQ(run(std::string(kSmall) + "--output " + path(name)), 0) << errors_;
+    }
+    const auto x = tree(path("x")), y = tree(path("y"));
+    EXPECT_TRUE(x == y);
+    EXPECT_EQ(x.size(), 5u);  // rawlog, three images, ground truth
+    std::istringstream truth(x.at("room_groundtruth.txt"));
+    std::string header;
+    std::getline(truth, header);
+    EXPECT_EQ(header.front(), '#');
+    double stamp = 0, number = 0;
+    int lines = 0, numbers = 0;
+    for (std::string line; std::getline(truth, line); ++lines) {
+        std::istringstream fields(line);
+        fields >> stamp;
+        EXPECT_NEAR(stamp, 1 + lines / 30., 1e-6);
+        while (fields >> number) ++numbers;
+    }
+    EXPECT_EQ(lines, 3);
+    EXPECT_EQ(numbers, 21);
+}
+
+TEST_F(SimulateProgram, UnwritableOutputIsOneLineAndLeavesNothing) {
+    std::ofstream(path("file")) << "not a folder";
+    EXPECT_EQ(run(std::string(kSmall) + "--output " + path("file") + "/x.rawlog"), 1);
+    EXPECT_NE(errors_.find("rawlog-simulate: error: "), std::string::npos) << errors_;
+    EXPECT_EQ(run(std::string(kSmall) + "--layout tum --output " + path("file") + "/x"), 1);
+    EXPECT_NE(errors_.find("rawlog-simulate: error: "), std::string::npos) << errors_;
+    fs::create_directory(path("used"));
+    std::ofstream(path("used/precious")) << "keep me";
+    EXPECT_EQ(run(std::string(kSmall) + "--layout tum --output " + path("used")), 1);
+    EXPECT_EQ(contents(path("used/precious")), "keep me");
+}
+
+TEST_F(SimulateProgram, WrongUsageSaysWhatIsAllowed) {
+    const std::string output = " --output " + path("x.rawlog");
+    EXPECT_EQ(run("--scene attic" + output), 2);
+    EXPECT_NE(errors_.find("livingroom, corridor, shadows"), std::string::npos) << errors_;
+    EXPECT_EQ(run("--scene shadows --frames 0" + output), 2);
+    EXPECT_NE(errors_.find("frames = 0"), std::string::npos) << errors_;
+    EXPECT_EQ(run("--scene shadows --size 64by48" + output), 2);
+    EXPECT_NE(errors_.find("64by48"), std::string::npos) << errors_;
+    EXPECT_EQ(run("--scene shadows --no-such-option" + output), 2);
+    EXPECT_EQ(run("--scene shadows --output " + path("x.txt")), 2);
+    EXPECT_EQ(run("--help"), 0);
+    EXPECT_FALSE(fs::exists(path("x.rawlog")));
+}
+
+}  // namespace
