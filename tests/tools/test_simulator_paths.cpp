@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Paths, EveryPath,
 
 TEST(CameraPaths, DefaultLivingroomPathIsSeveralMetresLong) {
     const Simulator simulator(smallOptions("livingroom"));
-    EXPECT_GE(pathLength(simulator, 10), 3.0);
+    EXPECT_GE(pathLength(simulator, 10), 3.5);
     EXPECT_LE(pathLength(simulator, 10), 5.5);
 }
 

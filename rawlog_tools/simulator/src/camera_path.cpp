@@ -65,7 +65,8 @@ double CameraPath::pace(double u) const {
     const double turn = (change - forward * forward.dot(change)).norm() / sight.norm();
     const double level =
         std::hypot(forward.x(), forward.y());  // turning about the vertical rolls a tilted camera
-    return std::hypot(slope.position.norm() / speed_, turn / (level * kTurnRate));
+    const double by_speed = slope.position.norm() / speed_, by_turn = turn / (level * kTurnRate);
+    return std::pow(std::pow(by_speed, 4) + std::pow(by_turn, 4), 0.25);
 }
 
 double CameraPath::timeBetween(double u0, double u1) const {

@@ -8,8 +8,8 @@ namespace roevo::simulator {
 /// Smooth (C2) carried motion of any length along a closed loop of way-points, with a little hand tremor.
 ///
 /// The loop p(u), q(u) (position and target) is a uniform cubic B-spline. It is travelled such that
-/// (dt/du)^2 = (|p'| / speed)^2 + (|f'| / turn_rate)^2, f the viewing direction: then neither limit is ever
-/// passed, and t(u) is as smooth as the spline, without any special treatment of turns.
+/// (dt/du)^4 = (|p'| / speed)^4 + (|f'| / turn_rate)^4, f the viewing direction: a smooth maximum. Then
+/// neither limit is ever passed, and t(u) is as smooth as the spline, without any special treatment of turns.
 class CameraPath {
   public:
     /// @param loop at least 4 way-points  @param speed m/s
