@@ -89,7 +89,10 @@ Points frustum(const PinholeCamera& camera, const Pose& T_scene_camera, double d
 
 void insertKeyframes(compat::Scene& scene, const SceneContent& content, float size) {
     if (content.keyframes.empty() || !content.camera.check().empty()) return;
-    auto lines = mrpt::opengl::CSetOfLines::Create();
+    // Made inside MRPT's library: in code of ours, GCC's sanitizer takes its virtual bases for misaligned
+    // when it dies.
+    const auto lines =
+        std::dynamic_pointer_cast<mrpt::opengl::CSetOfLines>(mrpt::opengl::CSetOfLines::CreateObject());
     auto tubes = mrpt::opengl::CSetOfTriangles::Create();
     lines->setName(SceneNames::kKeyframeLines);
     tubes->setName(SceneNames::kKeyframes);
