@@ -11,3 +11,12 @@ roevo_test(test_programs
           apps/test_odometry_program.cpp apps/test_bad_folders.cpp apps/test_bad_rawlogs.cpp
   LIBS roevo_test_support roevo_evaluation roevo_mrpt nlohmann_json::nlohmann_json)
 add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog)
+
+# Needs the whole build. Sanitized libraries would want the sanitizer in the program that uses them, too.
+if(NOT ROEVO_SANITIZE)
+  add_test(NAME Install.LibrariesCanBeFoundAndUsed
+           COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/apps/consumer
+                   -DWORK=${CMAKE_BINARY_DIR}/install_test -DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
+                   -P ${CMAKE_CURRENT_SOURCE_DIR}/apps/install_test.cmake)
+  set_tests_properties(Install.LibrariesCanBeFoundAndUsed PROPERTIES TIMEOUT 300)
+endif()

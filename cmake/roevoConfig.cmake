@@ -1,0 +1,10 @@
+# find_package(roevo) gives roevo::roevo (the core) and roevo::roevo_mrpt (the MRPT module).
+include(CMakeFindDependencyMacro)
+find_dependency(Eigen3)
+find_dependency(OpenCV COMPONENTS core imgproc imgcodecs)
+find_dependency(Threads)
+find_dependency(mrpt-maps)
+find_dependency(mrpt-obs)
+find_dependency(mrpt-opengl)
+find_dependency(mrpt-poses)
+include(${CMAKE_CURRENT_LIST_DIR}/roevoTargets.cmake)
