@@ -99,14 +99,14 @@ Json groundTruthJson(const RunReport& report) {
 }
 
 void printErrors(const Evaluation& e) {
-    std::printf("ATE         %.2f cm rmse, %.2f cm max (%zu poses, SE(3) alignment)\n",
+    std::printf("ATE         %.3f cm rmse, %.3f cm max (%zu poses, SE(3) alignment)\n",
                 100 * e.ate.translation.rmse, 100 * e.ate.translation.max, e.pairs.size());
     if (e.rpe_second.translation.count > 0)
-        std::printf("RPE         %.2f cm/s, %.2f deg/s over 1 s; ", 100 * e.rpe_second.translation.rmse,
+        std::printf("RPE         %.3f cm/s, %.3f deg/s over 1 s; ", 100 * e.rpe_second.translation.rmse,
                     e.rpe_second.rotation.rmse);
     else
         std::printf("RPE         too short for 1 s; ");
-    std::printf("%.2f cm, %.3f deg per frame (rmse)\n", 100 * e.rpe_frame.translation.rmse,
+    std::printf("%.3f cm, %.3f deg per frame (rmse)\n", 100 * e.rpe_frame.translation.rmse,
                 e.rpe_frame.rotation.rmse);
 }
 

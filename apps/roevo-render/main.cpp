@@ -14,6 +14,7 @@ namespace roevo {
 namespace {
 
 constexpr char kName[] = "roevo-render";
+constexpr float kPointSizeHeight = 600;  // pixels; in higher pictures points grow along
 constexpr int kMinSize = 16, kMaxSize = 4096;
 
 void parseSize(const std::string& text, int& width, int& height) {
@@ -59,7 +60,7 @@ int run(int argc, char** argv) {
     const View view = view_name == "follow"
                           ? followView(lastCamera(trajectory_file), content)
                           : fixedView(view_name, content, static_cast<double>(width) / height);
-    preparePoints(*scene, kSuperSampling);
+    preparePoints(*scene, kSuperSampling * std::max(1.f, static_cast<float>(height) / kPointSizeHeight));
     const cv::Mat picture = renderOffscreen(*scene, view, width, height);
     writeAtomically(output, [&](const std::string& path) { cv::imwrite(path, picture); });
     std::printf("%s: %d x %d pixels, view %s, %zu points\n", output.c_str(), width, height, view_name.c_str(),

@@ -62,7 +62,7 @@ void addCorners(const CRenderizable& object, const mrpt::poses::CPose3D& parent,
 
 // Lifts a colour towards a minimum brightness, keeping its hue.
 void brighten(float& r, float& g, float& b) {
-    constexpr float kMinBrightness = 0.45f;
+    constexpr float kMinBrightness = 0.55f;
     const float brightness = std::max({r, g, b});
     if (brightness >= kMinBrightness) return;
     const float lift = kMinBrightness - brightness;
