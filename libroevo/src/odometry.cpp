@@ -60,7 +60,8 @@ struct Odometry::Impl {
           extractor(opts.edges),
           coarse(opts.coarse),
           fine(opts.fine, opts.edges, opts.sensor),
-          T_world_camera(start) {}
+          T_world_camera(start),
+          readout(opts.sensor.readout_sigma / raw.height) {}
 
     PinholeCamera camera, ideal;
     OdometryOptions options;
@@ -82,10 +83,14 @@ struct Odometry::Impl {
     double velocity_dt = 0;
     double last_timestamp = -1;
     Brightness brightness;
+    RowMotion row_motion;  // of the present frame
+    ReadoutEstimator readout;
     int lost_frames = 0;
 
     std::string faultOf(const RgbdFrame& frame) const;
     Pose predict(double timestamp) const;
+    PosePrior motionPrior(double timestamp) const;
+    RollingShutter rollingShutter(double timestamp) const;
     std::string makeKeyframe(const RgbdFrame& frame, const cv::Mat& grey, const FrameResult& result);
     void keepMapEdges(const RgbdFrame& frame, const Keyframe& kf);
     void process(const RgbdFrame& frame, FrameResult& result);
@@ -123,17 +128,44 @@ Pose Odometry::Impl::predict(double timestamp) const {
     return T_world_camera * interpolate(Pose::Identity(), velocity, share);
 }
 
+PosePrior Odometry::Impl::motionPrior(double timestamp) const {
+    const double dt = std::clamp(timestamp - last_timestamp, 1e-3, 0.5);
+    PosePrior prior;
+    prior.mean = predict(timestamp).inverse() * keyframe->T_world_camera;
+    prior.sigma_translation = options.motion.acceleration * dt * dt / 2;
+    prior.sigma_rotation =
+        options.motion.angular_acceleration_deg * (3.14159265358979323846 / 180) * dt * dt / 2;
+    if (velocity_dt <= 0) {  // no velocity yet, or not one to be trusted
+        prior.sigma_translation += options.motion.speed * dt;
+        prior.sigma_rotation += options.motion.angular_speed_deg * (3.14159265358979323846 / 180) * dt;
+    }
+    return prior;
+}
+
+RollingShutter Odometry::Impl::rollingShutter(double timestamp) const {
+    RollingShutter shutter;
+    shutter.seconds_per_row = options.sensor.estimate_readout ? readout.secondsPerRow()
+                                                              : options.sensor.readout_time / camera.height;
+    shutter.reference_row = options.sensor.reference_row * (camera.height - 1);
+    if (velocity_dt > 0 || poses.size() == 1) {
+        shutter.T_previous_keyframe = T_world_camera.inverse() * keyframe->T_world_camera;
+        shutter.since_previous = timestamp - last_timestamp;
+    }
+    return shutter;
+}
+
 std::string Odometry::Impl::makeKeyframe(const RgbdFrame& frame, const cv::Mat& grey,
                                          const FrameResult& result) {
     (void)grey;
     if (frame.depth.empty()) return "no depth image";
     auto fresh = std::make_unique<Keyframe>();
-    fresh->edges = liftEdges(edges, frame.depth, camera, options.edges, options.sensor);
+    fresh->edges = liftEdges(edges, frame.depth, camera, row_motion, options.edges, options.sensor);
     const auto needed = static_cast<std::size_t>(options.fine.min_inliers);
     if (fresh->edges.size() < needed) {
         return "only " + std::to_string(fresh->edges.size()) + " edge points with depth, " +
                std::to_string(needed) + " needed";
     }
+    fresh->row_motion = row_motion;
     fresh->id = static_cast<int>(keyframe_infos.size());
     fresh->timestamp = frame.timestamp;
     fresh->T_world_camera = result.T_world_camera;
@@ -178,7 +210,6 @@ void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_curre
                                    FrameResult& result) const {
     // Neighbouring points of an edge err together: the information counts about one independent point in so
     // many.
-    constexpr double kCorrelatedPoints = 5;
     const Eigen::Matrix3d R = result.T_world_camera.linear();
     Matrix6d to_world = Matrix6d::Zero();
     to_world.topLeftCorner<3, 3>() = R;
@@ -188,7 +219,7 @@ void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_curre
     from_keyframe.topRightCorner<3, 3>() =
         -skew(keyframe->T_world_camera.linear() * T_keyframe_current.translation());
     result.covariance = from_keyframe * keyframe->covariance * from_keyframe.transpose() +
-                        kCorrelatedPoints * to_world * relative * to_world.transpose();
+                        to_world * relative * to_world.transpose();
 }
 
 bool Odometry::Impl::wantsKeyframe(const FrameResult& result) const {
@@ -203,15 +234,17 @@ bool Odometry::Impl::wantsKeyframe(const FrameResult& result) const {
 bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
     const Pose T_world_keyframe = keyframe->T_world_camera;
     const Pose predicted = predict(frame.timestamp);
+    const RollingShutter shutter = rollingShutter(frame.timestamp);
     Stopwatch coarse_watch;
     const std::vector<Pose> guesses = {predicted.inverse() * T_world_keyframe,
                                        T_world_camera.inverse() * T_world_keyframe};
-    CoarseResult aligned = coarse.track(*keyframe, pyramid, ideal, guesses, brightness);
+    CoarseResult aligned = coarse.track(*keyframe, pyramid, ideal, shutter, guesses, brightness);
     result.ms.coarse = coarse_watch.milliseconds();
 
     Stopwatch fine_watch;
     const FineFrame view{&edges, &grid, &pyramid, &frame.depth, &camera, &ideal};
-    const FineResult refined = fine.track(*keyframe, view, aligned.T_current_keyframe, aligned.brightness);
+    const FineResult refined = fine.track(*keyframe, view, aligned.T_current_keyframe,
+                                          motionPrior(frame.timestamp), shutter, aligned.brightness);
     result.ms.fine = fine_watch.milliseconds();
     result.inliers = refined.inliers;
     result.matched_ratio = refined.matched_ratio;
@@ -226,11 +259,16 @@ bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
     const Pose T_current_keyframe = coarse_only ? aligned.T_current_keyframe : refined.T_current_keyframe;
     result.T_world_camera = T_world_keyframe * T_current_keyframe.inverse();
     orthonormalise(result.T_world_camera);
-    const Matrix6d relative = coarse_only
-                                  ? Matrix6d((aligned.system.hessian + 1e-9 * Matrix6d::Identity()).inverse())
-                                  : refined.covariance;
+    const Matrix6d relative =
+        coarse_only
+            ? Matrix6d(kCorrelatedPoints * (aligned.system.hessian + 1e-9 * Matrix6d::Identity()).inverse())
+            : refined.covariance;
     setCovariance(relative, T_current_keyframe, result);
     brightness = aligned.brightness;
+    row_motion = shutter.motion(T_current_keyframe);
+    if (!coarse_only && shutter.since_previous > 0) {
+        fine.addReadoutEvidence(*keyframe, T_current_keyframe, row_motion, view, readout);
+    }
     return true;
 }
 
@@ -323,6 +361,9 @@ std::vector<KeyframeInfo> Odometry::keyframes() const {
 }
 EdgeMap Odometry::map() const {
     return impl_->edge_map;
+}
+double Odometry::readoutTime() const {
+    return impl_->rollingShutter(impl_->last_timestamp).seconds_per_row * impl_->camera.height;
 }
 const PinholeCamera& Odometry::camera() const {
     return impl_->camera;

@@ -75,6 +75,9 @@ class Odometry {
     /// The 3-D edges of all keyframes, in the world.
     EdgeMap map() const;
 
+    /// Read-out time of the rolling shutter as learned so far or as set, s.
+    double readoutTime() const;
+
     const PinholeCamera& camera() const;  ///< as given (with distortion)
     const OdometryOptions& options() const;
 

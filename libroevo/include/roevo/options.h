@@ -12,15 +12,19 @@ namespace roevo {
 enum class Mode { kCoarse, kTracking };  ///< paper's ct and tr
 
 struct SensorOptions {
-    double depth_weight_k = 0.6;  ///< k of Eq. (20), 1/m
-    double min_depth = 0.2;       ///< d_min of Eq. (20), m; nearer depths are not used
-    double max_depth = 5.0;       ///< d_max of Eq. (20), m
-    double depth_limit = 9.0;     ///< farther depths are not used, m
-    double depth_noise = 2e-3;    ///< a in sigma_z = a z^2, 1/m
+    double depth_weight_k = 0.6;   ///< k of Eq. (20), 1/m
+    double min_depth = 0.2;        ///< d_min of Eq. (20), m; nearer depths are not used
+    double max_depth = 5.0;        ///< d_max of Eq. (20), m
+    double depth_limit = 9.0;      ///< farther depths are not used, m
+    double depth_noise = 2e-3;     ///< a in sigma_z = a z^2, 1/m
+    bool estimate_readout = true;  ///< learn the read-out time from the images; else it is readout_time
+    double readout_sigma = 0.01;   ///< how far from 0 the learned read-out time may well be, s, one sigma
+    double readout_time = 0;     ///< time from the first to the last row of a rolling shutter, s (0: global)
+    double reference_row = 0.5;  ///< row whose time the stamp means, as a share of the height
 };
 
 struct EdgeOptions {
-    double blur_sigma = 0.8;         ///< Gaussian blur before the Sobel filter, px (0: none)
+    double blur_sigma = 0;           ///< Gaussian blur before the Sobel filter, px (0: none)
     double canny_high_factor = 1.0;  ///< high threshold = factor x Otsu
     double canny_low_ratio = 0.5;    ///< low threshold = ratio x high
     double min_high_threshold = 24;  ///< floor of the high threshold, Sobel units (8 per grey level of ramp)
@@ -45,7 +49,7 @@ struct FineOptions {
     double normal_angle_deg = 5;  ///< between the reprojected edge's normal and the candidate's
     double vote_ratio = 0.3;      ///< share of the shorter edge's points that must agree on a pair of edges
     int min_votes = 5;            ///< and at least this many points
-    int max_points = 6000;        ///< keyframe edge points used
+    int max_points = 3000;        ///< keyframe edge points used
     int max_iterations = 12;      ///< Gauss-Newton steps, associations renewed in each
     double chi2 = 5.99;           ///< chi-square limit of a residual
     double photometric_weight =
@@ -60,6 +64,14 @@ struct KeyframeOptions {
     double max_translation = 0.15;   ///< new keyframe beyond this translation, relative to the median depth
 };
 
+/// The motion that is thought likely: it decides in directions that the edges hardly see.
+struct MotionOptions {
+    double acceleration = 10;                ///< m/s^2, one sigma
+    double angular_acceleration_deg = 1000;  ///< deg/s^2, one sigma
+    double speed = 1;                        ///< m/s, one sigma where no velocity is known
+    double angular_speed_deg = 60;           ///< deg/s, one sigma where no velocity is known
+};
+
 struct LossOptions {
     int max_predicted = 10;  ///< frames bridged by constant velocity
 };
@@ -71,6 +83,7 @@ struct OdometryOptions {
     CoarseOptions coarse;
     FineOptions fine;
     KeyframeOptions keyframe;
+    MotionOptions motion;
     LossOptions loss;
 };
 

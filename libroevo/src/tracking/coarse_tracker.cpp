@@ -7,14 +7,16 @@
 namespace roevo {
 
 double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image, int level,
-                                 const PinholeCamera& camera, CoarseResult& state) {
+                                 const PinholeCamera& camera, const RollingShutter& shutter,
+                                 CoarseResult& state) {
     const PhotometricPoints& points = keyframe.photometric;
     const double depth = std::max(keyframe.median_depth, 0.1);
     Pose pose = state.T_current_keyframe;
     Brightness brightness = state.brightness;
     double best_cost = -1;
     for (int iteration = 0; iteration <= options_.max_iterations; ++iteration) {
-        residuals_.evaluate(points, level, image, camera, pose, brightness);
+        residuals_.evaluate(points, level, image, camera, pose, shutter.motion(pose).atPyramidLevel(level),
+                            brightness);
         if (residuals_.numVisible() < std::min<int>(options_.min_points, static_cast<int>(points.size())))
             break;
         if (best_cost >= 0 && residuals_.cost() > 1.2 * best_cost + 0.5)
@@ -31,7 +33,7 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
         PoseSystem system;
         system.add(equations);
         state.system = system;
-        system.addPrior(0.2 * depth, 0.2);
+        system.addPrior({pose, 0.2 * depth, 0.2}, pose);
         const Vector6d step = system.solve();
         brightness = residuals_.fitBrightness(points, level, brightness);
         pose = poseIncrement(step) * pose;
@@ -42,8 +44,8 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
 }
 
 CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& pyramid,
-                                  const PinholeCamera& camera, const std::vector<Pose>& guesses,
-                                  const Brightness& start) {
+                                  const PinholeCamera& camera, const RollingShutter& shutter,
+                                  const std::vector<Pose>& guesses, const Brightness& start) {
     CoarseResult best;
     best.T_current_keyframe = guesses.front();
     best.brightness = start;
@@ -55,7 +57,7 @@ CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& 
         state.T_current_keyframe = guess;
         state.brightness = start;
         const double cost = alignLevel(keyframe, pyramid.level(levels - 1), levels - 1,
-                                       camera.atPyramidLevel(levels - 1), state);
+                                       camera.atPyramidLevel(levels - 1), shutter, state);
         if (cost >= 0 && (best_cost < 0 || cost < 0.95 * best_cost)) {
             best = state;
             best_cost = cost;
@@ -63,7 +65,8 @@ CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& 
     }
     if (best_cost < 0) return best;
     for (int level = levels - 2; level >= 0; --level) {
-        best_cost = alignLevel(keyframe, pyramid.level(level), level, camera.atPyramidLevel(level), best);
+        best_cost =
+            alignLevel(keyframe, pyramid.level(level), level, camera.atPyramidLevel(level), shutter, best);
         if (best_cost < 0) return best;
     }
     best.converged = best.num_visible >= options_.min_points && best.T_current_keyframe.matrix().allFinite();

@@ -19,10 +19,12 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
     const float max_u = static_cast<float>(width) - 1 - margin,
                 max_v = static_cast<float>(height) - 1 - margin;
     visible_.assign(static_cast<std::size_t>(reference.numEdges()), 0);
+    stride_ = static_cast<int>((reference.size() + static_cast<std::size_t>(options_.max_points) - 1) /
+                               static_cast<std::size_t>(options_.max_points));
     for (int e = 0; e < reference.numEdges(); ++e) {
         const int first = reference.begin[static_cast<std::size_t>(e)];
         const int last = reference.begin[static_cast<std::size_t>(e) + 1] - 1;
-        for (int i = first; i <= last; ++i) {
+        for (int i = first + ((last - first) % stride_) / 2; i <= last; i += stride_) {
             const auto at = static_cast<std::size_t>(i);
             if (!(u[at] >= margin && v[at] >= margin && u[at] <= max_u && v[at] <= max_v)) continue;
             ++visible_[static_cast<std::size_t>(e)];
@@ -54,8 +56,10 @@ void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges&
         const auto first = static_cast<std::size_t>(reference.begin[static_cast<std::size_t>(e)]);
         const auto end = static_cast<std::size_t>(reference.begin[static_cast<std::size_t>(e) + 1]);
         const int visible = visible_[static_cast<std::size_t>(e)];
-        if (2 * static_cast<std::size_t>(visible) <
-            end - first) {  // mostly outside: says nothing about the keyframe's share
+        const auto visited =
+            (end - first + static_cast<std::size_t>(stride_) - 1) / static_cast<std::size_t>(stride_);
+        const bool mostly_inside = 2 * static_cast<std::size_t>(visible) >= visited;
+        if (!mostly_inside) {  // says nothing about the share of the keyframe that is seen again
             if (visible == 0) continue;
         } else {
             ++matches.visible_edges;
@@ -72,8 +76,9 @@ void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges&
             const auto other =
                 static_cast<std::size_t>(current.edge_of[static_cast<std::size_t>(matches.point[i])]);
             const int other_length = current.begin[other + 1] - current.begin[other];
-            const double needed =
-                std::max<double>(options_.min_votes, options_.vote_ratio * std::min(visible, other_length));
+            const double needed = std::max<double>(
+                static_cast<double>(options_.min_votes) / stride_,
+                options_.vote_ratio * std::min<double>(visible, static_cast<double>(other_length) / stride_));
             if (votes_[other] >= needed) {
                 ++agreed;
             } else {
@@ -83,7 +88,7 @@ void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges&
         for (const std::int32_t other : touched_) votes_[static_cast<std::size_t>(other)] = 0;
         matches.num_points += agreed;
         if (agreed > 0) {
-            if (2 * static_cast<std::size_t>(visible) >= end - first) ++matches.matched_edges;
+            if (mostly_inside) ++matches.matched_edges;
             matches.matched_extent += visible;
         }
     }

@@ -21,7 +21,7 @@ double depthWeight(double depth, const SensorOptions& sensor) {
 }
 
 EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const PinholeCamera& camera,
-                       const EdgeOptions& edge_options, const SensorOptions& sensor) {
+                       const RowMotion& rows, const EdgeOptions& edge_options, const SensorOptions& sensor) {
     constexpr int kMaxGap = 3;  // points without depth that an edge may bridge
     constexpr std::size_t kMinPiece = 5;
     EdgePoints3D out;
@@ -40,7 +40,8 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
                                    edges.strength[i]);
                 out.image.normal_x.push_back(edges.normal_x[i]);
                 out.image.normal_y.push_back(edges.normal_y[i]);
-                const Eigen::Vector3d p = camera.backProject(edges.x[i], edges.y[i], piece_z[k]);
+                const Eigen::Vector3d p =
+                    rows.toReference(camera.backProject(edges.x[i], edges.y[i], piece_z[k]), edges.y[i]);
                 out.x.push_back(static_cast<float>(p.x()));
                 out.y.push_back(static_cast<float>(p.y()));
                 out.z.push_back(static_cast<float>(p.z()));

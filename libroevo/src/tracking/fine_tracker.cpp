@@ -13,18 +13,22 @@ namespace {
 
 constexpr double kMinScale = 0.1;  ///< px; sub-pixel edges never agree better on real images
 constexpr double kMaxScale = 2.0;  ///< px
-constexpr float kUnknown = -1;     ///< depth not looked up yet
+/// How much less the evidence of one frame counts for the read-out time: its velocity is only known from two
+/// poses.
+constexpr double kReadoutCaution = 50;
+constexpr float kUnknown = -1;  ///< depth not looked up yet
 
 }  // namespace
 
-void FineTracker::project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera) {
+void FineTracker::project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera,
+                          const RowMotion& rows) {
     const EdgePoints3D& edges = keyframe.edges;
     const std::size_t n = edges.size(), padded = edges.x.size();
     for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
     gradient_u_.resize(n);
     gradient_v_.resize(n);
-    kernels::best().project(makeProjection(pose, camera), edges.x.data(), edges.y.data(), edges.z.data(),
-                            padded, {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+    kernels::best().project(makeProjection(pose, camera, rows), edges.x.data(), edges.y.data(),
+                            edges.z.data(), padded, {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
     const Eigen::Vector2f turn = imageRotation(pose);
     for (std::size_t i = 0; i < n; ++i) {
         gradient_u_[i] = turn.x() * edges.image.gradient_x[i] - turn.y() * edges.image.gradient_y[i];
@@ -116,7 +120,46 @@ void FineTracker::buildRows(const PinholeCamera& camera, const OrganizedEdges& c
     }
 }
 
+void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe,
+                                     const RowMotion& rows, const FineFrame& frame,
+                                     ReadoutEstimator& estimator) const {
+    // Residuals as they would be with no read-out time: r0 = r - J_current s_current - J_keyframe s_keyframe
+    Matrix6d hessian = Matrix6d::Identity() * 1e-6;
+    Vector6d mixed = Vector6d::Zero(), gradient = Vector6d::Zero();
+    double own = 0, own_gradient = 0;
+    for (std::size_t i = 0; i < matches_.point.size(); ++i) {
+        if (weight_[i] <= 0) continue;
+        const auto p = static_cast<std::size_t>(matches_.point[i]);
+        const double a = frame.camera->fx / static_cast<double>(z_[i]),
+                     b = frame.camera->fy / static_cast<double>(z_[i]);
+        const Eigen::Vector3d point(x_[i], y_[i], z_[i]);
+        const Eigen::Vector2d normal(frame.edges->normal_x[p], frame.edges->normal_y[p]);
+        const Eigen::Vector3d by_point(
+            a * normal.x(), b * normal.y(),
+            -(a * normal.x() * point.x() + b * normal.y() * point.y()) / point.z());
+        const Eigen::Vector3d in_keyframe(keyframe.edges.x[i], keyframe.edges.y[i], keyframe.edges.z[i]);
+        const double by_current =
+            by_point.dot(rows.pointVelocity(point)) * (static_cast<double>(v_[i]) - rows.reference_row);
+        const double by_keyframe =
+            -by_point.dot(T_current_keyframe.linear() * keyframe.row_motion.pointVelocity(in_keyframe)) *
+            (static_cast<double>(keyframe.edges.image.y[i]) - rows.reference_row);
+        const double residual = static_cast<double>(residual_[i]) - by_current * rows.seconds_per_row -
+                                by_keyframe * keyframe.row_motion.seconds_per_row;
+        const double by_readout = by_current + by_keyframe;
+        Vector6d by_pose;
+        by_pose << by_point, point.cross(by_point);
+        const double weight = static_cast<double>(weight_[i]) / kReadoutCaution;
+        hessian += weight * by_pose * by_pose.transpose();
+        mixed += weight * by_readout * by_pose;
+        gradient += weight * residual * by_pose;
+        own += weight * by_readout * by_readout;
+        own_gradient += weight * by_readout * residual;
+    }
+    estimator.add(hessian, mixed, own, gradient, own_gradient);
+}
+
 FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
+                              const PosePrior& prior, const RollingShutter& shutter,
                               const Brightness& brightness) {
     const OrganizedEdges& current = *frame.edges;
     const PinholeCamera& camera = *frame.camera;
@@ -131,7 +174,8 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
         const double share = std::min(1.0, iteration / 4.0);
         const double radius =
             options_.search_radius + share * (options_.final_radius - options_.search_radius);
-        project(keyframe, pose, camera);
+        const RowMotion row_motion = shutter.motion(pose);
+        project(keyframe, pose, camera, row_motion);
         associator_.associate(keyframe.edges.image, u_.data(), v_.data(), gradient_u_.data(),
                               gradient_v_.data(), edge_options_.tangent_span, current, *frame.grid,
                               camera.width, camera.height, radius, matches_);
@@ -148,7 +192,8 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
         system = PoseSystem();
         system.add(equations);
         if (options_.photometric_weight > 0 && keyframe.photometric.size() > 0) {
-            photometric_.evaluate(keyframe.photometric, 0, frame.pyramid->level(0), camera, pose, gain);
+            photometric_.evaluate(keyframe.photometric, 0, frame.pyramid->level(0), camera, pose, row_motion,
+                                  gain);
             // alpha: both kinds of residual count as many points as the edges have, whatever the sample's
             // size
             const double count = static_cast<double>(matches_.num_points) /
@@ -158,9 +203,8 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
             system.add(equations);
             gain = photometric_.fitBrightness(keyframe.photometric, 0, gain);
         }
-        PoseSystem damped = system;
-        damped.addPrior(0.2 * depth, 0.2);
-        const Vector6d step = damped.solve();
+        system.addPrior(prior, pose, kCorrelatedPoints);
+        const Vector6d step = system.solve();
         pose = poseIncrement(step) * pose;
         const double motion_px = camera.fx * (step.tail<3>().norm() + step.head<3>().norm() / depth);
         if (motion_px < 0.01 && share >= 1) break;
@@ -172,7 +216,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
     if (result.inliers < options_.min_inliers || !pose.matrix().allFinite()) return result;
     orthonormalise(pose);
     result.T_current_keyframe = pose;
-    result.covariance = (system.hessian + 1e-9 * Matrix6d::Identity()).inverse();
+    result.covariance = kCorrelatedPoints * system.hessian.inverse();
     result.converged = true;
     return result;
 }

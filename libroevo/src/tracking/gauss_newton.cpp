@@ -1,6 +1,7 @@
 #include "roevo/tracking/gauss_newton.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 namespace roevo {
 
@@ -15,9 +16,15 @@ void PoseSystem::add(const kernels::NormalEquations& part) {
     }
 }
 
-void PoseSystem::addPrior(double sigma_translation, double sigma_rotation) {
-    hessian.diagonal().head<3>().array() += 1 / (sigma_translation * sigma_translation);
-    hessian.diagonal().tail<3>().array() += 1 / (sigma_rotation * sigma_rotation);
+void PoseSystem::addPrior(const PosePrior& prior, const Pose& pose, double weight) {
+    const Pose difference = pose * prior.mean.inverse();
+    const Eigen::AngleAxisd turn(difference.linear());
+    const double position = weight / (prior.sigma_translation * prior.sigma_translation);
+    const double orientation = weight / (prior.sigma_rotation * prior.sigma_rotation);
+    hessian.diagonal().head<3>().array() += position;
+    hessian.diagonal().tail<3>().array() += orientation;
+    gradient.head<3>() += position * difference.translation();
+    gradient.tail<3>() += orientation * turn.angle() * turn.axis();
 }
 
 Vector6d PoseSystem::solve() const {

@@ -91,26 +91,13 @@ PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const Image
     return points;
 }
 
-kernels::Projection makeProjection(const Pose& T, const PinholeCamera& camera) {
-    kernels::Projection projection{};
-    for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) projection.rotation[3 * r + c] = static_cast<float>(T.linear()(r, c));
-        projection.translation[r] = static_cast<float>(T.translation()[r]);
-    }
-    projection.fx = static_cast<float>(camera.fx);
-    projection.fy = static_cast<float>(camera.fy);
-    projection.cx = static_cast<float>(camera.cx);
-    projection.cy = static_cast<float>(camera.cy);
-    return projection;
-}
-
 Eigen::Vector2f imageRotation(const Pose& T) {
     const Eigen::Vector2d turn(T.linear()(0, 0) + T.linear()(1, 1), T.linear()(1, 0) - T.linear()(0, 1));
     return turn.normalized().cast<float>();
 }
 
 void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, const cv::Mat& image,
-                                    const PinholeCamera& camera, const Pose& T,
+                                    const PinholeCamera& camera, const Pose& T, const RowMotion& rows,
                                     const Brightness& brightness) {
     const std::size_t n = points.size(), padded = points.x.size();
     for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
@@ -119,7 +106,7 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
     weight_.resize(n);
     residuals_.resize(n);
     const auto& kernel = kernels::best();
-    kernel.project(makeProjection(T, camera), points.x.data(), points.y.data(), points.z.data(), padded,
+    kernel.project(makeProjection(T, camera, rows), points.x.data(), points.y.data(), points.z.data(), padded,
                    {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
     const Eigen::Vector2f turn = imageRotation(T);
     for (std::size_t i = 0; i < n; ++i) {

@@ -24,11 +24,12 @@ class CoarseTracker {
     /// @param guesses  start poses T_current_keyframe, the most trusted first; the best after the coarsest
     /// level goes on
     CoarseResult track(const Keyframe& keyframe, const ImagePyramid& pyramid, const PinholeCamera& camera,
-                       const std::vector<Pose>& guesses, const Brightness& start);
+                       const RollingShutter& shutter, const std::vector<Pose>& guesses,
+                       const Brightness& start);
 
   private:
     double alignLevel(const Keyframe& keyframe, const cv::Mat& image, int level, const PinholeCamera& camera,
-                      CoarseResult& state);
+                      const RollingShutter& shutter, CoarseResult& state);
 
     CoarseOptions options_;
     PhotometricResiduals residuals_;

@@ -43,6 +43,7 @@ class EdgeAssociator {
 
     FineOptions options_;
     std::vector<std::int32_t> votes_, touched_, visible_;
+    int stride_ = 1;  ///< every so manieth point of a reference edge is looked up
 };
 
 }  // namespace roevo

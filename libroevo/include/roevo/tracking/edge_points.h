@@ -5,6 +5,7 @@
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/edges/organized_edges.h"
 #include "roevo/options.h"
+#include "roevo/tracking/rolling_shutter.h"
 
 namespace roevo {
 
@@ -28,6 +29,6 @@ double depthWeight(double depth, const SensorOptions& sensor);
 /// `camera`, the edges are in ideal pixels), splits edges at depth jumps and drops pieces of fewer than
 /// `min_length` points.
 EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const PinholeCamera& camera,
-                       const EdgeOptions& edge_options, const SensorOptions& sensor);
+                       const RowMotion& rows, const EdgeOptions& edge_options, const SensorOptions& sensor);
 
 }  // namespace roevo

@@ -7,6 +7,10 @@
 
 namespace roevo {
 
+/// Neighbouring points of an edge err together: their information counts about one independent point in so
+/// many.
+inline constexpr double kCorrelatedPoints = 5;
+
 /// What fine tracking needs of the current frame.
 struct FineFrame {
     const OrganizedEdges* edges = nullptr;
@@ -36,7 +40,11 @@ class FineTracker {
         : options_(fine), edge_options_(edges), sensor_(sensor), associator_(fine) {}
 
     FineResult track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
-                     const Brightness& brightness);
+                     const PosePrior& prior, const RollingShutter& shutter, const Brightness& brightness);
+
+    /// Adds the last frame's inliers to what is known of the read-out time.
+    void addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe, const RowMotion& rows,
+                            const FineFrame& frame, ReadoutEstimator& estimator) const;
 
     const EdgeMatches& matches() const { return matches_; }  ///< of the last frame
     const std::vector<float>& projectedU() const { return u_; }
@@ -44,7 +52,8 @@ class FineTracker {
     const std::vector<float>& weights() const { return weight_; }  ///< 0 where rejected
 
   private:
-    void project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera);
+    void project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera,
+                 const RowMotion& rows);
     void geometricResiduals(const OrganizedEdges& current);
     void depthResiduals(const Keyframe& keyframe, const FineFrame& frame);
     void weigh(const Keyframe& keyframe);

@@ -20,6 +20,9 @@ struct Projection {
     float rotation[9];     ///< row-major
     float translation[3];  ///< m
     float fx, fy, cx, cy;  ///< px
+    /// Rolling shutter: how the camera moves while one row is read (m, rad; in its own frame), and the row
+    /// that the motion refers to.
+    float velocity[3], turn[3], reference_row;
 };
 
 /// Points moved into the camera and projected; u = v = -1e6 where z <= 1e-3 m.

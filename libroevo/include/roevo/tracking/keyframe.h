@@ -12,6 +12,7 @@ struct Keyframe {
     Matrix6d covariance = Matrix6d::Zero();  ///< of T_world_camera, as in FrameResult
     EdgePoints3D edges;
     PhotometricPoints photometric;
+    RowMotion row_motion;     ///< that `edges` were lifted with
     double median_depth = 0;  ///< m
 };
 

@@ -4,6 +4,7 @@
 #include "roevo/tracking/edge_points.h"
 #include "roevo/tracking/image_pyramid.h"
 #include "roevo/tracking/kernels.h"
+#include "roevo/tracking/rolling_shutter.h"
 #include "roevo/types.h"
 
 namespace roevo {
@@ -36,7 +37,8 @@ class PhotometricResiduals {
     /// residuals.
     /// @param camera  ideal camera of the level
     void evaluate(const PhotometricPoints& points, int level, const cv::Mat& image,
-                  const PinholeCamera& camera, const Pose& T_current_keyframe, const Brightness& brightness);
+                  const PinholeCamera& camera, const Pose& T_current_keyframe, const RowMotion& rows,
+                  const Brightness& brightness);
 
     int numVisible() const { return num_visible_; }
     double scale() const {
@@ -60,8 +62,6 @@ class PhotometricResiduals {
     int num_visible_ = 0;
     double scale_ = 0, cost_ = 0;
 };
-
-kernels::Projection makeProjection(const Pose& T_current_keyframe, const PinholeCamera& camera);
 
 /// Rotation about the optical axis in a pose: how image directions turn from the keyframe to the current
 /// image.

@@ -1,5 +1,5 @@
-// Included by one file per instruction set, inside an anonymous namespace. No standard containers or Eigen here: an inline function
-// compiled with AVX2 must never be picked by the linker for the baseline.
+// Included by one file per instruction set, inside an anonymous namespace. No standard containers or Eigen
+// here: an inline function compiled with AVX2 must never be picked by the linker for the baseline.
 
 typedef float Lanes __attribute__((vector_size(4 * kLanes)));
 typedef std::int32_t IntLanes __attribute__((vector_size(4 * kLanes)));
@@ -10,9 +10,13 @@ inline Lanes load(const float* p) {
     return v;
 }
 
-inline void store(float* p, Lanes v) { __builtin_memcpy(p, &v, sizeof v); }
+inline void store(float* p, Lanes v) {
+    __builtin_memcpy(p, &v, sizeof v);
+}
 
-inline Lanes splat(float value) { return Lanes{value, value, value, value, value, value, value, value}; }
+inline Lanes splat(float value) {
+    return Lanes{value, value, value, value, value, value, value, value};
+}
 
 /// Sum of the lanes in a fixed order.
 inline float sumLanes(Lanes v) {
@@ -24,9 +28,17 @@ void project(const Projection& m, const float* px, const float* py, const float*
     const Lanes behind = splat(-1e6F), least = splat(1e-3F), one = splat(1);
     for (std::size_t i = 0; i < n; i += kLanes) {
         const Lanes x = load(px + i), y = load(py + i), z = load(pz + i);
-        const Lanes cx = m.rotation[0] * x + m.rotation[1] * y + m.rotation[2] * z + m.translation[0];
-        const Lanes cy = m.rotation[3] * x + m.rotation[4] * y + m.rotation[5] * z + m.translation[1];
-        const Lanes cz = m.rotation[6] * x + m.rotation[7] * y + m.rotation[8] * z + m.translation[2];
+        Lanes cx = m.rotation[0] * x + m.rotation[1] * y + m.rotation[2] * z + m.translation[0];
+        Lanes cy = m.rotation[3] * x + m.rotation[4] * y + m.rotation[5] * z + m.translation[1];
+        Lanes cz = m.rotation[6] * x + m.rotation[7] * y + m.rotation[8] * z + m.translation[2];
+        // The row on which the point is seen says when it was seen, and so where the camera was by then
+        const Lanes rows = m.fy * cy / (cz > least ? cz : one) + m.cy - m.reference_row;
+        const Lanes dx = m.velocity[0] + m.turn[1] * cz - m.turn[2] * cy;
+        const Lanes dy = m.velocity[1] + m.turn[2] * cx - m.turn[0] * cz;
+        const Lanes dz = m.velocity[2] + m.turn[0] * cy - m.turn[1] * cx;
+        cx -= rows * dx;
+        cy -= rows * dy;
+        cz -= rows * dz;
         const IntLanes in_front = cz > least;
         const Lanes inverse = one / (in_front ? cz : one);
         store(out.x + i, cx);

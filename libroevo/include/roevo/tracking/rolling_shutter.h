@@ -1,0 +1,61 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/tracking/kernels.h"
+#include "roevo/types.h"
+
+namespace roevo {
+
+/// How the camera moves while the rows of one image are read, in its own frame.
+struct RowMotion {
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();      ///< rad/s
+    double seconds_per_row = 0;
+    double reference_row = 0;  ///< row at whose time the pose holds, px
+
+    /// The same for a pyramid level, whose rows are 2^level as tall.
+    RowMotion atPyramidLevel(int level) const;
+    /// Velocity of a static point in the camera frame, m/s.
+    Eigen::Vector3d pointVelocity(const Eigen::Vector3d& point) const {
+        return -(velocity + turn.cross(point));
+    }
+    /// Where a point of the camera frame, seen on `row`, is at the time of the reference row.
+    Eigen::Vector3d toReference(const Eigen::Vector3d& point, double row) const {
+        return point - (row - reference_row) * seconds_per_row * pointVelocity(point);
+    }
+};
+
+/// Images whose rows are read one after the other while the camera moves. The motion follows from the pose
+/// itself and the previous frame's.
+struct RollingShutter {
+    double seconds_per_row = 0;  ///< 0: all rows at once
+    double reference_row = 0;    ///< px
+    Pose T_previous_keyframe = Pose::Identity();
+    double since_previous = 0;  ///< s; 0 when there is no trusted previous pose
+
+    RowMotion motion(const Pose& T_current_keyframe) const;
+};
+
+/// Rigid motion, camera and row motion for the kernels.
+kernels::Projection makeProjection(const Pose& T_current_keyframe, const PinholeCamera& camera,
+                                   const RowMotion& rows);
+
+/// Least squares for the one number that all frames share: seconds per row. Linear, because a small read-out
+/// time moves points in proportion; each frame adds what its pose leaves undetermined (Schur complement).
+class ReadoutEstimator {
+  public:
+    /// @param sigma  of the prior about zero, seconds per row
+    explicit ReadoutEstimator(double sigma) : information_(1 / (sigma * sigma)) {}
+
+    /// One frame's normal equations in the pose and the read-out time, both taken from zero read-out time.
+    void add(const Matrix6d& pose_information, const Vector6d& mixed, double own,
+             const Vector6d& pose_gradient, double own_gradient);
+    double secondsPerRow() const { return vector_ / information_; }
+    double sigma() const;
+
+  private:
+    double information_, vector_ = 0;
+};
+
+}  // namespace roevo

@@ -1,0 +1,59 @@
+#include "roevo/tracking/rolling_shutter.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace roevo {
+
+RowMotion RowMotion::atPyramidLevel(int level) const {
+    const double scale = 1 << level;
+    return {velocity, turn, seconds_per_row * scale, (reference_row + 0.5) / scale - 0.5};
+}
+
+RowMotion RollingShutter::motion(const Pose& T_current_keyframe) const {
+    RowMotion rows;
+    rows.reference_row = reference_row;
+    rows.seconds_per_row = seconds_per_row;
+    if (since_previous <= 0) return rows;
+    const Pose T_previous_current = T_previous_keyframe * T_current_keyframe.inverse();
+    const Eigen::AngleAxisd turn(T_previous_current.linear());
+    rows.turn = turn.angle() / since_previous * turn.axis();
+    rows.velocity =
+        T_previous_current.linear().transpose() * T_previous_current.translation() / since_previous;
+    return rows;
+}
+
+void ReadoutEstimator::add(const Matrix6d& pose_information, const Vector6d& mixed, double own,
+                           const Vector6d& pose_gradient, double own_gradient) {
+    const Eigen::LDLT<Matrix6d> factor(pose_information);
+    if (factor.info() != Eigen::Success || !factor.isPositive()) return;
+    const Vector6d eliminated = factor.solve(mixed);
+    const double information = own - mixed.dot(eliminated);
+    const double gradient = own_gradient - eliminated.dot(pose_gradient);
+    if (!(information > 0) || !std::isfinite(gradient)) return;
+    information_ += information;
+    vector_ -= gradient;
+}
+
+double ReadoutEstimator::sigma() const {
+    return 1 / std::sqrt(information_);
+}
+
+kernels::Projection makeProjection(const Pose& T, const PinholeCamera& camera, const RowMotion& rows) {
+    kernels::Projection projection{};
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) projection.rotation[3 * r + c] = static_cast<float>(T.linear()(r, c));
+        projection.translation[r] = static_cast<float>(T.translation()[r]);
+        projection.velocity[r] = static_cast<float>(rows.seconds_per_row * rows.velocity[r]);
+        projection.turn[r] = static_cast<float>(rows.seconds_per_row * rows.turn[r]);
+    }
+    projection.fx = static_cast<float>(camera.fx);
+    projection.fy = static_cast<float>(camera.fy);
+    projection.cx = static_cast<float>(camera.cx);
+    projection.cy = static_cast<float>(camera.cy);
+    projection.reference_row = static_cast<float>(rows.reference_row);
+    return projection;
+}
+
+}  // namespace roevo
