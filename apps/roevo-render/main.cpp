@@ -14,7 +14,7 @@ namespace roevo {
 namespace {
 
 constexpr char kName[] = "roevo-render";
-constexpr float kPointSizeHeight = 600;  // pixels; in higher pictures points grow along
+constexpr float kPointSizeHeight = 800;  // pixels; in higher pictures points grow along
 constexpr int kMinSize = 16, kMaxSize = 4096;
 
 void parseSize(const std::string& text, int& width, int& height) {

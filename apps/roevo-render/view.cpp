@@ -9,7 +9,7 @@ namespace roevo {
 namespace {
 
 constexpr double kRadians = 3.14159265358979323846 / 180;
-constexpr double kOutliers = 0.004;  // share of the cloud that each side of the picture may cut off
+constexpr double kOutliers = 0.001;  // share of the cloud that each side of the picture may cut off
 constexpr float kReach =
     1.6f;  // points farther from the middle than this times the 90 % distance do not count
 constexpr double kMargin = 0.94;  // share of the picture that the content fills
