@@ -61,7 +61,7 @@ struct Odometry::Impl {
           coarse(opts.coarse),
           fine(opts.fine, opts.edges, opts.sensor),
           T_world_camera(start),
-          readout(opts.sensor.readout_sigma / raw.height) {}
+          readout(opts.sensor.readout_sigma / raw.height, opts.sensor.readout_memory) {}
 
     PinholeCamera camera, ideal;
     OdometryOptions options;

@@ -19,21 +19,22 @@ struct SensorOptions {
     double depth_noise = 2e-3;     ///< a in sigma_z = a z^2, 1/m
     bool estimate_readout = true;  ///< learn the read-out time from the images; else it is readout_time
     double readout_sigma = 0.01;   ///< how far from 0 the learned read-out time may well be, s, one sigma
+    double readout_memory = 0.95;  ///< share of what was learned that is kept from frame to frame
     double readout_time = 0;     ///< time from the first to the last row of a rolling shutter, s (0: global)
     double reference_row = 0.5;  ///< row whose time the stamp means, as a share of the height
 };
 
 struct EdgeOptions {
     double blur_sigma = 0;           ///< Gaussian blur before the Sobel filter, px (0: none)
-    double canny_high_factor = 1.0;  ///< high threshold = factor x Otsu
+    double canny_high_factor = 0.7;  ///< high threshold = factor x Otsu
     double canny_low_ratio = 0.5;    ///< low threshold = ratio x high
     double min_high_threshold = 24;  ///< floor of the high threshold, Sobel units (8 per grey level of ramp)
     double threshold_smoothing = 0.7;  ///< share of the previous frame's threshold that is kept
     double angle_deg = 20;             ///< oriented BFS: largest angle between neighbouring gradients
     int min_length = 10;               ///< shortest organized edge, px
-    int tangent_span = 3;        ///< tangents are taken between the points this many places before and after
+    int tangent_span = 4;        ///< tangents are taken between the points this many places before and after
     int depth_patch_radius = 2;  ///< foreground depth is looked for in a square of this radius, px
-    double depth_jump = 0.05;    ///< relative depth step that separates foreground from background
+    double depth_jump = 0.03;    ///< relative depth step that separates foreground from background
 };
 
 struct CoarseOptions {
@@ -51,7 +52,7 @@ struct FineOptions {
     int min_votes = 5;            ///< and at least this many points
     int max_points = 3000;        ///< keyframe edge points used
     int max_iterations = 12;      ///< Gauss-Newton steps, associations renewed in each
-    double chi2 = 5.99;           ///< chi-square limit of a residual
+    double chi2 = 16;             ///< chi-square limit of a residual
     double photometric_weight =
         0.3;                    ///< alpha^2 of Eq. (10) after both residuals are normalised by their spread
     double depth_weight = 0.3;  ///< weight of the depth residual of associated points (0: as in the paper)
@@ -59,7 +60,7 @@ struct FineOptions {
 };
 
 struct KeyframeOptions {
-    double min_matched_ratio = 0.8;  ///< new keyframe below this share of associable edges
+    double min_matched_ratio = 0.7;  ///< new keyframe below this share of associable edges
     double max_rotation_deg = 15;    ///< new keyframe beyond this rotation
     double max_translation = 0.15;   ///< new keyframe beyond this translation, relative to the median depth
 };

@@ -32,12 +32,12 @@ void ReadoutEstimator::add(const Matrix6d& pose_information, const Vector6d& mix
     const double information = own - mixed.dot(eliminated);
     const double gradient = own_gradient - eliminated.dot(pose_gradient);
     if (!(information > 0) || !std::isfinite(gradient)) return;
-    information_ += information;
-    vector_ -= gradient;
+    information_ = memory_ * information_ + information;
+    vector_ = memory_ * vector_ - gradient;
 }
 
 double ReadoutEstimator::sigma() const {
-    return 1 / std::sqrt(information_);
+    return 1 / std::sqrt(prior_ + information_);
 }
 
 kernels::Projection makeProjection(const Pose& T, const PinholeCamera& camera, const RowMotion& rows) {

@@ -46,16 +46,19 @@ kernels::Projection makeProjection(const Pose& T_current_keyframe, const Pinhole
 class ReadoutEstimator {
   public:
     /// @param sigma  of the prior about zero, seconds per row
-    explicit ReadoutEstimator(double sigma) : information_(1 / (sigma * sigma)) {}
+    /// @param memory  share of the evidence that is kept when a frame is added: frames are matched with what
+    /// was known then, so that old
+    ///                evidence leans towards old values
+    ReadoutEstimator(double sigma, double memory) : prior_(1 / (sigma * sigma)), memory_(memory) {}
 
     /// One frame's normal equations in the pose and the read-out time, both taken from zero read-out time.
     void add(const Matrix6d& pose_information, const Vector6d& mixed, double own,
              const Vector6d& pose_gradient, double own_gradient);
-    double secondsPerRow() const { return vector_ / information_; }
+    double secondsPerRow() const { return vector_ / (prior_ + information_); }
     double sigma() const;
 
   private:
-    double information_, vector_ = 0;
+    double prior_, memory_, information_ = 0, vector_ = 0;
 };
 
 }  // namespace roevo
