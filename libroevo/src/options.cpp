@@ -155,6 +155,7 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
          &f.photometric_weight},
         {"fine", "depth_weight", "", "weight of the depth residual of associated points (0: as in the paper)",
          0, 100, &f.depth_weight},
+        {"fine", "depth_chi2", "", "chi-square limit of a depth residual", 0.5, 100, &f.depth_chi2},
         {"fine", "min_inliers", "points", "with fewer inliers the frame is not tracked", 6, 10000,
          &f.min_inliers},
         {"keyframe", "min_matched_ratio", "", "new keyframe below this share of associable edges", 0, 1,

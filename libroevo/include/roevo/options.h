@@ -56,6 +56,7 @@ struct FineOptions {
     double photometric_weight =
         0.3;                    ///< alpha^2 of Eq. (10) after both residuals are normalised by their spread
     double depth_weight = 0.3;  ///< weight of the depth residual of associated points (0: as in the paper)
+    double depth_chi2 = 12;     ///< chi-square limit of a depth residual
     int min_inliers = 40;       ///< fewer inliers: the frame is not tracked
 };
 

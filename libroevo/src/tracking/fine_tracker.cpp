@@ -16,37 +16,31 @@ constexpr double kMaxScale = 2.0;  ///< px
 /// How much less the evidence of one frame counts for the read-out time: its velocity is only known from two
 /// poses.
 constexpr double kReadoutCaution = 50;
-constexpr float kUnknown = -1;  ///< depth not looked up yet
+constexpr float kStudentNu = 5;  ///< degrees of freedom of the t-distribution that residuals follow
+constexpr float kUnknown = -1;   ///< depth not looked up yet
 
 }  // namespace
 
 void FineTracker::project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera,
                           const RowMotion& rows) {
     const EdgePoints3D& edges = keyframe.edges;
-    const std::size_t n = edges.size(), padded = edges.x.size();
+    const std::size_t padded = edges.x.size();
     for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
-    gradient_u_.resize(n);
-    gradient_v_.resize(n);
     kernels::best().project(makeProjection(pose, camera, rows), edges.x.data(), edges.y.data(),
                             edges.z.data(), padded, {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
-    const Eigen::Vector2f turn = imageRotation(pose);
-    for (std::size_t i = 0; i < n; ++i) {
-        gradient_u_[i] = turn.x() * edges.image.gradient_x[i] - turn.y() * edges.image.gradient_y[i];
-        gradient_v_[i] = turn.y() * edges.image.gradient_x[i] + turn.x() * edges.image.gradient_y[i];
-    }
 }
 
 void FineTracker::geometricResiduals(const OrganizedEdges& current) {
-    residual_.resize(matches_.point.size());
+    residual_.resize(matches_.size());
     scratch_.clear();
-    for (std::size_t i = 0; i < matches_.point.size(); ++i) {
-        if (matches_.point[i] < 0) continue;
-        const auto p = static_cast<std::size_t>(matches_.point[i]);
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        const auto i = static_cast<std::size_t>(matches_.reference[k]);
+        const auto p = static_cast<std::size_t>(matches_.current[k]);
         // Eq. (8): the component across the tangent, as a signed scalar; its square and its normal equations
         // are the same
-        residual_[i] =
+        residual_[k] =
             current.normal_x[p] * (u_[i] - current.x[p]) + current.normal_y[p] * (v_[i] - current.y[p]);
-        scratch_.push_back(std::abs(residual_[i]));
+        scratch_.push_back(std::abs(residual_[k]));
     }
     if (scratch_.empty()) return;
     const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
@@ -54,70 +48,81 @@ void FineTracker::geometricResiduals(const OrganizedEdges& current) {
     scale_ = std::clamp(1.4826 * static_cast<double>(*middle), kMinScale, kMaxScale);
 }
 
+float FineTracker::currentDepth(std::size_t point, const FineFrame& frame) {
+    float& measured = current_depth_[point];
+    if (measured != kUnknown) return measured;
+    Eigen::Vector2d pixel(frame.edges->x[point], frame.edges->y[point]);
+    if (frame.raw_camera->isDistorted()) pixel = frame.raw_camera->distortPixel(pixel);
+    measured = foregroundDepth(*frame.depth, static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
+                               edge_options_, sensor_)
+                   .depth;
+    return measured;
+}
+
 void FineTracker::depthResiduals(const Keyframe& keyframe, const FineFrame& frame) {
-    depth_residual_.assign(matches_.point.size(), 0);
-    depth_weight_.assign(matches_.point.size(), 0);
+    depth_residual_.assign(matches_.size(), 0);
+    depth_weight_.assign(matches_.size(), 0);
     if (options_.depth_weight <= 0 || frame.depth->empty()) return;
-    const bool distorted = frame.raw_camera->isDistorted();
-    const auto chi2 = static_cast<float>(options_.chi2);
-    for (std::size_t i = 0; i < matches_.point.size(); ++i) {
-        if (matches_.point[i] < 0) continue;
-        const auto p = static_cast<std::size_t>(matches_.point[i]);
-        float& measured = current_depth_[p];
-        if (measured == kUnknown) {
-            Eigen::Vector2d pixel(frame.edges->x[p], frame.edges->y[p]);
-            if (distorted) pixel = frame.raw_camera->distortPixel(pixel);
-            measured = foregroundDepth(*frame.depth, static_cast<float>(pixel.x()),
-                                       static_cast<float>(pixel.y()), edge_options_, sensor_)
-                           .depth;
-        }
+    const auto chi2 = static_cast<float>(options_.depth_chi2);
+    const auto noise2 = static_cast<float>(sensor_.depth_noise * sensor_.depth_noise);
+    constexpr float kLeastVariance = 1e-6F;  // m^2: a millimetre, whatever the sensor
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        const auto i = static_cast<std::size_t>(matches_.reference[k]);
+        const float measured = currentDepth(static_cast<std::size_t>(matches_.current[k]), frame);
         if (measured <= 0) continue;
-        const float noise = static_cast<float>(sensor_.depth_noise);
-        const float reference = keyframe.edges.z[i];
-        const float variance =
-            noise * noise *
-                (measured * measured * measured * measured + reference * reference * reference * reference) +
-            1e-6F;
+        const float z2 = measured * measured, reference2 = keyframe.edges.z[i] * keyframe.edges.z[i];
+        const float variance = noise2 * (z2 * z2 + reference2 * reference2) + kLeastVariance;
         const float residual = z_[i] - measured;
         const float squared = residual * residual / variance;
-        if (squared > 2 * chi2) continue;
-        depth_residual_[i] = residual;
-        depth_weight_[i] = static_cast<float>(options_.depth_weight) / (variance * (1 + squared / 5));
+        if (squared > chi2) continue;
+        depth_residual_[k] = residual;
+        depth_weight_[k] =
+            static_cast<float>(options_.depth_weight) / (variance * (1 + squared / kStudentNu));
     }
 }
 
 void FineTracker::weigh(const Keyframe& keyframe) {
-    weight_.assign(matches_.point.size(), 0);
+    weight_.assign(matches_.size(), 0);
     inliers_ = 0;
     const auto inverse = static_cast<float>(1 / (scale_ * scale_));
     const auto chi2 = static_cast<float>(options_.chi2);
-    for (std::size_t i = 0; i < matches_.point.size(); ++i) {
-        if (matches_.point[i] < 0) continue;
-        const float squared = residual_[i] * residual_[i] * inverse;
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        const float squared = residual_[k] * residual_[k] * inverse;
         if (squared > chi2) continue;
         ++inliers_;
-        weight_[i] = keyframe.edges.weight[i] * inverse * 6 / (5 + squared);
+        weight_[k] = keyframe.edges.weight[static_cast<std::size_t>(matches_.reference[k])] * inverse *
+                     (kStudentNu + 1) / (kStudentNu + squared);
     }
 }
 
-void FineTracker::buildRows(const PinholeCamera& camera, const OrganizedEdges& current) {
-    const std::size_t padded = x_.size();
-    for (auto& array : matrix_) array.resize(padded);
-    for (auto& array : vector_) array.resize(padded);
+void FineTracker::accumulate(const PinholeCamera& camera, const OrganizedEdges& current, PoseSystem& system) {
+    const std::size_t padded = kernels::paddedSize(matches_.size());
+    for (auto& array : matrix_) array.assign(padded, 0);
+    for (auto& array : vector_) array.assign(padded, 0);
+    for (auto& array : position_) array.assign(padded, 0);
     const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
-    for (std::size_t i = 0; i < padded; ++i) {
-        float matrix[6] = {0, 0, 0, 0, 0, 0}, vector[3] = {0, 0, 0};
-        if (i < matches_.point.size() && weight_[i] > 0) {
-            const auto p = static_cast<std::size_t>(matches_.point[i]);
-            const float nx = current.normal_x[p], ny = current.normal_y[p], w = weight_[i], r = residual_[i];
-            liftInformation(x_[i], y_[i], z_[i], fx, fy, w * nx * nx, w * nx * ny, w * ny * ny, w * nx * r,
-                            w * ny * r, matrix, vector);
-            matrix[5] += depth_weight_[i];
-            vector[2] += depth_weight_[i] * depth_residual_[i];
-        }
-        for (int k = 0; k < 6; ++k) matrix_[k][i] = matrix[k];
-        for (int k = 0; k < 3; ++k) vector_[k][i] = vector[k];
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        if (weight_[k] <= 0) continue;
+        const auto i = static_cast<std::size_t>(matches_.reference[k]);
+        const auto p = static_cast<std::size_t>(matches_.current[k]);
+        const float nx = current.normal_x[p], ny = current.normal_y[p], w = weight_[k], r = residual_[k];
+        float matrix[6], vector[3];
+        liftInformation(x_[i], y_[i], z_[i], fx, fy, w * nx * nx, w * nx * ny, w * ny * ny, w * nx * r,
+                        w * ny * r, matrix, vector);
+        matrix[5] += depth_weight_[k];
+        vector[2] += depth_weight_[k] * depth_residual_[k];
+        for (int a = 0; a < 6; ++a) matrix_[a][k] = matrix[a];
+        for (int a = 0; a < 3; ++a) vector_[a][k] = vector[a];
+        position_[0][k] = x_[i];
+        position_[1][k] = y_[i];
+        position_[2][k] = z_[i];
     }
+    kernels::PointInformation rows{position_[0].data(), position_[1].data(), position_[2].data(), {}, {}};
+    for (int a = 0; a < 6; ++a) rows.matrix[a] = matrix_[a].data();
+    for (int a = 0; a < 3; ++a) rows.vector[a] = vector_[a].data();
+    kernels::NormalEquations equations;
+    kernels::best().accumulate(rows, padded, equations);
+    system.add(equations);
 }
 
 void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe,
@@ -127,9 +132,10 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
     Matrix6d hessian = Matrix6d::Identity() * 1e-6;
     Vector6d mixed = Vector6d::Zero(), gradient = Vector6d::Zero();
     double own = 0, own_gradient = 0;
-    for (std::size_t i = 0; i < matches_.point.size(); ++i) {
-        if (weight_[i] <= 0) continue;
-        const auto p = static_cast<std::size_t>(matches_.point[i]);
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        if (weight_[k] <= 0) continue;
+        const auto i = static_cast<std::size_t>(matches_.reference[k]);
+        const auto p = static_cast<std::size_t>(matches_.current[k]);
         const double a = frame.camera->fx / static_cast<double>(z_[i]),
                      b = frame.camera->fy / static_cast<double>(z_[i]);
         const Eigen::Vector3d point(x_[i], y_[i], z_[i]);
@@ -143,12 +149,12 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
         const double by_keyframe =
             -by_point.dot(T_current_keyframe.linear() * keyframe.row_motion.pointVelocity(in_keyframe)) *
             (static_cast<double>(keyframe.edges.image.y[i]) - rows.reference_row);
-        const double residual = static_cast<double>(residual_[i]) - by_current * rows.seconds_per_row -
+        const double residual = static_cast<double>(residual_[k]) - by_current * rows.seconds_per_row -
                                 by_keyframe * keyframe.row_motion.seconds_per_row;
         const double by_readout = by_current + by_keyframe;
         Vector6d by_pose;
         by_pose << by_point, point.cross(by_point);
-        const double weight = static_cast<double>(weight_[i]) / kReadoutCaution;
+        const double weight = static_cast<double>(weight_[k]) / kReadoutCaution;
         hessian += weight * by_pose * by_pose.transpose();
         mixed += weight * by_readout * by_pose;
         gradient += weight * residual * by_pose;
@@ -176,28 +182,23 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
             options_.search_radius + share * (options_.final_radius - options_.search_radius);
         const RowMotion row_motion = shutter.motion(pose);
         project(keyframe, pose, camera, row_motion);
-        associator_.associate(keyframe.edges.image, u_.data(), v_.data(), gradient_u_.data(),
-                              gradient_v_.data(), edge_options_.tangent_span, current, *frame.grid,
-                              camera.width, camera.height, radius, matches_);
-        if (matches_.num_points < options_.min_inliers) break;
+        associator_.associate(keyframe.edges.image, u_.data(), v_.data(), imageRotation(pose),
+                              edge_options_.tangent_span, current, *frame.grid, camera.width, camera.height,
+                              radius, matches_);
+        if (static_cast<int>(matches_.size()) < options_.min_inliers) break;
         geometricResiduals(current);
         depthResiduals(keyframe, frame);
         weigh(keyframe);
-        buildRows(camera, current);
-        kernels::PointInformation rows{x_.data(), y_.data(), z_.data(), {}, {}};
-        for (int k = 0; k < 6; ++k) rows.matrix[k] = matrix_[k].data();
-        for (int k = 0; k < 3; ++k) rows.vector[k] = vector_[k].data();
-        kernels::NormalEquations equations;
-        kernels::best().accumulate(rows, x_.size(), equations);
         system = PoseSystem();
-        system.add(equations);
+        accumulate(camera, current, system);
         if (options_.photometric_weight > 0 && keyframe.photometric.size() > 0) {
             photometric_.evaluate(keyframe.photometric, 0, frame.pyramid->level(0), camera, pose, row_motion,
                                   gain);
             // alpha: both kinds of residual count as many points as the edges have, whatever the sample's
             // size
-            const double count = static_cast<double>(matches_.num_points) /
+            const double count = static_cast<double>(matches_.size()) /
                                  std::max<double>(1, photometric_.numVisible() * kernels::kPatchSize);
+            kernels::NormalEquations equations;
             photometric_.accumulate(keyframe.photometric, 0, camera, options_.photometric_weight * count,
                                     equations);
             system.add(equations);
@@ -209,8 +210,9 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
         const double motion_px = camera.fx * (step.tail<3>().norm() + step.head<3>().norm() / depth);
         if (motion_px < 0.01 && share >= 1) break;
     }
-    result.inliers = matches_.num_points < options_.min_inliers ? matches_.num_points : inliers_;
-    result.matches = matches_.num_points;
+    const int matched = static_cast<int>(matches_.size());
+    result.inliers = matched < options_.min_inliers ? matched : inliers_;
+    result.matches = matched;
     result.scale = scale_;
     result.matched_ratio = matches_.matchedRatio();
     if (result.inliers < options_.min_inliers || !pose.matrix().allFinite()) return result;

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -8,52 +9,61 @@
 namespace roevo {
 
 /// Pixel-index grid over the points of organized edges: which point, if any, lies in a pixel. Building it is
-/// linear; a radius search reads pixels in order of distance, so that a query near its answer touches a
-/// handful of them.
+/// linear; a radius search looks at one word of occupancy bits per row and then only at the pixels that hold
+/// a point.
 class EdgeGrid {
   public:
     void build(const OrganizedEdges& edges, int width, int height);
 
-    /// Nearest point to (u, v) within `radius` pixels that `accept(index)` agrees to, or -1.
+    /// Nearest point to (u, v) within `radius` (at most kMaxRadius) pixels that `accept(index)` agrees to, or
+    /// -1. (u, v) lies in the image.
     template <class Accept>
     int nearest(float u, float v, float radius, Accept&& accept) const;
 
     static constexpr int kMaxRadius = 15;  ///< px
 
   private:
-    struct Offset {
-        std::int16_t dx, dy;
-        float distance;
-    };
-    static const std::vector<Offset>& spiral();
+    static constexpr int kPadding = 64;  ///< px of empty occupancy left and right of a row
+    std::size_t bitIndex(int x, int y) const {
+        return static_cast<std::size_t>(y) * row_bits_ + static_cast<std::size_t>(x + kPadding);
+    }
+    /// `count` (< 64) occupancy bits of row y from x on, the first in the lowest bit.
+    std::uint64_t occupancy(int x, int y, int count) const {
+        const std::size_t first = bitIndex(x, y), shift = first % 64;
+        const std::uint64_t low = bits_[first / 64] >> shift;
+        const std::uint64_t high = shift == 0 ? 0 : bits_[first / 64 + 1] << (64 - shift);
+        return (low | high) & ((std::uint64_t{1} << count) - 1);
+    }
 
     int width_ = 0, height_ = 0;
-    std::vector<std::int32_t> cell_;    ///< point index + 1, 0 when empty
-    std::vector<std::int32_t> filled_;  ///< cells to clear before the next build
+    std::size_t row_bits_ = 0;
+    std::vector<std::int32_t> cell_;  ///< point index where the occupancy bit is set
+    std::vector<std::uint64_t> bits_;
     const OrganizedEdges* edges_ = nullptr;
 };
 
 template <class Accept>
 int EdgeGrid::nearest(float u, float v, float radius, Accept&& accept) const {
     const int cu = static_cast<int>(std::lround(u)), cv = static_cast<int>(std::lround(v));
+    // Points are within half a pixel of their cell's centre, the query within half a pixel of its own
+    const int reach = std::min(static_cast<int>(std::ceil(radius)), kMaxRadius) + 1;
     int best = -1;
     float best_squared = radius * radius;
-    float reach = radius;
-    for (const Offset& offset : spiral()) {
-        // A point in a cell can be nearer than the cell's centre by half a diagonal, and the query sits as
-        // much off its own.
-        if (offset.distance - 1.5F > reach) break;
-        const int x = cu + offset.dx, y = cv + offset.dy;
-        if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
-        const std::int32_t index = cell_[static_cast<std::size_t>(y * width_ + x)] - 1;
-        if (index < 0) continue;
-        const auto i = static_cast<std::size_t>(index);
-        const float dx = edges_->x[i] - u, dy = edges_->y[i] - v;
-        const float squared = dx * dx + dy * dy;
-        if (squared >= best_squared || !accept(i)) continue;
-        best = index;
-        best_squared = squared;
-        reach = std::sqrt(squared);
+    for (int step = 0; step <= 2 * reach; ++step) {  // rows 0, -1, +1, -2, +2 ...
+        const int dy = (step & 1) != 0 ? -(step + 1) / 2 : step / 2;
+        const auto gap = static_cast<float>(std::max(0, std::abs(dy) - 1));
+        if (gap * gap >= best_squared) break;
+        const int y = cv + dy;
+        if (y < 0 || y >= height_) continue;
+        for (std::uint64_t row = occupancy(cu - reach, y, 2 * reach + 1); row != 0; row &= row - 1) {
+            const int x = cu - reach + __builtin_ctzll(row);
+            const auto i = static_cast<std::size_t>(cell_[static_cast<std::size_t>(y * width_ + x)]);
+            const float dx = edges_->x[i] - u, dv = edges_->y[i] - v;
+            const float squared = dx * dx + dv * dv;
+            if (squared >= best_squared || !accept(i)) continue;
+            best = static_cast<int>(i);
+            best_squared = squared;
+        }
     }
     return best;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -8,18 +9,19 @@
 
 namespace roevo {
 
-/// Which point of the current image each reprojected point of a reference edge is associated with.
+/// Pairs of associated points, and how much of the reference was found again.
 struct EdgeMatches {
-    std::vector<std::int32_t> point;  ///< index into the current edges' points, -1 where none
-    int num_points = 0;               ///< associated points
+    std::vector<std::int32_t> reference, current;  ///< point indices of the pairs, in the reference's order
     int visible_edges = 0,
         matched_edges = 0;   ///< reference edges inside the image; those with an association
-    int visible_points = 0;  ///< reference points inside the image
+    int visible_points = 0;  ///< looked-up reference points inside the image
+    int matched_extent = 0;  ///< of them, those of matched edges
 
+    std::size_t size() const { return reference.size(); }
+    /// Share of the reference's edges that are associated, each edge counting by its visible length.
     double matchedRatio() const {
         return visible_points > 0 ? static_cast<double>(matched_extent) / visible_points : 0;
     }
-    int matched_extent = 0;  ///< visible points of the matched edges
 };
 
 /// Edge-wise association (Sec. V-C): nearest point within a radius whose normal agrees with the reprojected
@@ -29,13 +31,13 @@ class EdgeAssociator {
   public:
     explicit EdgeAssociator(const FineOptions& options) : options_(options) {}
 
-    /// @param reference   reference edges (spans and gradients)
-    /// @param u, v        their reprojected points, px; outside the image where not visible
-    /// @param gradient_u, gradient_v  their image gradients turned into the current image (unit, for the side
-    /// of the normal)
-    /// @param span        points before and after that the tangent of a reprojected point is taken between
-    void associate(const OrganizedEdges& reference, const float* u, const float* v, const float* gradient_u,
-                   const float* gradient_v, int span, const OrganizedEdges& current, const EdgeGrid& grid,
+    /// @param reference  reference edges (spans and gradients)
+    /// @param u, v       their reprojected points, px; outside the image where not visible
+    /// @param turn       cosine and sine of the rotation that carries reference gradients into the current
+    /// image
+    /// @param span       points before and after that the tangent of a reprojected point is taken between
+    void associate(const OrganizedEdges& reference, const float* u, const float* v,
+                   const Eigen::Vector2f& turn, int span, const OrganizedEdges& current, const EdgeGrid& grid,
                    int width, int height, double radius, EdgeMatches& out);
 
   private:

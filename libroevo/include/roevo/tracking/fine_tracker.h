@@ -49,7 +49,7 @@ class FineTracker {
     const EdgeMatches& matches() const { return matches_; }  ///< of the last frame
     const std::vector<float>& projectedU() const { return u_; }
     const std::vector<float>& projectedV() const { return v_; }
-    const std::vector<float>& weights() const { return weight_; }  ///< 0 where rejected
+    const std::vector<float>& weights() const { return weight_; }  ///< of each match; 0 where rejected
 
   private:
     void project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera,
@@ -57,7 +57,8 @@ class FineTracker {
     void geometricResiduals(const OrganizedEdges& current);
     void depthResiduals(const Keyframe& keyframe, const FineFrame& frame);
     void weigh(const Keyframe& keyframe);
-    void buildRows(const PinholeCamera& camera, const OrganizedEdges& current);
+    float currentDepth(std::size_t point, const FineFrame& frame);
+    void accumulate(const PinholeCamera& camera, const OrganizedEdges& current, PoseSystem& system);
 
     FineOptions options_;
     EdgeOptions edge_options_;
@@ -65,9 +66,10 @@ class FineTracker {
     EdgeAssociator associator_;
     PhotometricResiduals photometric_;
     EdgeMatches matches_;
-    std::vector<float> x_, y_, z_, u_, v_, gradient_u_, gradient_v_;
-    std::vector<float> residual_, weight_, depth_residual_, depth_weight_, current_depth_, scratch_;
-    std::vector<float> matrix_[6], vector_[3];
+    std::vector<float> x_, y_, z_, u_, v_;                                  // of all keyframe points
+    std::vector<float> residual_, weight_, depth_residual_, depth_weight_;  // of the matches
+    std::vector<float> current_depth_, scratch_;
+    std::vector<float> matrix_[6], vector_[3], position_[3];
     double scale_ = 1;
     int inliers_ = 0;
 };
