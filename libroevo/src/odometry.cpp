@@ -91,7 +91,7 @@ struct Odometry::Impl {
     Pose predict(double timestamp) const;
     PosePrior motionPrior(double timestamp) const;
     RollingShutter rollingShutter(double timestamp) const;
-    std::string makeKeyframe(const RgbdFrame& frame, const cv::Mat& grey, const FrameResult& result);
+    std::string makeKeyframe(const RgbdFrame& frame, const FrameResult& result);
     void keepMapEdges(const RgbdFrame& frame, const Keyframe& kf);
     void process(const RgbdFrame& frame, FrameResult& result);
     bool trackFrame(const RgbdFrame& frame, FrameResult& result);
@@ -154,9 +154,7 @@ RollingShutter Odometry::Impl::rollingShutter(double timestamp) const {
     return shutter;
 }
 
-std::string Odometry::Impl::makeKeyframe(const RgbdFrame& frame, const cv::Mat& grey,
-                                         const FrameResult& result) {
-    (void)grey;
+std::string Odometry::Impl::makeKeyframe(const RgbdFrame& frame, const FrameResult& result) {
     if (frame.depth.empty()) return "no depth image";
     auto fresh = std::make_unique<Keyframe>();
     fresh->edges = liftEdges(edges, frame.depth, camera, row_motion, options.edges, options.sensor);
@@ -233,42 +231,51 @@ bool Odometry::Impl::wantsKeyframe(const FrameResult& result) const {
 
 bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
     const Pose T_world_keyframe = keyframe->T_world_camera;
-    const Pose predicted = predict(frame.timestamp);
     const RollingShutter shutter = rollingShutter(frame.timestamp);
-    Stopwatch coarse_watch;
-    const std::vector<Pose> guesses = {predicted.inverse() * T_world_keyframe,
+
+    const Stopwatch coarse_watch;
+    const std::vector<Pose> guesses = {predict(frame.timestamp).inverse() * T_world_keyframe,
                                        T_world_camera.inverse() * T_world_keyframe};
-    CoarseResult aligned = coarse.track(*keyframe, pyramid, ideal, shutter, guesses, brightness);
+    const CoarseResult aligned = coarse.track(*keyframe, pyramid, ideal, shutter, guesses, brightness);
     result.ms.coarse = coarse_watch.milliseconds();
 
-    Stopwatch fine_watch;
+    const Stopwatch fine_watch;
     const FineFrame view{&edges, &grid, &pyramid, &frame.depth, &camera, &ideal};
-    const FineResult refined = fine.track(*keyframe, view, aligned.T_current_keyframe,
-                                          motionPrior(frame.timestamp), shutter, aligned.brightness);
-    result.ms.fine = fine_watch.milliseconds();
-    result.inliers = refined.inliers;
-    result.matched_ratio = refined.matched_ratio;
-    const bool coarse_only = options.mode == Mode::kCoarse;
-    if (coarse_only ? !aligned.converged : !refined.converged) {
-        result.reason = coarse_only
-                            ? "coarse tracking found too few visible points"
-                            : "only " + std::to_string(refined.inliers) + " associated edge points, " +
-                                  std::to_string(options.fine.min_inliers) + " needed";
-        return false;
+    Pose T_current_keyframe = aligned.T_current_keyframe;
+    Matrix6d covariance;
+    if (options.mode == Mode::kCoarse) {
+        if (!aligned.converged) {
+            result.reason = "coarse tracking found only " + std::to_string(aligned.num_visible) +
+                            " visible points, " + std::to_string(options.coarse.min_points) + " needed";
+            return false;
+        }
+        // Edges are associated only to know when the next keyframe is due
+        fine.associate(*keyframe, view, T_current_keyframe, shutter.motion(T_current_keyframe),
+                       options.fine.final_radius);
+        result.inliers = static_cast<int>(fine.matches().size());
+        covariance = kCorrelatedPoints * (aligned.system.hessian + 1e-9 * Matrix6d::Identity()).inverse();
+    } else {
+        const FineResult refined = fine.track(*keyframe, view, T_current_keyframe,
+                                              motionPrior(frame.timestamp), shutter, aligned.brightness);
+        result.inliers = refined.inliers;
+        if (!refined.converged) {
+            result.reason = "only " + std::to_string(refined.inliers) + " associated edge points, " +
+                            std::to_string(options.fine.min_inliers) + " needed";
+            return false;
+        }
+        T_current_keyframe = refined.T_current_keyframe;
+        covariance = refined.covariance;
     }
-    const Pose T_current_keyframe = coarse_only ? aligned.T_current_keyframe : refined.T_current_keyframe;
-    result.T_world_camera = T_world_keyframe * T_current_keyframe.inverse();
-    orthonormalise(result.T_world_camera);
-    const Matrix6d relative =
-        coarse_only
-            ? Matrix6d(kCorrelatedPoints * (aligned.system.hessian + 1e-9 * Matrix6d::Identity()).inverse())
-            : refined.covariance;
-    setCovariance(relative, T_current_keyframe, result);
-    brightness = aligned.brightness;
     row_motion = shutter.motion(T_current_keyframe);
-    if (!coarse_only && shutter.since_previous > 0) {
+    if (options.mode != Mode::kCoarse && shutter.since_previous > 0) {
         fine.addReadoutEvidence(*keyframe, T_current_keyframe, row_motion, view, readout);
     }
+    result.matched_ratio = fine.matches().matchedRatio();
+    result.T_world_camera = T_world_keyframe * T_current_keyframe.inverse();
+    orthonormalise(result.T_world_camera);
+    setCovariance(covariance, T_current_keyframe, result);
+    brightness = aligned.brightness;
+    result.ms.fine = fine_watch.milliseconds();
     return true;
 }
 
@@ -285,7 +292,7 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
     const double dt = frame.timestamp - last_timestamp;
     if (!keyframe) {
         result.T_world_camera = T_world_camera;
-        const std::string fault = makeKeyframe(frame, grey, result);
+        const std::string fault = makeKeyframe(frame, result);
         if (!fault.empty()) {
             result.status = FrameStatus::kRejected;
             result.reason = "cannot start here: " + fault;
@@ -304,7 +311,7 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
         T_world_camera = result.T_world_camera;
         lost_frames = 0;
         if (wantsKeyframe(result)) {
-            const std::string fault = makeKeyframe(frame, grey, result);
+            const std::string fault = makeKeyframe(frame, result);
             result.is_keyframe = fault.empty();
             if (!fault.empty()) result.reason = "wanted as keyframe, but " + fault;
         }
@@ -319,7 +326,7 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
         velocity_dt = bridging ? velocity_dt : 0;
         // A lost pose is worth little: say so, growing with every frame
         result.covariance = keyframe->covariance + lost_frames * 1e-2 * Matrix6d::Identity();
-        if (!bridging && makeKeyframe(frame, grey, result).empty()) {
+        if (!bridging && makeKeyframe(frame, result).empty()) {
             result.status = FrameStatus::kInitialised;
             result.is_keyframe = true;
             result.reason =

@@ -35,6 +35,20 @@ inline Neighbours alongGradient(const float* magnitude, std::ptrdiff_t stride, i
     return {before, after, slope, 1};
 }
 
+/// Non-maximum suppression: the same interpolation as above, multiplied out and without branches, because the
+/// direction of a gradient cannot be predicted. ">=" on one side only, so that a ridge two pixels wide keeps
+/// exactly one of them.
+inline bool isRidge(const float* magnitude, std::ptrdiff_t stride, int gx, int gy) {
+    const int ax = std::abs(gx), ay = std::abs(gy);
+    const std::ptrdiff_t step_x = gx >= 0 ? 1 : -1, step_y = gy >= 0 ? stride : -stride;
+    const std::ptrdiff_t side = ax >= ay ? step_x : step_y, diagonal = step_x + step_y;
+    const auto small = static_cast<float>(std::min(ax, ay)), large = static_cast<float>(std::max(ax, ay));
+    const float after = (large - small) * magnitude[side] + small * magnitude[diagonal];
+    const float before = (large - small) * magnitude[-side] + small * magnitude[-diagonal];
+    const float here = large * magnitude[0];
+    return (here > before) & (here >= after);
+}
+
 }  // namespace
 
 void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
@@ -56,9 +70,7 @@ void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
         for (int x = kBorder; x < width - kBorder; ++x) {
             const float m = magnitude[x];
             if (m < low_f) continue;
-            const Neighbours n = alongGradient(magnitude + x, stride, gx[x], gy[x]);
-            // ">=" on one side only, so that a flat ridge two pixels wide keeps exactly one of them
-            if (!(m > n.before && m >= n.after)) continue;
+            if (!isRidge(magnitude + x, stride, gx[x], gy[x])) continue;
             if (m >= high_f) {
                 mask[x] = kEdge;
                 stack.push_back(y * width + x);

@@ -16,6 +16,7 @@ constexpr double kMaxScale = 2.0;  ///< px
 /// How much less the evidence of one frame counts for the read-out time: its velocity is only known from two
 /// poses.
 constexpr double kReadoutCaution = 50;
+constexpr double kOverRelaxation = 1.6;
 constexpr float kStudentNu = 5;  ///< degrees of freedom of the t-distribution that residuals follow
 constexpr float kUnknown = -1;   ///< depth not looked up yet
 
@@ -28,6 +29,14 @@ void FineTracker::project(const Keyframe& keyframe, const Pose& pose, const Pinh
     for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
     kernels::best().project(makeProjection(pose, camera, rows), edges.x.data(), edges.y.data(),
                             edges.z.data(), padded, {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+}
+
+void FineTracker::associate(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_current_keyframe,
+                            const RowMotion& rows, double radius) {
+    project(keyframe, T_current_keyframe, *frame.camera, rows);
+    associator_.associate(keyframe.edges.image, u_.data(), v_.data(), imageRotation(T_current_keyframe),
+                          edge_options_.tangent_span, *frame.edges, *frame.grid, frame.camera->width,
+                          frame.camera->height, radius, matches_);
 }
 
 void FineTracker::geometricResiduals(const OrganizedEdges& current) {
@@ -181,10 +190,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
         const double radius =
             options_.search_radius + share * (options_.final_radius - options_.search_radius);
         const RowMotion row_motion = shutter.motion(pose);
-        project(keyframe, pose, camera, row_motion);
-        associator_.associate(keyframe.edges.image, u_.data(), v_.data(), imageRotation(pose),
-                              edge_options_.tangent_span, current, *frame.grid, camera.width, camera.height,
-                              radius, matches_);
+        associate(keyframe, frame, pose, row_motion, radius);
         if (static_cast<int>(matches_.size()) < options_.min_inliers) break;
         geometricResiduals(current);
         depthResiduals(keyframe, frame);
@@ -205,7 +211,9 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
             gain = photometric_.fitBrightness(keyframe.photometric, 0, gain);
         }
         system.addPrior(prior, pose, kCorrelatedPoints);
-        const Vector6d step = system.solve();
+        // From the third step on, what remains is slow: associations and weights follow the pose. Longer
+        // steps halve their number.
+        const Vector6d step = (iteration < 2 ? 1 : kOverRelaxation) * system.solve();
         pose = poseIncrement(step) * pose;
         const double motion_px = camera.fx * (step.tail<3>().norm() + step.head<3>().norm() / depth);
         if (motion_px < 0.01 && share >= 1) break;

@@ -42,6 +42,10 @@ class FineTracker {
     FineResult track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
                      const PosePrior& prior, const RollingShutter& shutter, const Brightness& brightness);
 
+    /// Edge-wise association at a given pose, without refining it: fills matches().
+    void associate(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_current_keyframe,
+                   const RowMotion& rows, double radius);
+
     /// Adds the last frame's inliers to what is known of the read-out time.
     void addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe, const RowMotion& rows,
                             const FineFrame& frame, ReadoutEstimator& estimator) const;
