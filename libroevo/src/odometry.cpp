@@ -95,6 +95,8 @@ struct Odometry::Impl {
     void keepMapEdges(const RgbdFrame& frame, const Keyframe& kf);
     void process(const RgbdFrame& frame, FrameResult& result);
     bool trackFrame(const RgbdFrame& frame, FrameResult& result);
+    bool trackFrom(const std::vector<Pose>& guesses, const RgbdFrame& frame, FrameResult& result);
+    std::string lackOf(const FineResult& refined) const;
     bool wantsKeyframe(const FrameResult& result) const;
     void setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe, FrameResult& result) const;
 };
@@ -229,15 +231,55 @@ bool Odometry::Impl::wantsKeyframe(const FrameResult& result) const {
                options.keyframe.max_translation * keyframe->median_depth;
 }
 
+std::string Odometry::Impl::lackOf(const FineResult& refined) const {
+    if (refined.inliers < options.fine.min_inliers) {
+        return "only " + std::to_string(refined.inliers) + " associated edge points, " +
+               std::to_string(options.fine.min_inliers) + " needed";
+    }
+    return "only " + std::to_string(std::lround(100 * refined.matched_ratio)) +
+           " % of the edges associated, " +
+           std::to_string(std::lround(100 * options.fine.min_matched_ratio)) + " % needed";
+}
+
+/// Rotations about the camera's x and y axes around a pose, as far as half the field of view: where to look
+/// when the camera was turned faster than the trackers converge.
+std::vector<Pose> searchAround(const Pose& T_current_keyframe) {
+    constexpr double kStep = 3 * 3.14159265358979323846 / 180;
+    constexpr int kReach = 6;
+    std::vector<Pose> guesses;
+    for (int yaw = -kReach; yaw <= kReach; ++yaw) {
+        for (int pitch = -kReach; pitch <= kReach; ++pitch) {
+            Vector6d turn = Vector6d::Zero();
+            turn[3] = pitch * kStep;
+            turn[4] = yaw * kStep;
+            guesses.push_back(poseIncrement(turn) * T_current_keyframe);
+        }
+    }
+    return guesses;
+}
+
 bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
+    const Pose& T_world_keyframe = keyframe->T_world_camera;
+    const Pose T_last_keyframe = T_world_camera.inverse() * T_world_keyframe;
+    if (trackFrom({predict(frame.timestamp).inverse() * T_world_keyframe, T_last_keyframe}, frame, result))
+        return true;
+    const std::string why = result.reason;
+    if (edges.numEdges() > 0 && trackFrom(searchAround(T_last_keyframe), frame, result)) {
+        result.reason.clear();
+        return true;
+    }
+    result.reason = why;
+    return false;
+}
+
+bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const RgbdFrame& frame,
+                               FrameResult& result) {
     const Pose T_world_keyframe = keyframe->T_world_camera;
     const RollingShutter shutter = rollingShutter(frame.timestamp);
 
     const Stopwatch coarse_watch;
-    const std::vector<Pose> guesses = {predict(frame.timestamp).inverse() * T_world_keyframe,
-                                       T_world_camera.inverse() * T_world_keyframe};
     const CoarseResult aligned = coarse.track(*keyframe, pyramid, ideal, shutter, guesses, brightness);
-    result.ms.coarse = coarse_watch.milliseconds();
+    result.ms.coarse += coarse_watch.milliseconds();
 
     const Stopwatch fine_watch;
     const FineFrame view{&edges, &grid, &pyramid, &frame.depth, &camera, &ideal};
@@ -253,14 +295,19 @@ bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
         fine.associate(*keyframe, view, T_current_keyframe, shutter.motion(T_current_keyframe),
                        options.fine.final_radius);
         result.inliers = static_cast<int>(fine.matches().size());
+        if (fine.matches().matchedRatio() < options.fine.min_matched_ratio / 2) {
+            result.reason = "coarse tracking went astray: hardly any edge is where it should be";
+            return false;
+        }
         covariance = kCorrelatedPoints * (aligned.system.hessian + 1e-9 * Matrix6d::Identity()).inverse();
     } else {
         const FineResult refined = fine.track(*keyframe, view, T_current_keyframe,
                                               motionPrior(frame.timestamp), shutter, aligned.brightness);
         result.inliers = refined.inliers;
         if (!refined.converged) {
-            result.reason = "only " + std::to_string(refined.inliers) + " associated edge points, " +
-                            std::to_string(options.fine.min_inliers) + " needed";
+            result.matched_ratio = refined.matched_ratio;
+            result.ms.fine += fine_watch.milliseconds();
+            result.reason = lackOf(refined);
             return false;
         }
         T_current_keyframe = refined.T_current_keyframe;
@@ -275,7 +322,7 @@ bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
     orthonormalise(result.T_world_camera);
     setCovariance(covariance, T_current_keyframe, result);
     brightness = aligned.brightness;
-    result.ms.fine = fine_watch.milliseconds();
+    result.ms.fine += fine_watch.milliseconds();
     return true;
 }
 

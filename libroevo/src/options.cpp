@@ -158,6 +158,8 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
         {"fine", "depth_chi2", "", "chi-square limit of a depth residual", 0.5, 100, &f.depth_chi2},
         {"fine", "min_inliers", "points", "with fewer inliers the frame is not tracked", 6, 10000,
          &f.min_inliers},
+        {"fine", "min_matched_ratio", "",
+         "share of the visible edges that must be associated in a tracked frame", 0, 1, &f.min_matched_ratio},
         {"keyframe", "min_matched_ratio", "", "new keyframe below this share of associable edges", 0, 1,
          &k.min_matched_ratio},
         {"keyframe", "max_rotation_deg", "deg", "new keyframe beyond this rotation", 0.1, 180,

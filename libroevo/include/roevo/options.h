@@ -58,6 +58,8 @@ struct FineOptions {
     double depth_weight = 0.3;  ///< weight of the depth residual of associated points (0: as in the paper)
     double depth_chi2 = 12;     ///< chi-square limit of a depth residual
     int min_inliers = 40;       ///< fewer inliers: the frame is not tracked
+    double min_matched_ratio =
+        0.3;  ///< share of the visible edges that must be associated in a tracked frame
 };
 
 struct KeyframeOptions {

@@ -1,6 +1,8 @@
 #include "roevo/tracking/coarse_tracker.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "roevo/tracking/se3.h"
 
@@ -43,6 +45,24 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
     return best_cost;
 }
 
+std::vector<Pose> CoarseTracker::mostSimilar(const Keyframe& keyframe, const cv::Mat& image, int level,
+                                             const PinholeCamera& camera, const std::vector<Pose>& guesses,
+                                             const Brightness& brightness) {
+    constexpr std::size_t kTried = 6;
+    if (guesses.size() <= kTried) return guesses;
+    std::vector<std::pair<double, std::size_t>> by_cost;
+    for (std::size_t i = 0; i < guesses.size(); ++i) {
+        residuals_.evaluate(keyframe.photometric, level, image, camera, guesses[i], RowMotion(), brightness);
+        // A guess that puts most points outside the image is no good however well the rest fits
+        const double visible = residuals_.numVisible() / static_cast<double>(keyframe.photometric.size());
+        by_cost.emplace_back(residuals_.cost() / std::max(0.1, std::min(1.0, 2 * visible)), i);
+    }
+    std::sort(by_cost.begin(), by_cost.end());
+    std::vector<Pose> chosen;
+    for (std::size_t k = 0; k < kTried; ++k) chosen.push_back(guesses[by_cost[k].second]);
+    return chosen;
+}
+
 CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& pyramid,
                                   const PinholeCamera& camera, const RollingShutter& shutter,
                                   const std::vector<Pose>& guesses, const Brightness& start) {
@@ -52,12 +72,14 @@ CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& 
     if (static_cast<int>(keyframe.photometric.size()) < options_.min_points) return best;
     const int levels = std::min(pyramid.numLevels(), static_cast<int>(keyframe.photometric.patches.size()));
     double best_cost = -1;
-    for (const Pose& guess : guesses) {
+    const PinholeCamera coarsest = camera.atPyramidLevel(levels - 1);
+    for (const Pose& guess :
+         mostSimilar(keyframe, pyramid.level(levels - 1), levels - 1, coarsest, guesses, start)) {
         CoarseResult state;
         state.T_current_keyframe = guess;
         state.brightness = start;
-        const double cost = alignLevel(keyframe, pyramid.level(levels - 1), levels - 1,
-                                       camera.atPyramidLevel(levels - 1), shutter, state);
+        const double cost =
+            alignLevel(keyframe, pyramid.level(levels - 1), levels - 1, coarsest, shutter, state);
         if (cost >= 0 && (best_cost < 0 || cost < 0.95 * best_cost)) {
             best = state;
             best_cost = cost;

@@ -223,7 +223,10 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
     result.matches = matched;
     result.scale = scale_;
     result.matched_ratio = matches_.matchedRatio();
-    if (result.inliers < options_.min_inliers || !pose.matrix().allFinite()) return result;
+    if (result.inliers < options_.min_inliers || result.matched_ratio < options_.min_matched_ratio ||
+        !pose.matrix().allFinite()) {
+        return result;
+    }
     orthonormalise(pose);
     result.T_current_keyframe = pose;
     result.covariance = kCorrelatedPoints * system.hessian.inverse();

@@ -28,6 +28,9 @@ class CoarseTracker {
                        const Brightness& start);
 
   private:
+    std::vector<Pose> mostSimilar(const Keyframe& keyframe, const cv::Mat& image, int level,
+                                  const PinholeCamera& camera, const std::vector<Pose>& guesses,
+                                  const Brightness& brightness);
     double alignLevel(const Keyframe& keyframe, const cv::Mat& image, int level, const PinholeCamera& camera,
                       const RollingShutter& shutter, CoarseResult& state);
 
