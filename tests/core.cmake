@@ -1,0 +1,21 @@
+roevo_test(test_core_camera
+  SOURCES core/test_pinhole_camera.cpp core/test_undistorter.cpp core/test_depth_registration.cpp
+  LIBS roevo opencv_calib3d)
+roevo_test(test_core_edges
+  SOURCES core/test_gradient.cpp core/test_canny.cpp core/test_adjacency.cpp core/test_organize.cpp
+          core/test_organize_trees.cpp core/test_normals.cpp core/test_edge_grid.cpp core/test_edge_depth.cpp
+  LIBS roevo)
+roevo_test(test_core_tracking
+  SOURCES core/test_kernels.cpp core/test_photometric.cpp core/test_fine_jacobians.cpp core/test_gauss_newton.cpp
+          core/test_se3.cpp core/test_rolling_shutter.cpp core/test_edge_points.cpp core/test_options.cpp
+  LIBS roevo)
+roevo_test(test_core_odometry
+  SOURCES core/test_odometry_accuracy.cpp core/test_odometry_status.cpp core/test_odometry_covariance.cpp
+  LIBS roevo_simulator roevo_evaluation)
+roevo_test(test_core_sequences
+  SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp
+  LIBS roevo_simulator roevo_evaluation roevo_datasets)
+foreach(program camera edges tracking odometry sequences)
+  target_include_directories(test_core_${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  target_include_directories(test_core_${program} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+endforeach()

@@ -1,0 +1,100 @@
+// Foreground depth at an edge.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/edges/edge_depth.h"
+
+namespace roevo {
+namespace {
+
+const PinholeCamera kCamera{100, 80, 90, 90, 49.5, 39.5, {}};
+
+EdgeDepth at(const cv::Mat& depth, float u, float v) {
+    return foregroundDepth(depth, u, v, EdgeOptions(), SensorOptions());
+}
+
+TEST(EdgeDepth, OccludingStepGivesTheForegroundOnBothSides) {
+    cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(3.0F));
+    depth.colRange(0, 50).setTo(1.5F);
+    for (const float u : {48.0F, 49.0F, 49.5F, 50.0F, 51.0F}) {
+        const EdgeDepth found = at(depth, u, 40.3F);
+        EXPECT_FLOAT_EQ(found.depth, 1.5F) << u;
+        EXPECT_TRUE(found.occluding) << u;
+    }
+    EXPECT_FLOAT_EQ(at(depth, 60, 40).depth, 3);
+    EXPECT_FALSE(at(depth, 60, 40).occluding);
+    EXPECT_FALSE(at(depth, 20, 40).occluding);
+}
+
+TEST(EdgeDepth, SlantedPlaneIsExactBetweenPixels) {
+    std::mt19937 random(51);
+    std::uniform_real_distribution<float> slope(-0.4F, 0.4F), fraction(-0.5F, 0.5F);
+    for (int repeat = 0; repeat < 100; ++repeat) {
+        const Eigen::Vector3d n(slope(random), slope(random), 1);
+        cv::Mat depth(80, 100, CV_32FC1);
+        const auto planeDepth = [&](double u, double v) { return 2 / n.dot(kCamera.backProject(u, v, 1)); };
+        for (int v = 0; v < 80; ++v) {
+            for (int u = 0; u < 100; ++u) depth.at<float>(v, u) = static_cast<float>(planeDepth(u, v));
+        }
+        const float u = 50 + fraction(random), v = 40 + fraction(random);
+        EXPECT_NEAR(at(depth, u, v).depth, planeDepth(static_cast<double>(u), static_cast<double>(v)), 2e-6);
+    }
+}
+
+TEST(EdgeDepth, NeverLeavesTheRangeOfItsSamples) {
+    std::mt19937 random(52);
+    std::uniform_real_distribution<float> value(1.0F, 1.04F), place(3, 76);
+    cv::Mat depth(80, 100, CV_32FC1);
+    for (int v = 0; v < 80; ++v) {
+        for (int u = 0; u < 100; ++u) depth.at<float>(v, u) = value(random);
+    }
+    for (int i = 0; i < 500; ++i) {
+        const float z = at(depth, place(random), place(random)).depth;
+        EXPECT_GE(z, 1.0F);
+        EXPECT_LE(z, 1.04F);
+    }
+}
+
+TEST(EdgeDepth, SpeckleInFrontIsIgnored) {
+    cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(2.0F));
+    depth.at<float>(40, 50) = 0.5F;
+    EXPECT_FLOAT_EQ(at(depth, 50, 40).depth, 2);
+    depth.at<float>(40, 51) = 0.9F;  // a second, at another depth
+    EXPECT_FLOAT_EQ(at(depth, 50, 40).depth, 2);
+}
+
+TEST(EdgeDepth, NothingValidGivesZero) {
+    for (const float bad :
+         {0.0F, -1.0F, 0.05F, 50.0F, std::numeric_limits<float>::quiet_NaN(),
+          std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()}) {
+        const cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(static_cast<double>(bad)));
+        EXPECT_EQ(at(depth, 50, 40).depth, 0) << bad;
+        EXPECT_FALSE(at(depth, 50, 40).occluding) << bad;
+    }
+}
+
+TEST(EdgeDepth, InvalidNeighboursDoNotMatter) {
+    cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(1.25F));
+    depth.at<float>(39, 49) = std::numeric_limits<float>::quiet_NaN();
+    depth.at<float>(40, 50) = std::numeric_limits<float>::infinity();
+    depth.at<float>(41, 50) = 0;
+    depth.at<float>(41, 51) = -3;
+    EXPECT_FLOAT_EQ(at(depth, 50, 40).depth, 1.25F);
+}
+
+TEST(EdgeDepth, BordersAndOutsideAreSafe) {
+    const cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(1.25F));
+    for (const float u : {0.0F, 0.4F, 99.0F}) {
+        for (const float v : {0.0F, 79.0F}) EXPECT_FLOAT_EQ(at(depth, u, v).depth, 1.25F);
+    }
+    // A lens may put an ideal pixel outside the raw image
+    EXPECT_EQ(at(depth, -20, 40).depth, 0);
+    EXPECT_EQ(at(depth, 50, 120).depth, 0);
+}
+
+}  // namespace
+}  // namespace roevo

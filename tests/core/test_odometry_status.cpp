@@ -1,0 +1,222 @@
+// What the odometry says of every frame: status, reason, and never a NaN.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <opencv2/core.hpp>
+
+#include "core/support/simulated.h"
+
+namespace roevo {
+namespace {
+
+using testing::Sequence;
+using testing::simulate;
+using testing::smallRoom;
+
+const Sequence& room() {
+    static const Sequence sequence = simulate(smallRoom(), 30);
+    return sequence;
+}
+
+RgbdFrame black(double timestamp) {
+    return {timestamp, cv::Mat::zeros(240, 320, CV_8UC1), cv::Mat::zeros(240, 320, CV_32FC1), cv::Mat()};
+}
+
+class OdometryStatus : public ::testing::Test {
+  protected:
+    FrameResult feed(const RgbdFrame& frame) {
+        FrameResult result = odometry_.processFrame(frame);
+        EXPECT_TRUE(result.T_world_camera.matrix().allFinite());
+        EXPECT_TRUE(result.covariance.allFinite());
+        if (result.status != FrameStatus::kOk) {
+            EXPECT_FALSE(result.reason.empty());
+        }
+        EXPECT_EQ(result.reason.find('\n'), std::string::npos);
+        return result;
+    }
+    void feedRoom(int first, int end) {
+        for (int i = first; i < end; ++i) {
+            const FrameResult result = feed(frameAt(i));
+            EXPECT_EQ(result.status, i == 0 ? FrameStatus::kInitialised : FrameStatus::kOk)
+                << i << " " << result.reason;
+        }
+    }
+    static const RgbdFrame& frameAt(int i) { return room().frames[static_cast<std::size_t>(i)]; }
+    static double errorAt(const FrameResult& result, int i) {
+        return (result.T_world_camera.translation() -
+                room().truth[static_cast<std::size_t>(i)].T_world_camera.translation())
+            .norm();
+    }
+    Odometry odometry_{room().camera, OdometryOptions(), room().start()};
+};
+
+TEST_F(OdometryStatus, ABlackFrameIsPredictedAndTrackingGoesOn) {
+    feedRoom(0, 10);
+    const FrameResult lost = feed(black(frameAt(10).timestamp));
+    EXPECT_EQ(lost.status, FrameStatus::kPredicted);
+    EXPECT_LT(errorAt(lost, 10), 0.01) << "constant velocity is a fair guess for one frame";
+    const FrameResult found = feed(frameAt(11));
+    EXPECT_EQ(found.status, FrameStatus::kOk) << found.reason;
+    EXPECT_LT(errorAt(found, 11), 0.005);
+    EXPECT_GT(lost.sigmaTranslation(), found.sigmaTranslation()) << "a guessed pose is worth less";
+}
+
+TEST_F(OdometryStatus, SeveralBlackFramesAreBridgedAndTheFramesAfterThemAreRight) {
+    feedRoom(0, 10);
+    for (int i = 10; i < 16; ++i)
+        EXPECT_EQ(feed(black(frameAt(i).timestamp)).status, FrameStatus::kPredicted);
+    for (int i = 16; i < 22; ++i) {
+        const FrameResult result = feed(frameAt(i));
+        EXPECT_EQ(result.status, FrameStatus::kOk) << i << " " << result.reason;
+        EXPECT_LT(errorAt(result, i), 0.006) << i;
+    }
+}
+
+TEST_F(OdometryStatus, AFrameWithoutDepthIsTracked) {
+    feedRoom(0, 8);
+    RgbdFrame frame = frameAt(8);
+    frame.depth = cv::Mat();
+    const FrameResult empty = feed(frame);
+    EXPECT_EQ(empty.status, FrameStatus::kOk) << empty.reason;
+    EXPECT_LT(errorAt(empty, 8), 0.006);
+    frame = frameAt(9);
+    frame.depth = cv::Mat::zeros(240, 320, CV_32FC1);
+    const FrameResult zero = feed(frame);
+    EXPECT_EQ(zero.status, FrameStatus::kOk) << zero.reason;
+    EXPECT_LT(errorAt(zero, 9), 0.006);
+    EXPECT_FALSE(zero.is_keyframe);
+    feedRoom(10, 13);
+}
+
+TEST_F(OdometryStatus, RepeatedAndBackwardTimeStampsAreRejected) {
+    feedRoom(0, 5);
+    const FrameResult repeated = feed(frameAt(4));
+    EXPECT_EQ(repeated.status, FrameStatus::kRejected);
+    EXPECT_NE(repeated.reason.find("repeated"), std::string::npos);
+    const FrameResult backward = feed(frameAt(2));
+    EXPECT_EQ(backward.status, FrameStatus::kRejected);
+    EXPECT_NE(backward.reason.find("backward"), std::string::npos);
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        RgbdFrame frame = frameAt(5);
+        frame.timestamp = bad;
+        EXPECT_EQ(feed(frame).status, FrameStatus::kRejected);
+    }
+    feedRoom(5, 8);
+    EXPECT_EQ(odometry_.trajectory().size(), 8U) << "rejected frames have no pose";
+}
+
+TEST_F(OdometryStatus, AnotherSizeOrTypeIsRejectedWithBothSizes) {
+    feedRoom(0, 3);
+    RgbdFrame frame = frameAt(3);
+    frame.grey = cv::Mat::zeros(480, 640, CV_8UC1);
+    const FrameResult grey = feed(frame);
+    EXPECT_EQ(grey.status, FrameStatus::kRejected);
+    EXPECT_NE(grey.reason.find("640x480"), std::string::npos);
+    EXPECT_NE(grey.reason.find("320x240"), std::string::npos);
+    frame = frameAt(3);
+    frame.depth = cv::Mat::zeros(120, 160, CV_32FC1);
+    EXPECT_NE(feed(frame).reason.find("160x120"), std::string::npos);
+    frame = frameAt(3);
+    frame.depth = cv::Mat::zeros(240, 320, CV_16UC1);
+    EXPECT_EQ(feed(frame).status, FrameStatus::kRejected);
+    frame = frameAt(3);
+    frame.grey = cv::Mat::zeros(240, 320, CV_8UC3);
+    EXPECT_EQ(feed(frame).status, FrameStatus::kRejected);
+    frame.grey = cv::Mat();
+    EXPECT_EQ(feed(frame).status, FrameStatus::kRejected);
+    feedRoom(3, 6);
+}
+
+TEST_F(OdometryStatus, NotANumberInDepthIsAHole) {
+    for (int i = 0; i < 6; ++i) {
+        RgbdFrame frame = frameAt(i);
+        frame.depth = frame.depth.clone();
+        frame.depth.rowRange(60, 120).setTo(std::numeric_limits<float>::quiet_NaN());
+        frame.depth.rowRange(120, 140).setTo(std::numeric_limits<float>::infinity());
+        frame.depth.rowRange(140, 150).setTo(-1);
+        const FrameResult result = feed(frame);
+        EXPECT_EQ(result.status, i == 0 ? FrameStatus::kInitialised : FrameStatus::kOk) << result.reason;
+        EXPECT_LT(errorAt(result, i), 0.01);
+    }
+    for (const auto& edge : odometry_.map()) {
+        for (const auto& point : edge.points) EXPECT_TRUE(point.allFinite());
+    }
+}
+
+TEST_F(OdometryStatus, ALongLossIsHeldAndReanchoredWithAReason) {
+    feedRoom(0, 10);
+    double time = frameAt(9).timestamp;
+    const int bridged = OdometryOptions().loss.max_predicted;
+    for (int i = 0; i < bridged; ++i)
+        EXPECT_EQ(feed(black(time += 1 / 30.0)).status, FrameStatus::kPredicted);
+    const FrameResult first = feed(black(time += 1 / 30.0));
+    EXPECT_EQ(first.status, FrameStatus::kLost);
+    const FrameResult second = feed(black(time += 1 / 30.0));
+    EXPECT_EQ(second.status, FrameStatus::kLost);
+    EXPECT_EQ((first.T_world_camera.matrix() - second.T_world_camera.matrix()).norm(), 0)
+        << "the pose is held";
+    // A view that has nothing to do with the keyframe
+    auto elsewhere = smallRoom();
+    elsewhere.scene = "corridor";
+    const Sequence other = simulate(elsewhere, 4);
+    std::size_t i = 0;
+    FrameResult result;
+    for (; i < 4; ++i) {
+        RgbdFrame frame = other.frames[i];
+        frame.timestamp = (time += 1 / 30.0);
+        result = feed(frame);
+        if (result.status == FrameStatus::kInitialised) break;
+    }
+    ASSERT_EQ(result.status, FrameStatus::kInitialised) << result.reason;
+    EXPECT_NE(result.reason.find("re-anchored"), std::string::npos) << result.reason;
+    EXPECT_TRUE(result.is_keyframe);
+    EXPECT_LT((result.T_world_camera.translation() - second.T_world_camera.translation()).norm(), 1e-9)
+        << "no silent jump";
+    for (++i; i < 4; ++i) {
+        RgbdFrame frame = other.frames[i];
+        frame.timestamp = (time += 1 / 30.0);
+        EXPECT_EQ(feed(frame).status, FrameStatus::kOk);
+    }
+}
+
+TEST_F(OdometryStatus, UnusableFirstFramesAreRejectedUntilOneWillDo) {
+    const FrameResult dark = feed(black(0.1));
+    EXPECT_EQ(dark.status, FrameStatus::kRejected);
+    RgbdFrame blind = frameAt(0);
+    blind.timestamp = 0.2;
+    blind.depth = cv::Mat();
+    EXPECT_NE(feed(blind).reason.find("depth"), std::string::npos);
+    EXPECT_TRUE(odometry_.trajectory().empty());
+    EXPECT_TRUE(odometry_.keyframes().empty());
+    feedRoom(0, 4);
+    ASSERT_EQ(odometry_.keyframes().size(), 1U);
+    EXPECT_EQ(odometry_.keyframes()[0].timestamp, frameAt(0).timestamp);
+}
+
+TEST_F(OdometryStatus, NoiseDoesNotThrowThePoseAbout) {
+    feedRoom(0, 5);
+    cv::theRNG().state = 5;
+    for (int i = 5; i < 10; ++i) {
+        RgbdFrame noise = black(frameAt(i).timestamp);
+        cv::randu(noise.grey, 0, 256);
+        cv::randu(noise.depth, 0.5, 5);
+        EXPECT_LT(errorAt(feed(noise), i), 0.3) << i;
+    }
+}
+
+TEST_F(OdometryStatus, TrajectoryIsSortedUniqueAndKeyframesAreOfIt) {
+    feedRoom(0, 30);
+    const auto trajectory = odometry_.trajectory();
+    ASSERT_EQ(trajectory.size(), 30U);
+    for (std::size_t i = 1; i < trajectory.size(); ++i)
+        EXPECT_GT(trajectory[i].timestamp, trajectory[i - 1].timestamp);
+    const auto keyframes = odometry_.keyframes();
+    for (std::size_t k = 0; k < keyframes.size(); ++k) {
+        EXPECT_EQ(keyframes[k].id, static_cast<int>(k));
+        EXPECT_TRUE(std::any_of(trajectory.begin(), trajectory.end(),
+                                [&](const auto& pose) { return pose.timestamp == keyframes[k].timestamp; }));
+    }
+}
+
+}  // namespace
+}  // namespace roevo

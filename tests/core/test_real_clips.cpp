@@ -1,0 +1,69 @@
+// Real clips: the accuracy that is promised with the one default configuration. Skips, visibly, without the
+// data.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "datasets/dataset_reader.h"
+#include "evaluation/evaluate.h"
+#include "evaluation/trajectory_io.h"
+#include "roevo/odometry.h"
+
+namespace roevo {
+namespace {
+
+std::string dataFolder() {
+    const char* from_environment = std::getenv("ROEVO_DATA_DIR");
+    return from_environment != nullptr && *from_environment != '\0' ? from_environment : ROEVO_DATA_DIR;
+}
+
+struct Clip {
+    const char* name;
+    double limit;  ///< m, ATE RMSE in mode tr
+};
+std::ostream& operator<<(std::ostream& out, const Clip& clip) {
+    return out << clip.name;
+}
+
+class RealClip : public ::testing::TestWithParam<Clip> {
+  protected:
+    void SetUp() override {
+        if (!std::filesystem::exists(folder())) {
+            GTEST_SKIP() << folder() << " is not there; set ROEVO_DATA_DIR to the folder with the clips";
+        }
+    }
+    static std::string folder() { return dataFolder() + "/" + GetParam().name; }
+
+    /// ATE RMSE, m; every frame must be tracked.
+    static double ate(Mode mode) {
+        const DatasetReader reader = openDataset(folder());
+        OdometryOptions options;
+        options.mode = mode;
+        Odometry odometry(reader.camera(), options);
+        for (std::size_t i = 0; i < reader.size(); ++i) {
+            const FrameResult result = odometry.processFrame(reader.readFrame(i));
+            EXPECT_EQ(result.status, i == 0 ? FrameStatus::kInitialised : FrameStatus::kOk)
+                << "frame " << i << ": " << result.reason;
+        }
+        return evaluate(readTumTrajectory(reader.groundTruthPath()), odometry.trajectory())
+            .ate.translation.rmse;
+    }
+};
+
+TEST_P(RealClip, IsTrackedAsWellAsPromised) {
+    const double fine = ate(Mode::kTracking), coarse = ate(Mode::kCoarse);
+    RecordProperty("tr_cm", std::to_string(100 * fine));
+    RecordProperty("ct_cm", std::to_string(100 * coarse));
+    EXPECT_LE(fine, GetParam().limit);
+    EXPECT_LE(fine, coarse) << "fine tracking must not be worse than coarse tracking alone";
+}
+
+INSTANTIATE_TEST_SUITE_P(Clips, RealClip,
+                         ::testing::Values(Clip{"tum_fr1_xyz_150", 0.011}, Clip{"tum_fr1_rpy_100", 0.016},
+                                           Clip{"tum_fr3_structure_notexture_far_80", 0.016},
+                                           Clip{"icl_office_kt0_50", 0.009}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace roevo

@@ -1,0 +1,209 @@
+// Rows read one after the other: the two directions of the correction agree, and the read-out time is found.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "core/support/random_pose.h"
+#include "roevo/tracking/rolling_shutter.h"
+
+namespace roevo {
+namespace {
+
+using testing::uniform;
+
+const PinholeCamera kCamera{640, 480, 525, 525, 319.5, 239.5, {}};
+
+Eigen::Vector2d projectOne(const Pose& pose, const RowMotion& rows, const Eigen::Vector3d& point) {
+    alignas(32) float x[8] = {}, y[8] = {}, z[8] = {}, ox[8], oy[8], oz[8], u[8], v[8];
+    x[0] = static_cast<float>(point.x());
+    y[0] = static_cast<float>(point.y());
+    z[0] = static_cast<float>(point.z());
+    kernels::baseline().project(makeProjection(pose, kCamera, rows), x, y, z, 8, {ox, oy, oz, u, v});
+    return {static_cast<double>(u[0]), static_cast<double>(v[0])};
+}
+
+RowMotion randomMotion(std::mt19937& random) {
+    RowMotion rows;
+    for (int k = 0; k < 3; ++k) {
+        rows.velocity[k] = uniform(random, -0.5, 0.5);
+        rows.turn[k] = uniform(random, -1, 1);
+    }
+    rows.seconds_per_row = 0.03 / 480;
+    rows.reference_row = 239.5;
+    return rows;
+}
+
+TEST(RowMotion, APointBroughtToTheReferenceRowIsSeenWhereItWasSeen) {
+    std::mt19937 random(91);
+    double moved = 0, worst = 0;
+    for (int i = 0; i < 500; ++i) {
+        const RowMotion rows = randomMotion(random);
+        const double u = uniform(random, 20, 620), v = uniform(random, 20, 460),
+                     depth = uniform(random, 0.8, 5);
+        const Eigen::Vector3d at_reference = rows.toReference(kCamera.backProject(u, v, depth), v);
+        moved = std::max(moved, (kCamera.project(at_reference) - Eigen::Vector2d(u, v)).norm());
+        worst = std::max(worst,
+                         (projectOne(Pose::Identity(), rows, at_reference) - Eigen::Vector2d(u, v)).norm());
+    }
+    EXPECT_GT(moved, 5) << "the correction must do something";
+    // First order in time: what is left is of second order, a few hundredths of the correction
+    EXPECT_LT(worst, 0.05 * moved);
+}
+
+TEST(RowMotion, AtOrdinarySpeedTheRoundTripIsExactToATwentiethOfAPixel) {
+    std::mt19937 random(92);
+    for (int i = 0; i < 500; ++i) {
+        RowMotion rows = randomMotion(random);
+        rows.velocity *= 0.3;
+        rows.turn *= 0.3;
+        const double u = uniform(random, 20, 620), v = uniform(random, 20, 460),
+                     depth = uniform(random, 1, 5);
+        const Eigen::Vector3d at_reference = rows.toReference(kCamera.backProject(u, v, depth), v);
+        EXPECT_LT((projectOne(Pose::Identity(), rows, at_reference) - Eigen::Vector2d(u, v)).norm(), 0.05);
+    }
+}
+
+TEST(RowMotion, IsWhatAMovingCameraSees) {
+    // A camera that turns and moves at a constant rate looks at a fixed point: the row it appears on is the
+    // one that is being read while it is there.
+    std::mt19937 random(93);
+    for (int i = 0; i < 100; ++i) {
+        RowMotion rows = randomMotion(random);
+        rows.velocity *= 0.3;
+        rows.turn *= 0.3;
+        const Eigen::Vector3d point =
+            kCamera.backProject(uniform(random, 50, 590), uniform(random, 50, 430), 2);
+        const auto poseAfter = [&](double seconds) {  // camera pose relative to the reference row's
+            Vector6d xi;
+            xi << rows.velocity * seconds, rows.turn * seconds;
+            return poseIncrement(xi);
+        };
+        Eigen::Vector2d pixel = kCamera.project(point);
+        for (int k = 0; k < 20; ++k) {
+            const double seconds = (pixel.y() - rows.reference_row) * rows.seconds_per_row;
+            pixel = kCamera.project(poseAfter(seconds).inverse() * point);
+        }
+        EXPECT_LT((projectOne(Pose::Identity(), rows, point) - pixel).norm(), 0.05);
+    }
+}
+
+TEST(RowMotion, NoReadoutTimeChangesNothing) {
+    std::mt19937 random(94);
+    RowMotion rows = randomMotion(random);
+    rows.seconds_per_row = 0;
+    const Eigen::Vector3d point(0.3, -0.2, 1.7);
+    EXPECT_EQ(rows.toReference(point, 17), point);
+    EXPECT_LT((projectOne(Pose::Identity(), rows, point) - kCamera.project(point)).norm(), 1e-3);
+}
+
+TEST(RowMotion, PyramidLevelsSeeTheSameShift) {
+    std::mt19937 random(95);
+    const RowMotion rows = randomMotion(random);
+    const Eigen::Vector3d point = kCamera.backProject(500, 400, 2);
+    const Eigen::Vector2d shift = projectOne(Pose::Identity(), rows, point) - kCamera.project(point);
+    for (int level = 1; level < 4; ++level) {
+        const PinholeCamera camera = kCamera.atPyramidLevel(level);
+        const RowMotion scaled = rows.atPyramidLevel(level);
+        EXPECT_NEAR(scaled.seconds_per_row * camera.height, rows.seconds_per_row * kCamera.height, 1e-9);
+        alignas(32) float x[8] = {}, y[8] = {}, z[8] = {}, ox[8], oy[8], oz[8], u[8], v[8];
+        x[0] = static_cast<float>(point.x());
+        y[0] = static_cast<float>(point.y());
+        z[0] = static_cast<float>(point.z());
+        kernels::baseline().project(makeProjection(Pose::Identity(), camera, scaled), x, y, z, 8,
+                                    {ox, oy, oz, u, v});
+        const Eigen::Vector2d at(static_cast<double>(u[0]), static_cast<double>(v[0]));
+        EXPECT_LT(((at - camera.project(point)) * (1 << level) - shift).norm(), 0.02) << level;
+    }
+}
+
+TEST(RollingShutter, MotionIsTheCamerasVelocityInItsOwnFrame) {
+    std::mt19937 random(96);
+    for (int i = 0; i < 50; ++i) {
+        const Pose T_world_keyframe = testing::randomPose(random, 2, 1);
+        const Pose T_world_previous = T_world_keyframe * testing::randomPose(random, 0.1, 0.1);
+        const Eigen::Vector3d velocity(0.3, -0.2, 0.5), turn(0.4, 0.2, -0.6);  // in the camera's frame
+        const double dt = 0.04;
+        Pose T_previous_current = Pose::Identity();
+        T_previous_current.linear() =
+            Eigen::AngleAxisd(turn.norm() * dt, turn.normalized()).toRotationMatrix();
+        T_previous_current.translation() = T_previous_current.linear() * velocity * dt;
+        const Pose T_world_current = T_world_previous * T_previous_current;
+        RollingShutter shutter;
+        shutter.seconds_per_row = 1e-4;
+        shutter.reference_row = 100;
+        shutter.T_previous_keyframe = T_world_previous.inverse() * T_world_keyframe;
+        shutter.since_previous = dt;
+        const RowMotion rows = shutter.motion(T_world_current.inverse() * T_world_keyframe);
+        EXPECT_LT((rows.velocity - velocity).norm(), 1e-9);
+        EXPECT_LT((rows.turn - turn).norm(), 1e-9);
+        EXPECT_EQ(rows.seconds_per_row, 1e-4);
+        EXPECT_EQ(rows.reference_row, 100);
+        shutter.since_previous = 0;
+        const RowMotion still = shutter.motion(T_world_current.inverse() * T_world_keyframe);
+        EXPECT_EQ(still.velocity.norm() + still.turn.norm(), 0);
+    }
+}
+
+TEST(ReadoutEstimator, FindsAKnownReadoutTimeInLinearData) {
+    std::mt19937 random(97);
+    const double truth = 2.5e-5;  // s per row
+    ReadoutEstimator estimator(1e-4, 0.95);
+    EXPECT_EQ(estimator.secondsPerRow(), 0);
+    const double sigma_before = estimator.sigma();
+    EXPECT_NEAR(sigma_before, 1e-4, 1e-12);
+    for (int frame = 0; frame < 60; ++frame) {
+        Matrix6d information = Matrix6d::Zero();
+        Vector6d mixed = Vector6d::Zero(), gradient = Vector6d::Zero(), pose_error;
+        double own = 0, own_gradient = 0;
+        for (int k = 0; k < 6; ++k) pose_error[k] = uniform(random, -0.01, 0.01);
+        for (int i = 0; i < 300; ++i) {
+            Vector6d j;
+            for (int k = 0; k < 6; ++k) j[k] = uniform(random, -500, 500);
+            const double by_readout = uniform(random, -1e5, 1e5);
+            // The residual at no read-out time and a pose that is off: r = -(j e + by_readout s) + noise
+            const double residual = -(j.dot(pose_error) + by_readout * truth) + uniform(random, -0.3, 0.3);
+            information += j * j.transpose();
+            mixed += by_readout * j;
+            gradient += residual * j;
+            own += by_readout * by_readout;
+            own_gradient += by_readout * residual;
+        }
+        estimator.add(information, mixed, own, gradient, own_gradient);
+    }
+    EXPECT_NEAR(estimator.secondsPerRow(), truth, 0.01 * truth);
+    EXPECT_LT(estimator.sigma(), sigma_before / 10);
+}
+
+TEST(ReadoutEstimator, WhatThePoseExplainsAsWellTeachesNothing) {
+    std::mt19937 random(98);
+    ReadoutEstimator estimator(1e-4, 0.95);
+    for (int frame = 0; frame < 30; ++frame) {
+        Matrix6d information = Matrix6d::Identity() * 1e-6;
+        Vector6d mixed = Vector6d::Zero(), gradient = Vector6d::Zero();
+        double own = 0, own_gradient = 0;
+        for (int i = 0; i < 100; ++i) {
+            Vector6d j;
+            for (int k = 0; k < 6; ++k) j[k] = uniform(random, -500, 500);
+            const double by_readout = 200 * j[1];  // indistinguishable from moving along y
+            const double residual = j[1] * 0.01;
+            information += j * j.transpose();
+            mixed += by_readout * j;
+            gradient += residual * j;
+            own += by_readout * by_readout;
+            own_gradient += by_readout * residual;
+        }
+        estimator.add(information, mixed, own, gradient, own_gradient);
+    }
+    EXPECT_LT(std::abs(estimator.secondsPerRow()), 1e-6);
+}
+
+TEST(ReadoutEstimator, BadEvidenceIsLeftOut) {
+    ReadoutEstimator estimator(1e-4, 0.95);
+    estimator.add(Matrix6d::Zero(), Vector6d::Ones(), 1, Vector6d::Ones(), std::nan(""));
+    estimator.add(-Matrix6d::Identity(), Vector6d::Ones(), 1, Vector6d::Ones(), 1);
+    estimator.add(Matrix6d::Identity() * std::nan(""), Vector6d::Ones(), 1, Vector6d::Ones(), 1);
+    EXPECT_EQ(estimator.secondsPerRow(), 0);
+}
+
+}  // namespace
+}  // namespace roevo
