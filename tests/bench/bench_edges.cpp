@@ -1,0 +1,111 @@
+// From grey image to organized edges, stage by stage, and the searches over them.
+#include <benchmark/benchmark.h>
+
+#include "bench/room.h"
+#include "roevo/edges/edge_extractor.h"
+#include "roevo/edges/edge_grid.h"
+
+namespace roevo::bench {
+namespace {
+
+void gradient(benchmark::State& state) {
+    const cv::Mat& grey = room().frames.front().grey;
+    Gradient out;
+    for (auto _ : state) {
+        computeGradient(grey, OdometryOptions().edges.blur_sigma, out);
+        benchmark::DoNotOptimize(out.magnitude.data);
+        benchmark::ClobberMemory();
+    }
+}
+BENCHMARK(gradient)->Unit(benchmark::kMicrosecond);
+
+void otsu(benchmark::State& state) {
+    const cv::Mat& magnitude = room().gradient.magnitude;
+    for (auto _ : state) benchmark::DoNotOptimize(otsuThreshold(magnitude));
+}
+BENCHMARK(otsu)->Unit(benchmark::kMicrosecond);
+
+void cannyMask(benchmark::State& state) {
+    EdgeMask out;
+    for (auto _ : state) {
+        canny(room().gradient, room().low, room().high, out);
+        benchmark::DoNotOptimize(out.pixels.data());
+        benchmark::ClobberMemory();
+    }
+    state.counters["pixels"] = static_cast<double>(out.pixels.size());
+}
+BENCHMARK(cannyMask)->Unit(benchmark::kMicrosecond);
+
+void organize(benchmark::State& state) {
+    const EdgeOptions options;
+    EdgeMask mask = {room().raw_mask.mask.clone(), room().raw_mask.pixels};
+    adjustAdjacency(mask);
+    EdgeOrganizer organizer;
+    OrganizedEdges out;
+    for (auto _ : state) {
+        organizer.organize(room().gradient, mask, options.angle_deg, options.min_length, out);
+        benchmark::DoNotOptimize(out.x.data());
+        benchmark::ClobberMemory();
+    }
+    state.counters["edges"] = out.numEdges();
+    state.counters["points"] = static_cast<double>(out.size());
+}
+BENCHMARK(organize)->Unit(benchmark::kMicrosecond);
+
+void edgeExtractor(benchmark::State& state) {
+    const cv::Mat& grey = room().frames.front().grey;
+    EdgeExtractor extractor{EdgeOptions()};
+    OrganizedEdges out;
+    for (auto _ : state) {
+        extractor.extract(grey, out);
+        benchmark::DoNotOptimize(out.x.data());
+        benchmark::ClobberMemory();
+    }
+}
+BENCHMARK(edgeExtractor)->Unit(benchmark::kMicrosecond);
+
+void edgeDepth(benchmark::State& state) {
+    const OdometryOptions options;
+    for (auto _ : state) {
+        const EdgePoints3D lifted = liftEdges(room().edges, room().frames.front().depth, room().camera,
+                                              RowMotion(), options.edges, options.sensor);
+        benchmark::DoNotOptimize(lifted.x.data());
+    }
+}
+BENCHMARK(edgeDepth)->Unit(benchmark::kMicrosecond);
+
+void gridBuild(benchmark::State& state) {
+    EdgeGrid grid;
+    for (auto _ : state) {
+        grid.build(room().edges, room().camera.width, room().camera.height);
+        benchmark::ClobberMemory();
+    }
+}
+BENCHMARK(gridBuild)->Unit(benchmark::kMicrosecond);
+
+/// Every second edge point, moved aside, looks for a neighbour whose normal agrees: as association does.
+void gridQueries(benchmark::State& state) {
+    const OrganizedEdges& edges = room().edges;
+    EdgeGrid grid;
+    grid.build(edges, room().camera.width, room().camera.height);
+    const auto radius = static_cast<float>(state.range(0));
+    constexpr float kMinCosine = 0.9962F;  // 5 degrees
+    constexpr std::size_t kStep = 2;
+    std::int64_t asked = 0;
+    for (auto _ : state) {
+        for (std::size_t i = 0; i < edges.size(); i += kStep) {
+            const float nx = edges.normal_x[i], ny = edges.normal_y[i];
+            const int nearest =
+                grid.nearest(edges.x[i] + 1.3F, edges.y[i] - 0.7F, radius, [&](std::size_t candidate) {
+                    return nx * edges.normal_x[candidate] + ny * edges.normal_y[candidate] >= kMinCosine;
+                });
+            benchmark::DoNotOptimize(nearest);
+            ++asked;
+        }
+    }
+    state.SetItemsProcessed(asked);
+}
+BENCHMARK(gridQueries)->ArgName("radius")->Arg(3)->Arg(6)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace roevo::bench

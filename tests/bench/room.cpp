@@ -1,0 +1,48 @@
+#include "bench/room.h"
+
+#include <algorithm>
+#include <opencv2/core/utility.hpp>
+
+#include "roevo/edges/edge_extractor.h"
+#include "roevo_simulator/simulator.h"
+
+namespace roevo::bench {
+namespace {
+
+constexpr int kFrames = 60;
+
+Room makeRoom() {
+    simulator::SimulationOptions simulation;
+    simulation.useKinectNoise();
+    simulation.frames = kFrames;
+    const simulator::Simulator simulator(simulation);
+    Room room;
+    room.camera = simulator.camera();
+    for (int i = 0; i < kFrames; ++i) {
+        const simulator::SimulatedFrame frame = simulator.frame(i);
+        room.frames.push_back({frame.timestamp, frame.grey, frame.depth_noisy, cv::Mat()});
+    }
+    cv::setNumThreads(1);  // everything is timed on one core
+
+    const OdometryOptions options;
+    const RgbdFrame& first = room.frames.front();
+    computeGradient(first.grey, options.edges.blur_sigma, room.gradient);
+    room.high = std::max(options.edges.min_high_threshold,
+                         options.edges.canny_high_factor * otsuThreshold(room.gradient.magnitude));
+    room.low = options.edges.canny_low_ratio * room.high;
+    canny(room.gradient, room.low, room.high, room.raw_mask);
+    EdgeExtractor(options.edges).extract(first.grey, room.edges);
+    room.pyramid.build(first.grey, options.coarse.levels);
+    room.points = liftEdges(room.edges, first.depth, room.camera, RowMotion(), options.edges, options.sensor);
+    room.photometric = samplePhotometricPoints(room.points, room.pyramid, options.coarse.max_points);
+    return room;
+}
+
+}  // namespace
+
+const Room& room() {
+    static const Room room = makeRoom();
+    return room;
+}
+
+}  // namespace roevo::bench

@@ -1,0 +1,34 @@
+#pragma once
+/// What the benchmarks work on: simulated frames held in memory, and the pieces made of the first of them.
+
+#include <vector>
+
+#include "roevo/camera/rgbd_frame.h"
+#include "roevo/edges/canny.h"
+#include "roevo/edges/gradient.h"
+#include "roevo/edges/organized_edges.h"
+#include "roevo/options.h"
+#include "roevo/tracking/edge_points.h"
+#include "roevo/tracking/photometric.h"
+
+namespace roevo::bench {
+
+/// The simulated living room, 640x480, with the noise of a Kinect.
+struct Room {
+    PinholeCamera camera;
+    std::vector<RgbdFrame> frames;
+
+    // Of the first frame, with the default options:
+    Gradient gradient;
+    double low = 0, high = 0;  ///< Canny's thresholds
+    EdgeMask raw_mask;         ///< before the adjustment of adjacency
+    OrganizedEdges edges;
+    ImagePyramid pyramid;
+    EdgePoints3D points;
+    PhotometricPoints photometric;
+};
+
+/// Made at the first call; takes some seconds.
+const Room& room();
+
+}  // namespace roevo::bench
