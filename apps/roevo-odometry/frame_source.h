@@ -41,7 +41,8 @@ class FrameSource {
 /// @throws std::runtime_error in one line
 std::unique_ptr<FrameSource> openSource(const std::string& input, const std::string& sensor_label);
 
-/// Decodes ahead in a thread of its own, a few frames at most, in order.
+/// Decodes ahead in a thread of its own, a few frames at most, in order; the source itself where the process
+/// may use one processor only.
 std::unique_ptr<FrameSource> prefetch(std::unique_ptr<FrameSource> source);
 
 /// Empty when the depth of a frame is of a plausible scale (or there is none), else one line that says by
