@@ -9,9 +9,14 @@ roevo_test(test_core_tracking
   SOURCES core/test_kernels.cpp core/test_photometric.cpp core/test_fine_jacobians.cpp core/test_gauss_newton.cpp
           core/test_se3.cpp core/test_rolling_shutter.cpp core/test_edge_points.cpp core/test_options.cpp
   LIBS roevo)
-roevo_test(test_core_odometry
-  SOURCES core/test_odometry_accuracy.cpp core/test_odometry_status.cpp core/test_odometry_covariance.cpp
-  LIBS roevo_simulator roevo_evaluation)
+# One ctest entry per suite, since the cases of a suite share a rendered sequence.
+add_executable(test_core_odometry core/test_odometry_accuracy.cpp core/test_odometry_status.cpp
+               core/test_odometry_covariance.cpp)
+target_link_libraries(test_core_odometry PRIVATE roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
+foreach(suite OdometryAccuracy OdometryStatus OdometryCovariance)
+  add_test(NAME ${suite} COMMAND test_core_odometry --gtest_filter=${suite}.*)
+  set_tests_properties(${suite} PROPERTIES TIMEOUT 300)
+endforeach()
 roevo_test(test_core_sequences
   SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp
   LIBS roevo_simulator roevo_evaluation roevo_datasets)
