@@ -1,14 +1,17 @@
 #include "roevo/odometry.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "roevo/camera/undistorter.h"
 #include "roevo/edges/edge_extractor.h"
 #include "roevo/tracking/fine_tracker.h"
+#include "roevo/tracking/motion_model.h"
 #include "roevo/tracking/se3.h"
 
 namespace roevo {
@@ -23,6 +26,23 @@ class Stopwatch {
   private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// Rotations about the camera's x and y axes around a pose, as far as half the field of view: where to look
+/// when the camera was turned faster than the trackers converge.
+std::vector<Pose> searchAround(const Pose& T_current_keyframe) {
+    constexpr double kStep = 3 * kDegree;
+    constexpr int kReach = 6;
+    std::vector<Pose> guesses;
+    for (int yaw = -kReach; yaw <= kReach; ++yaw) {
+        for (int pitch = -kReach; pitch <= kReach; ++pitch) {
+            Vector6d turn = Vector6d::Zero();
+            turn[3] = pitch * kStep;
+            turn[4] = yaw * kStep;
+            guesses.push_back(poseIncrement(turn) * T_current_keyframe);
+        }
+    }
+    return guesses;
+}
 
 }  // namespace
 
@@ -47,8 +67,7 @@ double FrameResult::sigmaTranslation() const {
 }
 
 double FrameResult::sigmaRotationDeg() const {
-    return std::sqrt(std::max(0.0, covariance.bottomRightCorner<3, 3>().trace())) * 180 /
-           3.14159265358979323846;
+    return std::sqrt(std::max(0.0, covariance.bottomRightCorner<3, 3>().trace())) / kDegree;
 }
 
 struct Odometry::Impl {
@@ -61,7 +80,8 @@ struct Odometry::Impl {
           coarse(opts.coarse),
           fine(opts.fine, opts.edges, opts.sensor),
           T_world_camera(start),
-          readout(opts.sensor.readout_sigma / raw.height, opts.sensor.readout_memory) {}
+          motion(opts.motion, opts.sensor, raw.height),
+          row_motion(motion.stillRows()) {}
 
     PinholeCamera camera, ideal;
     OdometryOptions options;
@@ -70,7 +90,8 @@ struct Odometry::Impl {
     CoarseTracker coarse;
     FineTracker fine;
 
-    OrganizedEdges edges;  // of the present frame
+    cv::Mat undistorted;  // of the present frame
+    OrganizedEdges edges;
     EdgeGrid grid;
     ImagePyramid pyramid;
 
@@ -78,24 +99,21 @@ struct Odometry::Impl {
     std::vector<KeyframeInfo> keyframe_infos;
     EdgeMap edge_map;
     std::vector<StampedPose> poses;
-    Pose T_world_camera;               // last pose
-    Pose velocity = Pose::Identity();  // T_last_current per second scale is kept in velocity_dt
-    double velocity_dt = 0;
-    double last_timestamp = -1;
-    Brightness brightness;
+    Pose T_world_camera;  // last pose, measured or predicted
+    MotionModel motion;
     RowMotion row_motion;  // of the present frame
-    ReadoutEstimator readout;
+    Brightness brightness;
+    double last_timestamp = -std::numeric_limits<double>::infinity();
     int lost_frames = 0;
 
     std::string faultOf(const RgbdFrame& frame) const;
-    Pose predict(double timestamp) const;
-    PosePrior motionPrior(double timestamp) const;
-    RollingShutter rollingShutter(double timestamp) const;
     std::string makeKeyframe(const RgbdFrame& frame, const FrameResult& result);
     void keepMapEdges(const RgbdFrame& frame, const Keyframe& kf);
     void process(const RgbdFrame& frame, FrameResult& result);
     bool trackFrame(const RgbdFrame& frame, FrameResult& result);
-    bool trackFrom(const std::vector<Pose>& guesses, const RgbdFrame& frame, FrameResult& result);
+    bool trackFrom(const std::vector<Pose>& guesses, const PosePrior& prior, const RgbdFrame& frame,
+                   FrameResult& result);
+    void bridgeLoss(const RgbdFrame& frame, FrameResult& result);
     std::string lackOf(const FineResult& refined) const;
     bool wantsKeyframe(const FrameResult& result) const;
     void setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe, FrameResult& result) const;
@@ -122,38 +140,6 @@ std::string Odometry::Impl::faultOf(const RgbdFrame& frame) const {
         return "depth image is " + sizeText(frame.depth) + " but the camera is " + expected;
     }
     return {};
-}
-
-Pose Odometry::Impl::predict(double timestamp) const {
-    if (velocity_dt <= 0) return T_world_camera;
-    const double share = std::clamp((timestamp - last_timestamp) / velocity_dt, 0.0, 3.0);
-    return T_world_camera * interpolate(Pose::Identity(), velocity, share);
-}
-
-PosePrior Odometry::Impl::motionPrior(double timestamp) const {
-    const double dt = std::clamp(timestamp - last_timestamp, 1e-3, 0.5);
-    PosePrior prior;
-    prior.mean = predict(timestamp).inverse() * keyframe->T_world_camera;
-    prior.sigma_translation = options.motion.acceleration * dt * dt / 2;
-    prior.sigma_rotation =
-        options.motion.angular_acceleration_deg * (3.14159265358979323846 / 180) * dt * dt / 2;
-    if (velocity_dt <= 0) {  // no velocity yet, or not one to be trusted
-        prior.sigma_translation += options.motion.speed * dt;
-        prior.sigma_rotation += options.motion.angular_speed_deg * (3.14159265358979323846 / 180) * dt;
-    }
-    return prior;
-}
-
-RollingShutter Odometry::Impl::rollingShutter(double timestamp) const {
-    RollingShutter shutter;
-    shutter.seconds_per_row = options.sensor.estimate_readout ? readout.secondsPerRow()
-                                                              : options.sensor.readout_time / camera.height;
-    shutter.reference_row = options.sensor.reference_row * (camera.height - 1);
-    if (velocity_dt > 0 || poses.size() == 1) {
-        shutter.T_previous_keyframe = T_world_camera.inverse() * keyframe->T_world_camera;
-        shutter.since_previous = timestamp - last_timestamp;
-    }
-    return shutter;
 }
 
 std::string Odometry::Impl::makeKeyframe(const RgbdFrame& frame, const FrameResult& result) {
@@ -208,8 +194,6 @@ void Odometry::Impl::keepMapEdges(const RgbdFrame& frame, const Keyframe& kf) {
 
 void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe,
                                    FrameResult& result) const {
-    // Neighbouring points of an edge err together: the information counts about one independent point in so
-    // many.
     const Eigen::Matrix3d R = result.T_world_camera.linear();
     Matrix6d to_world = Matrix6d::Zero();
     to_world.topLeftCorner<3, 3>() = R;
@@ -224,7 +208,7 @@ void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_curre
 
 bool Odometry::Impl::wantsKeyframe(const FrameResult& result) const {
     const Pose T_keyframe_current = keyframe->T_world_camera.inverse() * result.T_world_camera;
-    const double degrees = rotationAngle(T_keyframe_current) * 180 / 3.14159265358979323846;
+    const double degrees = rotationAngle(T_keyframe_current) / kDegree;
     return result.matched_ratio < options.keyframe.min_matched_ratio ||
            degrees > options.keyframe.max_rotation_deg ||
            T_keyframe_current.translation().norm() >
@@ -236,46 +220,39 @@ std::string Odometry::Impl::lackOf(const FineResult& refined) const {
         return "only " + std::to_string(refined.inliers) + " associated edge points, " +
                std::to_string(options.fine.min_inliers) + " needed";
     }
+    if (refined.matched_ratio >= options.fine.min_matched_ratio) return "the pose diverged";
     return "only " + std::to_string(std::lround(100 * refined.matched_ratio)) +
            " % of the edges associated, " +
            std::to_string(std::lround(100 * options.fine.min_matched_ratio)) + " % needed";
 }
 
-/// Rotations about the camera's x and y axes around a pose, as far as half the field of view: where to look
-/// when the camera was turned faster than the trackers converge.
-std::vector<Pose> searchAround(const Pose& T_current_keyframe) {
-    constexpr double kStep = 3 * 3.14159265358979323846 / 180;
-    constexpr int kReach = 6;
-    std::vector<Pose> guesses;
-    for (int yaw = -kReach; yaw <= kReach; ++yaw) {
-        for (int pitch = -kReach; pitch <= kReach; ++pitch) {
-            Vector6d turn = Vector6d::Zero();
-            turn[3] = pitch * kStep;
-            turn[4] = yaw * kStep;
-            guesses.push_back(poseIncrement(turn) * T_current_keyframe);
-        }
-    }
-    return guesses;
-}
-
 bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
     const Pose& T_world_keyframe = keyframe->T_world_camera;
     const Pose T_last_keyframe = T_world_camera.inverse() * T_world_keyframe;
-    if (trackFrom({predict(frame.timestamp).inverse() * T_world_keyframe, T_last_keyframe}, frame, result))
-        return true;
-    const std::string why = result.reason;
-    if (edges.numEdges() > 0 && trackFrom(searchAround(T_last_keyframe), frame, result)) {
-        result.reason.clear();
+    const Pose T_predicted_keyframe = motion.predict(frame.timestamp).inverse() * T_world_keyframe;
+    if (trackFrom({T_predicted_keyframe, T_last_keyframe}, motion.prior(frame.timestamp, T_world_keyframe),
+                  frame, result)) {
+        motion.measure(frame.timestamp, result.T_world_camera);
         return true;
     }
-    result.reason = why;
+    const FrameResult failed = result;
+    if (edges.numEdges() > 0 &&
+        trackFrom(searchAround(T_last_keyframe), motion.searchPrior(frame.timestamp, T_world_keyframe), frame,
+                  result)) {
+        motion.anchor(frame.timestamp, result.T_world_camera);
+        result.reason = "found by searching around the last pose: " + failed.reason;
+        return true;
+    }
+    result.reason = failed.reason;
+    result.inliers = failed.inliers;
+    result.matched_ratio = failed.matched_ratio;
     return false;
 }
 
-bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const RgbdFrame& frame,
-                               FrameResult& result) {
+bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior& prior,
+                               const RgbdFrame& frame, FrameResult& result) {
     const Pose T_world_keyframe = keyframe->T_world_camera;
-    const RollingShutter shutter = rollingShutter(frame.timestamp);
+    const RollingShutter shutter = motion.shutter(frame.timestamp, T_world_keyframe);
 
     const Stopwatch coarse_watch;
     const CoarseResult aligned = coarse.track(*keyframe, pyramid, ideal, shutter, guesses, brightness);
@@ -287,8 +264,9 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const RgbdFrame
     Matrix6d covariance;
     if (options.mode == Mode::kCoarse) {
         if (!aligned.converged) {
-            result.reason = "coarse tracking found only " + std::to_string(aligned.num_visible) +
-                            " visible points, " + std::to_string(options.coarse.min_points) + " needed";
+            result.reason =
+                "coarse tracking saw too few points in the image: " + std::to_string(aligned.num_visible) +
+                " of " + std::to_string(keyframe->photometric.size());
             return false;
         }
         // Edges are associated only to know when the next keyframe is due
@@ -301,8 +279,8 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const RgbdFrame
         }
         covariance = kCorrelatedPoints * (aligned.system.hessian + 1e-9 * Matrix6d::Identity()).inverse();
     } else {
-        const FineResult refined = fine.track(*keyframe, view, T_current_keyframe,
-                                              motionPrior(frame.timestamp), shutter, aligned.brightness);
+        const FineResult refined =
+            fine.track(*keyframe, view, T_current_keyframe, prior, shutter, aligned.brightness);
         result.inliers = refined.inliers;
         if (!refined.converged) {
             result.matched_ratio = refined.matched_ratio;
@@ -315,7 +293,7 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const RgbdFrame
     }
     row_motion = shutter.motion(T_current_keyframe);
     if (options.mode != Mode::kCoarse && shutter.since_previous > 0) {
-        fine.addReadoutEvidence(*keyframe, T_current_keyframe, row_motion, view, readout);
+        fine.addReadoutEvidence(*keyframe, T_current_keyframe, row_motion, view, motion.readout());
     }
     result.matched_ratio = fine.matches().matchedRatio();
     result.T_world_camera = T_world_keyframe * T_current_keyframe.inverse();
@@ -328,7 +306,7 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const RgbdFrame
 
 void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
     Stopwatch edge_watch;
-    const cv::Mat grey = undistorter.apply(frame.grey);
+    const cv::Mat& grey = undistorter.apply(frame.grey, undistorted);
     extractor.extract(grey, edges);
     grid.build(edges, ideal.width, ideal.height);
     pyramid.build(grey, options.coarse.levels);
@@ -336,7 +314,6 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
     result.num_points = static_cast<int>(edges.size());
     result.ms.edges = edge_watch.milliseconds();
 
-    const double dt = frame.timestamp - last_timestamp;
     if (!keyframe) {
         result.T_world_camera = T_world_camera;
         const std::string fault = makeKeyframe(frame, result);
@@ -348,45 +325,49 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
         result.status = FrameStatus::kInitialised;
         result.reason = "first usable frame";
         result.is_keyframe = true;
-        last_timestamp = frame.timestamp;
-        return;
-    }
-    if (trackFrame(frame, result)) {
+        motion.anchor(frame.timestamp, T_world_camera);
+    } else if (trackFrame(frame, result)) {
         result.status = FrameStatus::kOk;
-        velocity = T_world_camera.inverse() * result.T_world_camera;
-        velocity_dt = dt;
         T_world_camera = result.T_world_camera;
         lost_frames = 0;
         if (wantsKeyframe(result)) {
             const std::string fault = makeKeyframe(frame, result);
             result.is_keyframe = fault.empty();
-            if (!fault.empty()) result.reason = "wanted as keyframe, but " + fault;
+            if (!fault.empty())
+                result.reason += (result.reason.empty() ? "" : "; ") + ("wanted as keyframe, but " + fault);
         }
     } else {
-        ++lost_frames;
-        const std::string why = result.reason;
-        const bool bridging = lost_frames <= options.loss.max_predicted;
-        result.T_world_camera = bridging ? predict(frame.timestamp) : T_world_camera;
-        result.status = bridging ? FrameStatus::kPredicted : FrameStatus::kLost;
-        result.reason = (bridging ? "constant velocity: " : "pose held: ") + why;
-        T_world_camera = result.T_world_camera;
-        velocity_dt = bridging ? velocity_dt : 0;
-        // A lost pose is worth little: say so, growing with every frame
-        result.covariance = keyframe->covariance + lost_frames * 1e-2 * Matrix6d::Identity();
-        if (!bridging && makeKeyframe(frame, result).empty()) {
-            result.status = FrameStatus::kInitialised;
-            result.is_keyframe = true;
-            result.reason =
-                "re-anchored after " + std::to_string(lost_frames) + " frames without tracking: " + why;
-            lost_frames = 0;
-        }
+        bridgeLoss(frame, result);
     }
     last_timestamp = frame.timestamp;
+}
+
+void Odometry::Impl::bridgeLoss(const RgbdFrame& frame, FrameResult& result) {
+    ++lost_frames;
+    const std::string why = result.reason;
+    const bool bridging = lost_frames <= options.loss.max_predicted;
+    if (!bridging) motion.forgetVelocity();
+    result.T_world_camera = bridging ? motion.predict(frame.timestamp) : T_world_camera;
+    result.status = bridging ? FrameStatus::kPredicted : FrameStatus::kLost;
+    result.reason = (bridging ? "constant velocity: " : "pose held: ") + why;
+    T_world_camera = result.T_world_camera;
+    row_motion = motion.stillRows();
+    // A lost pose is worth little: say so, growing with every frame
+    result.covariance = keyframe->covariance + lost_frames * 1e-2 * Matrix6d::Identity();
+    if (!bridging && makeKeyframe(frame, result).empty()) {
+        result.status = FrameStatus::kInitialised;
+        result.is_keyframe = true;
+        result.reason =
+            "re-anchored after " + std::to_string(lost_frames) + " frames without tracking: " + why;
+        lost_frames = 0;
+        motion.anchor(frame.timestamp, T_world_camera);
+    }
 }
 
 Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start) {
     if (const auto fault = camera.check(); !fault.empty()) throw std::invalid_argument(fault);
     if (const auto fault = checkOptions(options); !fault.empty()) throw std::invalid_argument(fault);
+    if (!T_world_start.matrix().allFinite()) throw std::invalid_argument("the start pose is not finite");
     impl_ = std::make_unique<Impl>(camera, options, T_world_start);
 }
 Odometry::~Odometry() = default;
@@ -417,7 +398,7 @@ EdgeMap Odometry::map() const {
     return impl_->edge_map;
 }
 double Odometry::readoutTime() const {
-    return impl_->rollingShutter(impl_->last_timestamp).seconds_per_row * impl_->camera.height;
+    return impl_->motion.secondsPerRow() * impl_->camera.height;
 }
 const PinholeCamera& Odometry::camera() const {
     return impl_->camera;

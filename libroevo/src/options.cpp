@@ -56,26 +56,33 @@ std::string OptionField::toText() const {
 
 std::string OptionField::fromText(const std::string& text) const {
     const std::string word = trimmed(text);
-    if (const auto* number = std::get_if<double*>(&value)) {
-        if (!parseWhole(word, **number)) return "option " + name() + ": '" + word + "' is not a number";
-    } else if (const auto* whole = std::get_if<int*>(&value)) {
-        if (!parseWhole(word, **whole)) return "option " + name() + ": '" + word + "' is not a whole number";
-    } else if (const auto* flag = std::get_if<bool*>(&value)) {
+    // An option that is refused keeps the value that it had
+    const auto parseInto = [&](auto* target, const char* kind) -> std::string {
+        const auto before = *target;
+        if (!parseWhole(word, *target)) {
+            *target = before;
+            return "option " + name() + ": '" + word + "' is not " + kind;
+        }
+        std::string fault = check();
+        if (!fault.empty()) *target = before;
+        return fault;
+    };
+    if (const auto* number = std::get_if<double*>(&value)) return parseInto(*number, "a number");
+    if (const auto* whole = std::get_if<int*>(&value)) return parseInto(*whole, "a whole number");
+    if (const auto* flag = std::get_if<bool*>(&value)) {
         if (word != "true" && word != "false" && word != "1" && word != "0") {
             return "option " + name() + ": '" + word + "' is neither true nor false";
         }
         **flag = word == "true" || word == "1";
-    } else {
-        auto* mode = std::get<Mode*>(value);
-        if (word == "ct") {
-            *mode = Mode::kCoarse;
-        } else if (word == "tr") {
-            *mode = Mode::kTracking;
-        } else {
-            return "option " + name() + ": '" + word + "' is not one of ct, tr";
-        }
+        return {};
     }
-    return check();
+    auto* mode = std::get<Mode*>(value);
+    for (const Mode known : {Mode::kCoarse, Mode::kTracking}) {
+        if (word != toString(known)) continue;
+        *mode = known;
+        return {};
+    }
+    return "option " + name() + ": '" + word + "' is not one of ct, tr";
 }
 
 std::string OptionField::check() const {
@@ -202,6 +209,10 @@ std::string checkOptions(const OdometryOptions& options) {
     }
     if (copy.sensor.max_depth <= copy.sensor.min_depth) {
         return "option sensor.max_depth = " + numberToText(copy.sensor.max_depth) +
+               " must exceed sensor.min_depth = " + numberToText(copy.sensor.min_depth);
+    }
+    if (copy.sensor.depth_limit <= copy.sensor.min_depth) {
+        return "option sensor.depth_limit = " + numberToText(copy.sensor.depth_limit) +
                " must exceed sensor.min_depth = " + numberToText(copy.sensor.min_depth);
     }
     return {};

@@ -38,7 +38,7 @@ struct FrameResult {
     bool is_keyframe = false;
     int num_edges = 0, num_points = 0;  ///< organized edges and their points in this frame
     double matched_ratio = 0;           ///< share of the keyframe's visible edges that were associated, 0..1
-    int inliers = 0;                    ///< edge points that passed the chi-square test
+    int inliers = 0;                    ///< associated edge points (in tr: that passed the chi-square test)
     StageTimes ms;
 
     bool hasPose() const { return status != FrameStatus::kRejected; }

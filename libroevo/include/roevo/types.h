@@ -7,6 +7,9 @@
 
 namespace roevo {
 
+inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kDegree = kPi / 180;  ///< rad
+
 using Pose = Eigen::Isometry3d;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;

@@ -27,6 +27,27 @@ cv::Mat normalisedRays(const PinholeCamera& camera) {
     return rays;
 }
 
+/// The rays of the last camera are kept: a recording asks for the same ones frame after frame.
+const cv::Mat& raysOf(const PinholeCamera& camera) {
+    thread_local PinholeCamera known;
+    thread_local cv::Mat rays;
+    if (rays.empty() || known != camera) {
+        rays = normalisedRays(camera);
+        known = camera;
+    }
+    return rays;
+}
+
+/// Square of the normalised radius up to which the lens maps outward points farther out. Beyond, its
+/// polynomial folds back into the image and would put what the lens cannot see at all into its middle.
+double unfoldedRadiusSquared(const PinholeCamera& camera) {
+    const auto& [k1, k2, p1, p2, k3] = camera.distortion;
+    constexpr double kStep = 0.01, kFarthest = 100;
+    double r2 = 0;
+    while (r2 < kFarthest && 1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3)) > 0) r2 += kStep;
+    return r2;
+}
+
 void requireDepth(const cv::Mat& depth, const PinholeCamera& camera) {
     if (depth.type() != CV_32FC1 || depth.cols != camera.width || depth.rows != camera.height) {
         throw std::invalid_argument("depth image must be 32-bit float of the depth camera's size " +
@@ -34,11 +55,10 @@ void requireDepth(const cv::Mat& depth, const PinholeCamera& camera) {
     }
 }
 
-/// The depth image as a mesh is hole-free in the colour image; as points it is not when the colour image is
-/// finer. Each depth pixel is therefore splatted over the colour pixels that its footprint covers.
-int splatRadius(double depth_focal, double colour_focal, double depth_z, double colour_z) {
-    const double footprint = colour_focal / depth_focal * depth_z / colour_z;
-    return std::clamp(static_cast<int>(std::ceil((footprint - 1) / 2)), 0, 4);
+/// Half the width, in colour pixels, of what a depth pixel covers there: at least half a pixel, so that no
+/// hole opens, at most a few.
+double halfFootprint(double depth_focal, double colour_focal, double depth_z, double colour_z) {
+    return std::clamp(colour_focal / depth_focal * depth_z / colour_z / 2, 0.5, 4.5);
 }
 
 }  // namespace
@@ -46,29 +66,39 @@ int splatRadius(double depth_focal, double colour_focal, double depth_z, double 
 cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
                       const PinholeCamera& colour_camera, const Pose& T_colour_depth) {
     requireDepth(depth, depth_camera);
-    const cv::Mat rays = normalisedRays(depth_camera);
+    const cv::Mat& rays = raysOf(depth_camera);
     const bool distorted = colour_camera.isDistorted();
+    const double farthest = unfoldedRadiusSquared(colour_camera);
     cv::Mat registered = cv::Mat::zeros(colour_camera.height, colour_camera.width, CV_32FC1);
     for (int v = 0; v < depth.rows; ++v) {
         for (int u = 0; u < depth.cols; ++u) {
-            const double z = depth.at<float>(v, u);
+            const double z = static_cast<double>(depth.at<float>(v, u));
             if (!(z > 0) || !std::isfinite(z)) continue;
             const cv::Vec2f& ray = rays.at<cv::Vec2f>(v, u);
-            const Eigen::Vector3d point = T_colour_depth * Eigen::Vector3d(ray[0] * z, ray[1] * z, z);
-            if (point.z() <= 0) continue;
+            const Eigen::Vector3d point =
+                T_colour_depth *
+                Eigen::Vector3d(static_cast<double>(ray[0]) * z, static_cast<double>(ray[1]) * z, z);
+            // Written so that a ray that is not a number, from a lens that cannot be inverted there, is left
+            // out as well
+            if (!(point.z() > 0 && point.head<2>().squaredNorm() <= farthest * point.z() * point.z()))
+                continue;
             Eigen::Vector2d pixel = colour_camera.project(point);
-            if (pixel.x() < -colour_camera.width || pixel.x() > 2 * colour_camera.width ||
-                pixel.y() < -colour_camera.height || pixel.y() > 2 * colour_camera.height) {
-                continue;  // far outside, where the lens polynomial may fold back into the image
-            }
             if (distorted) pixel = colour_camera.distortPixel(pixel);
-            const int radius = splatRadius(depth_camera.fx, colour_camera.fx, z, point.z());
-            const int cu = static_cast<int>(std::lround(pixel.x())),
-                      cv_ = static_cast<int>(std::lround(pixel.y()));
-            for (int y = std::max(0, cv_ - radius); y <= std::min(registered.rows - 1, cv_ + radius); ++y) {
-                for (int x = std::max(0, cu - radius); x <= std::min(registered.cols - 1, cu + radius); ++x) {
+            const double half_x = halfFootprint(depth_camera.fx, colour_camera.fx, z, point.z());
+            const double half_y = halfFootprint(depth_camera.fy, colour_camera.fy, z, point.z());
+            if (!(pixel.x() > -half_x && pixel.x() < registered.cols - 1 + half_x && pixel.y() > -half_y &&
+                  pixel.y() < registered.rows - 1 + half_y)) {
+                continue;
+            }
+            const int x0 = std::max(0, static_cast<int>(std::ceil(pixel.x() - half_x)));
+            const int x1 = std::min(registered.cols - 1, static_cast<int>(std::floor(pixel.x() + half_x)));
+            const int y0 = std::max(0, static_cast<int>(std::ceil(pixel.y() - half_y)));
+            const int y1 = std::min(registered.rows - 1, static_cast<int>(std::floor(pixel.y() + half_y)));
+            for (int y = y0; y <= y1; ++y) {
+                for (int x = x0; x <= x1; ++x) {
                     float& nearest = registered.at<float>(y, x);
-                    if (nearest == 0 || point.z() < nearest) nearest = static_cast<float>(point.z());
+                    if (nearest == 0 || point.z() < static_cast<double>(nearest))
+                        nearest = static_cast<float>(point.z());
                 }
             }
         }
@@ -78,7 +108,7 @@ cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
 
 void rangeToDepth(cv::Mat& range, const PinholeCamera& depth_camera) {
     requireDepth(range, depth_camera);
-    const cv::Mat rays = normalisedRays(depth_camera);
+    const cv::Mat& rays = raysOf(depth_camera);
     for (int v = 0; v < range.rows; ++v) {
         auto* values = range.ptr<float>(v);
         const auto* row = rays.ptr<cv::Vec2f>(v);

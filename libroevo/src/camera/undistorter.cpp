@@ -17,11 +17,10 @@ Undistorter::Undistorter(const PinholeCamera& camera) {
     cv::convertMaps(source, cv::noArray(), map_, fractions_, CV_16SC2);
 }
 
-cv::Mat Undistorter::apply(const cv::Mat& image) const {
+const cv::Mat& Undistorter::apply(const cv::Mat& image, cv::Mat& buffer) const {
     if (isIdentity()) return image;
-    cv::Mat out;
-    cv::remap(image, out, map_, fractions_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-    return out;
+    cv::remap(image, buffer, map_, fractions_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+    return buffer;
 }
 
 }  // namespace roevo

@@ -114,9 +114,12 @@ cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y) {
     if (gx == 0 && gy == 0) return {0, 0};
     const Neighbours n =
         alongGradient(magnitude, static_cast<std::ptrdiff_t>(gradient.magnitude.step1()), gx, gy);
-    const float curvature = n.before - 2 * magnitude[0] + n.after;
+    // Through the logarithms: a blurred step has a Gaussian ridge, whose logarithm is a parabola
+    const float before = std::log(n.before + 1), here = std::log(magnitude[0] + 1),
+                after = std::log(n.after + 1);
+    const float curvature = before - 2 * here + after;
     if (!(curvature < 0)) return {0, 0};
-    const float vertex = std::clamp(0.5F * (n.before - n.after) / curvature, -0.5F, 0.5F);
+    const float vertex = std::clamp(0.5F * (before - after) / curvature, -0.5F, 0.5F);
     return {vertex * n.step_x, vertex * n.step_y};
 }
 

@@ -6,10 +6,13 @@ namespace roevo {
 
 void EdgeExtractor::extract(const cv::Mat& grey, OrganizedEdges& out) {
     computeGradient(grey, options_.blur_sigma, gradient_);
-    const double otsu = std::max(options_.min_high_threshold,
-                                 options_.canny_high_factor * otsuThreshold(gradient_.magnitude));
-    high_ =
-        high_ == 0 ? otsu : options_.threshold_smoothing * high_ + (1 - options_.threshold_smoothing) * otsu;
+    const double otsu = options_.canny_high_factor * otsuThreshold(gradient_.magnitude);
+    if (high_ == 0 || otsu > options_.min_high_threshold) {  // a black image says nothing about those to come
+        const double fresh = std::max(options_.min_high_threshold, otsu);
+        const double keep = high_ == 0 || had_none_ ? 0 : options_.threshold_smoothing;
+        high_ = keep * high_ + (1 - keep) * fresh;
+        had_none_ = otsu <= options_.min_high_threshold;
+    }
     canny(gradient_, options_.canny_low_ratio * high_, high_, mask_);
     adjustAdjacency(mask_);
     organizer_.organize(gradient_, mask_, options_.angle_deg, options_.min_length, out);

@@ -11,10 +11,9 @@ void computeGradient(const cv::Mat& grey, double blur_sigma, Gradient& out) {
     if (blur_sigma > 0) {
         const int size = 2 * std::max(1, static_cast<int>(std::lround(2 * blur_sigma))) + 1;
         cv::GaussianBlur(grey, out.blurred, {size, size}, blur_sigma, blur_sigma, cv::BORDER_REPLICATE);
-    } else {
-        grey.copyTo(out.blurred);
     }
-    cv::spatialGradient(out.blurred, out.gx, out.gy, 3, cv::BORDER_REPLICATE);
+    const cv::Mat& source = blur_sigma > 0 ? out.blurred : grey;
+    cv::spatialGradient(source, out.gx, out.gy, 3, cv::BORDER_REPLICATE);
     out.magnitude.create(grey.size(), CV_32FC1);
     for (int y = 0; y < grey.rows; ++y) {
         const auto* gx = out.gx.ptr<std::int16_t>(y);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roevo/types.h"
+
 namespace roevo {
 
 void adjustAdjacency(EdgeMask& edges) {
@@ -103,7 +105,7 @@ void EdgeOrganizer::organize(const Gradient& gradient, const EdgeMask& edges, do
     width_ = edges.mask.cols;
     const auto* mask = edges.mask.ptr<std::uint8_t>();
     open_.assign(mask, mask + edges.mask.total());
-    const auto min_cosine = static_cast<float>(std::cos(angle_deg * (3.14159265358979323846 / 180)));
+    const auto min_cosine = static_cast<float>(std::cos(angle_deg * kDegree));
     const auto searchFrom = [&](std::int32_t seed) {
         if (open_[static_cast<std::size_t>(seed)] == 0) return;
         growCluster(gradient, seed, min_cosine);

@@ -42,8 +42,8 @@ void computeNormals(OrganizedEdges& edges, int span) {
                 edges.normal_y[at] = edges.gradient_y[at];
                 continue;
             }
-            float mx = -vy / length, my = vx / length;                        // Eq. (5)
-            if (mx * edges.gradient_x[at] + my * edges.gradient_y[at] < 0) {  // Eqs. (6), (7)
+            float mx = -vy / length, my = vx / length;                        // Eq. (4)
+            if (mx * edges.gradient_x[at] + my * edges.gradient_y[at] < 0) {  // Eqs. (5), (6)
                 mx = -mx;
                 my = -my;
             }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <numeric>
 
 #include "roevo/tracking/se3.h"
 
@@ -19,8 +19,8 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
     for (int iteration = 0; iteration <= options_.max_iterations; ++iteration) {
         residuals_.evaluate(points, level, image, camera, pose, shutter.motion(pose).atPyramidLevel(level),
                             brightness);
-        if (residuals_.numVisible() < std::min<int>(options_.min_points, static_cast<int>(points.size())))
-            break;
+        if (best_cost < 0) state.num_visible = residuals_.numVisible();
+        if (residuals_.numVisible() < options_.min_points) break;
         if (best_cost >= 0 && residuals_.cost() > 1.2 * best_cost + 0.5)
             break;  // diverging; the best pose is kept
         if (best_cost < 0 || residuals_.cost() <= best_cost * 1.02) {
@@ -45,22 +45,25 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
     return best_cost;
 }
 
-std::vector<Pose> CoarseTracker::mostSimilar(const Keyframe& keyframe, const cv::Mat& image, int level,
-                                             const PinholeCamera& camera, const std::vector<Pose>& guesses,
-                                             const Brightness& brightness) {
+std::vector<std::size_t> CoarseTracker::mostSimilar(const Keyframe& keyframe, const cv::Mat& image, int level,
+                                                    const PinholeCamera& camera,
+                                                    const std::vector<Pose>& guesses,
+                                                    const Brightness& brightness) {
     constexpr std::size_t kTried = 6;
-    if (guesses.size() <= kTried) return guesses;
-    std::vector<std::pair<double, std::size_t>> by_cost;
-    for (std::size_t i = 0; i < guesses.size(); ++i) {
-        residuals_.evaluate(keyframe.photometric, level, image, camera, guesses[i], RowMotion(), brightness);
+    std::vector<std::size_t> order(guesses.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (guesses.size() <= kTried) return order;
+    std::vector<double> cost;
+    for (const Pose& guess : guesses) {
+        residuals_.evaluate(keyframe.photometric, level, image, camera, guess, RowMotion(), brightness);
         // A guess that puts most points outside the image is no good however well the rest fits
         const double visible = residuals_.numVisible() / static_cast<double>(keyframe.photometric.size());
-        by_cost.emplace_back(residuals_.cost() / std::max(0.1, std::min(1.0, 2 * visible)), i);
+        cost.push_back(residuals_.cost() / std::max(0.1, std::min(1.0, 2 * visible)));
     }
-    std::sort(by_cost.begin(), by_cost.end());
-    std::vector<Pose> chosen;
-    for (std::size_t k = 0; k < kTried; ++k) chosen.push_back(guesses[by_cost[k].second]);
-    return chosen;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return cost[a] < cost[b]; });
+    order.resize(kTried);
+    return order;
 }
 
 CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& pyramid,
@@ -71,26 +74,28 @@ CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& 
     best.brightness = start;
     if (static_cast<int>(keyframe.photometric.size()) < options_.min_points) return best;
     const int levels = std::min(pyramid.numLevels(), static_cast<int>(keyframe.photometric.patches.size()));
+    // The coarsest level on which any guess sees enough points decides between the guesses; finer ones refine
     double best_cost = -1;
-    const PinholeCamera coarsest = camera.atPyramidLevel(levels - 1);
-    for (const Pose& guess :
-         mostSimilar(keyframe, pyramid.level(levels - 1), levels - 1, coarsest, guesses, start)) {
-        CoarseResult state;
-        state.T_current_keyframe = guess;
-        state.brightness = start;
-        const double cost =
-            alignLevel(keyframe, pyramid.level(levels - 1), levels - 1, coarsest, shutter, state);
-        if (cost >= 0 && (best_cost < 0 || cost < 0.95 * best_cost)) {
-            best = state;
-            best_cost = cost;
+    for (int level = levels - 1; level >= 0; --level) {
+        const PinholeCamera scaled = camera.atPyramidLevel(level);
+        const cv::Mat& image = pyramid.level(level);
+        if (best_cost >= 0) {
+            if (alignLevel(keyframe, image, level, scaled, shutter, best) < 0 && level == 0) return best;
+            continue;
+        }
+        for (const std::size_t i : mostSimilar(keyframe, image, level, scaled, guesses, start)) {
+            CoarseResult state;
+            state.T_current_keyframe = guesses[i];
+            state.brightness = start;
+            const double cost = alignLevel(keyframe, image, level, scaled, shutter, state);
+            if (best_cost < 0) best.num_visible = std::max(best.num_visible, state.num_visible);
+            if (cost >= 0 && (best_cost < 0 || cost < 0.95 * best_cost)) {
+                best = state;
+                best_cost = cost;
+            }
         }
     }
     if (best_cost < 0) return best;
-    for (int level = levels - 2; level >= 0; --level) {
-        best_cost =
-            alignLevel(keyframe, pyramid.level(level), level, camera.atPyramidLevel(level), shutter, best);
-        if (best_cost < 0) return best;
-    }
     best.converged = best.num_visible >= options_.min_points && best.T_current_keyframe.matrix().allFinite();
     orthonormalise(best.T_current_keyframe);
     return best;

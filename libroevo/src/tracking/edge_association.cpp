@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "roevo/edges/canny.h"
+#include "roevo/types.h"
 
 namespace roevo {
 
@@ -13,19 +14,19 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
     out.reference.clear();
     out.current.clear();
     out.visible_points = 0;
-    const auto min_cosine =
-        static_cast<float>(std::cos(options_.normal_angle_deg * (3.14159265358979323846 / 180)));
+    const auto min_cosine = static_cast<float>(std::cos(options_.normal_angle_deg * kDegree));
     const float margin = EdgeMask::kBorder;
     const float max_u = static_cast<float>(width) - 1 - margin,
                 max_v = static_cast<float>(height) - 1 - margin;
     visible_.assign(static_cast<std::size_t>(reference.numEdges()), 0);
-    stride_ = static_cast<int>((reference.size() + static_cast<std::size_t>(options_.max_points) - 1) /
-                               static_cast<std::size_t>(options_.max_points));
+    stride_ =
+        std::max(1, static_cast<int>((reference.size() + static_cast<std::size_t>(options_.max_points) - 1) /
+                                     static_cast<std::size_t>(options_.max_points)));
     for (int e = 0; e < reference.numEdges(); ++e) {
         const int first = reference.begin[static_cast<std::size_t>(e)];
         const int last = reference.begin[static_cast<std::size_t>(e) + 1] - 1;
         int visible = 0;
-        for (int i = first + ((last - first) % stride_) / 2; i <= last; i += stride_) {
+        for (int i = first + (stride_ / 2 + stride_ - first % stride_) % stride_; i <= last; i += stride_) {
             const auto at = static_cast<std::size_t>(i);
             if (!(u[at] >= margin && v[at] >= margin && u[at] <= max_u && v[at] <= max_v)) continue;
             ++visible;
@@ -34,10 +35,10 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
             const float tx = u[after] - u[before], ty = v[after] - v[before];
             const float length = std::sqrt(tx * tx + ty * ty);
             if (!(length > 0)) continue;
-            float nx = -ty / length, ny = tx / length;  // Eq. (5)
+            float nx = -ty / length, ny = tx / length;  // Eq. (4)
             const float gx = turn.x() * reference.gradient_x[at] - turn.y() * reference.gradient_y[at];
             const float gy = turn.y() * reference.gradient_x[at] + turn.x() * reference.gradient_y[at];
-            if (nx * gx + ny * gy < 0) {  // Eqs. (6), (7)
+            if (nx * gx + ny * gy < 0) {  // Eqs. (5), (6)
                 nx = -nx;
                 ny = -ny;
             }
@@ -57,18 +58,14 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
 
 void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges& current,
                           EdgeMatches& matches) {
-    matches.visible_edges = matches.matched_edges = matches.matched_extent = 0;
+    matches.matched_extent = 0;
     votes_.assign(static_cast<std::size_t>(current.numEdges()), 0);
     const auto otherEdge = [&](std::size_t pair) {
         return static_cast<std::size_t>(current.edge_of[static_cast<std::size_t>(matches.current[pair])]);
     };
     std::size_t kept = 0, next = 0;  // pairs are in the order of the reference's edges
     for (int e = 0; e < reference.numEdges(); ++e) {
-        const int length =
-            reference.begin[static_cast<std::size_t>(e) + 1] - reference.begin[static_cast<std::size_t>(e)];
         const int visible = visible_[static_cast<std::size_t>(e)];
-        const bool mostly_inside = visible > 0 && 2 * visible >= (length + stride_ - 1) / stride_;
-        if (mostly_inside) ++matches.visible_edges;
         const std::size_t first = next;
         touched_.clear();
         const std::int32_t end = reference.begin[static_cast<std::size_t>(e) + 1];
@@ -89,10 +86,7 @@ void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges&
             ++kept;
         }
         for (const std::int32_t other : touched_) votes_[static_cast<std::size_t>(other)] = 0;
-        if (kept > kept_before) {
-            if (mostly_inside) ++matches.matched_edges;
-            matches.matched_extent += visible;
-        }
+        if (kept > kept_before) matches.matched_extent += visible;
     }
     matches.reference.resize(kept);
     matches.current.resize(kept);

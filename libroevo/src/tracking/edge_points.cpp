@@ -65,7 +65,7 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
             if (found.depth == 0) continue;
             if (!piece.empty()) {
                 const float previous = piece_z.back();
-                const bool gap = i - piece.back() > kMaxGap;
+                const bool gap = i - piece.back() - 1 > kMaxGap;
                 if (gap || std::abs(found.depth - previous) > jump * std::min(found.depth, previous)) flush();
             }
             piece.push_back(i);

@@ -45,8 +45,8 @@ void FineTracker::geometricResiduals(const OrganizedEdges& current) {
     for (std::size_t k = 0; k < matches_.size(); ++k) {
         const auto i = static_cast<std::size_t>(matches_.reference[k]);
         const auto p = static_cast<std::size_t>(matches_.current[k]);
-        // Eq. (8): the component across the tangent, as a signed scalar; its square and its normal equations
-        // are the same
+        // Eq. (7), as a signed scalar across the tangent (its square and normal equations are the same),
+        // about the associated point rather than its predecessor: unbiased where the edge is curved
         residual_[k] =
             current.normal_x[p] * (u_[i] - current.x[p]) + current.normal_y[p] * (v_[i] - current.y[p]);
         scratch_.push_back(std::abs(residual_[k]));
@@ -185,8 +185,9 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
     Pose pose = T_start;
     Brightness gain = brightness;
     PoseSystem system;
+    const double narrowing = std::clamp(options_.max_iterations - 1.0, 1.0, 4.0);
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
-        const double share = std::min(1.0, iteration / 4.0);
+        const double share = std::min(1.0, iteration / narrowing);
         const double radius =
             options_.search_radius + share * (options_.final_radius - options_.search_radius);
         const RowMotion row_motion = shutter.motion(pose);
@@ -218,9 +219,12 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
         const double motion_px = camera.fx * (step.tail<3>().norm() + step.head<3>().norm() / depth);
         if (motion_px < 0.01 && share >= 1) break;
     }
+    // What is reported belongs to the final pose
+    associate(keyframe, frame, pose, shutter.motion(pose), options_.final_radius);
+    geometricResiduals(current);
+    weigh(keyframe);
     const int matched = static_cast<int>(matches_.size());
     result.inliers = matched < options_.min_inliers ? matched : inliers_;
-    result.matches = matched;
     result.scale = scale_;
     result.matched_ratio = matches_.matchedRatio();
     if (result.inliers < options_.min_inliers || result.matched_ratio < options_.min_matched_ratio ||

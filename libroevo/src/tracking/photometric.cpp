@@ -53,16 +53,12 @@ constexpr float kStudentNu =
 PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const ImagePyramid& pyramid,
                                           int max_points) {
     PhotometricPoints points;
-    const auto step = static_cast<int>((edges.size() + static_cast<std::size_t>(max_points) - 1) /
-                                       static_cast<std::size_t>(max_points));
+    // Every n-th point over all edges: points of an edge are consecutive, so that this spreads evenly along
+    // them
+    const std::size_t limit = static_cast<std::size_t>(max_points);
+    const std::size_t step = std::max<std::size_t>(1, (edges.size() + limit - 1) / limit);
     std::vector<std::size_t> chosen;
-    for (int e = 0; e < edges.image.numEdges(); ++e) {
-        const int first = edges.image.begin[static_cast<std::size_t>(e)];
-        const int end = edges.image.begin[static_cast<std::size_t>(e) + 1];
-        // centred, so that short edges give their middle point
-        for (int i = first + ((end - first - 1) % step) / 2; i < end; i += step)
-            chosen.push_back(static_cast<std::size_t>(i));
-    }
+    for (std::size_t i = step / 2; i < edges.size(); i += step) chosen.push_back(i);
     const std::size_t padded = kernels::paddedSize(chosen.size());
     for (const std::size_t i : chosen) {
         points.x.push_back(edges.x[i]);
@@ -177,7 +173,7 @@ void PhotometricResiduals::accumulate(const PhotometricPoints& points, int level
         if (i >= n || weight_[i] == 0) {
             for (auto& array : matrix_) array[i] = 0;
             for (auto& array : vector_) array[i] = 0;
-            if (i < padded) x_[i] = y_[i] = z_[i] = 0;
+            x_[i] = y_[i] = z_[i] = 0;
             continue;
         }
         // From the aligned frame to the image: M = A G A^T, v = A g with A = [c -s; s c]

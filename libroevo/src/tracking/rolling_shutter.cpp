@@ -53,6 +53,7 @@ kernels::Projection makeProjection(const Pose& T, const PinholeCamera& camera, c
     projection.cx = static_cast<float>(camera.cx);
     projection.cy = static_cast<float>(camera.cy);
     projection.reference_row = static_cast<float>(rows.reference_row);
+    projection.last_row = static_cast<float>(camera.height - 1);
     return projection;
 }
 

@@ -10,8 +10,8 @@ class Undistorter {
   public:
     explicit Undistorter(const PinholeCamera& camera);
 
-    /// Bilinear; the input itself (no copy) when the lens is ideal.
-    cv::Mat apply(const cv::Mat& image) const;
+    /// Bilinear, into `buffer`, which is returned; or `image` itself when the lens is ideal.
+    const cv::Mat& apply(const cv::Mat& image, cv::Mat& buffer) const;
 
     bool isIdentity() const { return map_.empty(); }
 

@@ -23,7 +23,8 @@ class EdgeExtractor {
     Gradient gradient_;
     EdgeMask mask_;
     EdgeOrganizer organizer_;
-    double high_ = 0;  ///< 0 before the first image
+    double high_ = 0;        ///< 0 before the first image
+    bool had_none_ = false;  ///< the threshold comes from an image without contrast
 };
 
 }  // namespace roevo

@@ -8,7 +8,7 @@ namespace roevo {
 struct Gradient {
     cv::Mat gx, gy;     ///< CV_16SC1
     cv::Mat magnitude;  ///< CV_32FC1, Euclidean norm
-    cv::Mat blurred;    ///< CV_8UC1, the image after the optional blur
+    cv::Mat blurred;    ///< buffer of the optional blur
 };
 
 /// Fills `out` (its buffers are reused from frame to frame).

@@ -11,7 +11,7 @@ namespace roevo {
 struct OrganizedEdges {
     std::vector<float> x, y;                    ///< sub-pixel position, px
     std::vector<float> gradient_x, gradient_y;  ///< unit image gradient at the edge pixel
-    std::vector<float> normal_x, normal_y;      ///< unit edge normal on the gradient's side, Eqs. (5)-(7)
+    std::vector<float> normal_x, normal_y;      ///< unit edge normal on the gradient's side, Eqs. (4)-(6)
     std::vector<float> strength;                ///< gradient magnitude, grey levels per pixel
     std::vector<std::int32_t> edge_of;          ///< index of the edge that the point belongs to
     std::vector<std::int32_t>
@@ -25,7 +25,7 @@ struct OrganizedEdges {
     void finishEdge();
 };
 
-/// Fills normal_x, normal_y (Eqs. (5)-(7)): orthogonal to the chord between the points `span` places before
+/// Fills normal_x, normal_y (Eqs. (4)-(6)): orthogonal to the chord between the points `span` places before
 /// and after (clamped to the edge's ends), on the side of the image gradient.
 void computeNormals(OrganizedEdges& edges, int span);
 

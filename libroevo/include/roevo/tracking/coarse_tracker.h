@@ -28,9 +28,10 @@ class CoarseTracker {
                        const Brightness& start);
 
   private:
-    std::vector<Pose> mostSimilar(const Keyframe& keyframe, const cv::Mat& image, int level,
-                                  const PinholeCamera& camera, const std::vector<Pose>& guesses,
-                                  const Brightness& brightness);
+    /// Indices of the guesses worth aligning.
+    std::vector<std::size_t> mostSimilar(const Keyframe& keyframe, const cv::Mat& image, int level,
+                                         const PinholeCamera& camera, const std::vector<Pose>& guesses,
+                                         const Brightness& brightness);
     double alignLevel(const Keyframe& keyframe, const cv::Mat& image, int level, const PinholeCamera& camera,
                       const RollingShutter& shutter, CoarseResult& state);
 

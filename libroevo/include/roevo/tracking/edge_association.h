@@ -12,10 +12,8 @@ namespace roevo {
 /// Pairs of associated points, and how much of the reference was found again.
 struct EdgeMatches {
     std::vector<std::int32_t> reference, current;  ///< point indices of the pairs, in the reference's order
-    int visible_edges = 0,
-        matched_edges = 0;   ///< reference edges inside the image; those with an association
-    int visible_points = 0;  ///< looked-up reference points inside the image
-    int matched_extent = 0;  ///< of them, those of matched edges
+    int visible_points = 0;                        ///< looked-up reference points inside the image
+    int matched_extent = 0;                        ///< of them, those of matched edges
 
     std::size_t size() const { return reference.size(); }
     /// Share of the reference's edges that are associated, each edge counting by its visible length.

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -27,7 +28,9 @@ double depthWeight(double depth, const SensorOptions& sensor);
 
 /// Looks up the foreground depth of every edge point (`depth` is the raw image of the possibly distorted
 /// `camera`, the edges are in ideal pixels), splits edges at depth jumps and drops pieces of fewer than
-/// `min_length` points.
+/// five points.
+/// @param rows  motion of the camera over the image rows; points are moved to where they are at the reference
+/// row's time
 EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const PinholeCamera& camera,
                        const RowMotion& rows, const EdgeOptions& edge_options, const SensorOptions& sensor);
 

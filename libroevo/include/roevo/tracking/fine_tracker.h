@@ -24,10 +24,9 @@ struct FineFrame {
 struct FineResult {
     bool converged = false;
     Pose T_current_keyframe = Pose::Identity();
-    int inliers = 0;           ///< associated points that passed the chi-square test
-    double scale = 0;          ///< robust spread of the point-to-tangent residual, px
-    double matched_ratio = 0;  ///< see EdgeMatches
-    int matches = 0;
+    int inliers = 0;                         ///< associated points that passed the chi-square test
+    double scale = 0;                        ///< robust spread of the point-to-tangent residual, px
+    double matched_ratio = 0;                ///< see EdgeMatches
     Matrix6d covariance = Matrix6d::Zero();  ///< of the left perturbation (t, phi) of T_current_keyframe
 };
 
@@ -51,9 +50,6 @@ class FineTracker {
                             const FineFrame& frame, ReadoutEstimator& estimator) const;
 
     const EdgeMatches& matches() const { return matches_; }  ///< of the last frame
-    const std::vector<float>& projectedU() const { return u_; }
-    const std::vector<float>& projectedV() const { return v_; }
-    const std::vector<float>& weights() const { return weight_; }  ///< of each match; 0 where rejected
 
   private:
     void project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera,

@@ -20,7 +20,7 @@ struct PhotometricPoints {
     std::size_t size() const { return axis_x.size(); }
 };
 
-/// Spreads at most `max_points` along the edges (every n-th point of each edge) and samples their patches.
+/// Spreads at most `max_points` along the edges (every n-th point) and samples their patches.
 PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const ImagePyramid& pyramid,
                                           int max_points);
 
@@ -44,13 +44,12 @@ class PhotometricResiduals {
     double scale() const {
         return scale_;
     }  ///< robust spread of a patch's root mean square residual, grey levels
-    double cost() const { return cost_; }  ///< robust mean, comparable between poses at one level
+    double cost() const { return cost_; }  ///< median, comparable between poses at one level
 
     /// The brightness that fits the present alignment best (weighted linear regression).
     Brightness fitBrightness(const PhotometricPoints& points, int level, const Brightness& current) const;
 
-    /// Adds the points' information, scaled by `factor`, as rows for kernels::accumulate. `rotate` arrays of
-    /// the alignment are kept inside.
+    /// Adds the points' information, scaled by `factor`, as rows for kernels::accumulate.
     void accumulate(const PhotometricPoints& points, int level, const PinholeCamera& camera, double factor,
                     kernels::NormalEquations& out);
 
@@ -68,7 +67,7 @@ class PhotometricResiduals {
 Eigen::Vector2f imageRotation(const Pose& T_current_keyframe);
 
 /// Image-plane information (2x2 symmetric m00 m01 m11 and vector v0 v1, pixels) of a point carried to three
-/// dimensions through the projection's Jacobian (Eq. (23)): writes P^T M P (xx xy xz yy yz zz) and P^T v.
+/// dimensions through the projection's Jacobian (Eq. (24)): writes P^T M P (xx xy xz yy yz zz) and P^T v.
 inline void liftInformation(float x, float y, float z, float fx, float fy, float m00, float m01, float m11,
                             float v0, float v1, float matrix[6], float vector[3]) {
     const float a = fx / z, b = fy / z, c = -a * x / z, d = -b * y / z;  // P = [a 0 c; 0 b d]

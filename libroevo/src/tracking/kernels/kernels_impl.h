@@ -32,14 +32,18 @@ void project(const Projection& m, const float* px, const float* py, const float*
         Lanes cy = m.rotation[3] * x + m.rotation[4] * y + m.rotation[5] * z + m.translation[1];
         Lanes cz = m.rotation[6] * x + m.rotation[7] * y + m.rotation[8] * z + m.translation[2];
         // The row on which the point is seen says when it was seen, and so where the camera was by then
-        const Lanes rows = m.fy * cy / (cz > least ? cz : one) + m.cy - m.reference_row;
+        const IntLanes ahead = cz > least;
+        Lanes row = m.fy * cy / (ahead ? cz : one) + m.cy;
+        row = row > splat(0) ? row : splat(0);
+        row = row < splat(m.last_row) ? row : splat(m.last_row);
+        const Lanes rows = row - m.reference_row;
         const Lanes dx = m.velocity[0] + m.turn[1] * cz - m.turn[2] * cy;
         const Lanes dy = m.velocity[1] + m.turn[2] * cx - m.turn[0] * cz;
         const Lanes dz = m.velocity[2] + m.turn[0] * cy - m.turn[1] * cx;
         cx -= rows * dx;
         cy -= rows * dy;
         cz -= rows * dz;
-        const IntLanes in_front = cz > least;
+        const IntLanes in_front = ahead & (cz > least);
         const Lanes inverse = one / (in_front ? cz : one);
         store(out.x + i, cx);
         store(out.y + i, cy);
