@@ -54,7 +54,7 @@ std::string framesCsv(const RunReport& report) {
     for (const FrameRecord& f : report.frames) {
         const FrameResult& r = f.result;
         csv += format("%.6f,%s,", r.timestamp, toString(r.status)) + csvField(r.reason) +
-               format(",%d,%d,%d,%.4f,%d,%.6f,%.5f,%.3f,%.3f,%.3f,%.3f,%.3f\n", r.is_keyframe ? 1 : 0,
+               format(",%d,%d,%d,%.4f,%d,%.6f,%.5f,%.3f,%.3f,%.3f,%.3f,%.3f\n", r.new_keyframe ? 1 : 0,
                       r.num_edges, r.num_points, r.matched_ratio, r.inliers, r.sigmaTranslation(),
                       r.sigmaRotationDeg(), f.ms_decode, r.ms.edges, r.ms.coarse, r.ms.fine, r.ms.total);
     }

@@ -70,6 +70,20 @@ double FrameResult::sigmaRotationDeg() const {
     return std::sqrt(std::max(0.0, covariance.bottomRightCorner<3, 3>().trace())) / kDegree;
 }
 
+/// What a frame leaves behind, so that it can still become a keyframe when the next one turns out to see much
+/// less.
+struct FrameData {
+    RgbdFrame images;  // copies: the caller's buffers may be used again
+    cv::Mat undistorted;
+    OrganizedEdges edges;
+    ImagePyramid pyramid;
+    RowMotion row_motion;
+    Pose T_world_camera = Pose::Identity();
+    Matrix6d covariance = Matrix6d::Zero();
+    double matched_ratio = 0;
+    bool may_be_keyframe = false;  // tracked, and not one yet
+};
+
 struct Odometry::Impl {
     Impl(const PinholeCamera& raw, const OdometryOptions& opts, const Pose& start)
         : camera(raw),
@@ -80,8 +94,7 @@ struct Odometry::Impl {
           coarse(opts.coarse),
           fine(opts.fine, opts.edges, opts.sensor),
           T_world_camera(start),
-          motion(opts.motion, opts.sensor, raw.height),
-          row_motion(motion.stillRows()) {}
+          motion(opts.motion, opts.sensor, raw.height) {}
 
     PinholeCamera camera, ideal;
     OdometryOptions options;
@@ -90,10 +103,8 @@ struct Odometry::Impl {
     CoarseTracker coarse;
     FineTracker fine;
 
-    cv::Mat undistorted;  // of the present frame
-    OrganizedEdges edges;
-    EdgeGrid grid;
-    ImagePyramid pyramid;
+    FrameData now, before;  // the present frame and the one before it
+    EdgeGrid grid;          // of the present frame
 
     std::unique_ptr<Keyframe> keyframe;
     std::vector<KeyframeInfo> keyframe_infos;
@@ -101,13 +112,14 @@ struct Odometry::Impl {
     std::vector<StampedPose> poses;
     Pose T_world_camera;  // last pose, measured or predicted
     MotionModel motion;
-    RowMotion row_motion;  // of the present frame
     Brightness brightness;
     double last_timestamp = -std::numeric_limits<double>::infinity();
     int lost_frames = 0;
 
     std::string faultOf(const RgbdFrame& frame) const;
-    std::string makeKeyframe(const RgbdFrame& frame, const FrameResult& result);
+    std::string makeKeyframe(const FrameData& data);
+    void renewKeyframe(FrameResult& result);
+    void keepForKeyframe(const RgbdFrame& frame);
     void keepMapEdges(const RgbdFrame& frame, const Keyframe& kf);
     void process(const RgbdFrame& frame, FrameResult& result);
     bool trackFrame(const RgbdFrame& frame, FrameResult& result);
@@ -142,26 +154,27 @@ std::string Odometry::Impl::faultOf(const RgbdFrame& frame) const {
     return {};
 }
 
-std::string Odometry::Impl::makeKeyframe(const RgbdFrame& frame, const FrameResult& result) {
-    if (frame.depth.empty()) return "no depth image";
+std::string Odometry::Impl::makeKeyframe(const FrameData& data) {
+    if (data.images.depth.empty()) return "no depth image";
     auto fresh = std::make_unique<Keyframe>();
-    fresh->edges = liftEdges(edges, frame.depth, camera, row_motion, options.edges, options.sensor);
+    fresh->edges =
+        liftEdges(data.edges, data.images.depth, camera, data.row_motion, options.edges, options.sensor);
     const auto needed = static_cast<std::size_t>(options.fine.min_inliers);
     if (fresh->edges.size() < needed) {
         return "only " + std::to_string(fresh->edges.size()) + " edge points with depth, " +
                std::to_string(needed) + " needed";
     }
-    fresh->row_motion = row_motion;
     fresh->id = static_cast<int>(keyframe_infos.size());
-    fresh->timestamp = frame.timestamp;
-    fresh->T_world_camera = result.T_world_camera;
-    fresh->covariance = result.covariance;
-    fresh->photometric = samplePhotometricPoints(fresh->edges, pyramid, options.coarse.max_points);
-    fresh->median_depth = fresh->edges.medianDepth();
+    fresh->timestamp = data.images.timestamp;
+    fresh->T_world_camera = data.T_world_camera;
+    fresh->covariance = data.covariance;
+    fresh->row_motion = data.row_motion;
+    fresh->photometric = samplePhotometricPoints(fresh->edges, data.pyramid, options.coarse.max_points);
+    fresh->median_depth = static_cast<double>(fresh->edges.medianDepth());
     keyframe = std::move(fresh);
     brightness = Brightness();
-    keyframe_infos.push_back({keyframe->id, frame.timestamp, result.T_world_camera});
-    keepMapEdges(frame, *keyframe);
+    keyframe_infos.push_back({keyframe->id, keyframe->timestamp, keyframe->T_world_camera});
+    keepMapEdges(data.images, *keyframe);
     return {};
 }
 
@@ -232,14 +245,12 @@ bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
     const Pose T_predicted_keyframe = motion.predict(frame.timestamp).inverse() * T_world_keyframe;
     if (trackFrom({T_predicted_keyframe, T_last_keyframe}, motion.prior(frame.timestamp, T_world_keyframe),
                   frame, result)) {
-        motion.measure(frame.timestamp, result.T_world_camera);
         return true;
     }
     const FrameResult failed = result;
-    if (edges.numEdges() > 0 &&
+    if (now.edges.numEdges() > 0 &&
         trackFrom(searchAround(T_last_keyframe), motion.searchPrior(frame.timestamp, T_world_keyframe), frame,
                   result)) {
-        motion.anchor(frame.timestamp, result.T_world_camera);
         result.reason = "found by searching around the last pose: " + failed.reason;
         return true;
     }
@@ -255,11 +266,11 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
     const RollingShutter shutter = motion.shutter(frame.timestamp, T_world_keyframe);
 
     const Stopwatch coarse_watch;
-    const CoarseResult aligned = coarse.track(*keyframe, pyramid, ideal, shutter, guesses, brightness);
+    const CoarseResult aligned = coarse.track(*keyframe, now.pyramid, ideal, shutter, guesses, brightness);
     result.ms.coarse += coarse_watch.milliseconds();
 
     const Stopwatch fine_watch;
-    const FineFrame view{&edges, &grid, &pyramid, &frame.depth, &camera, &ideal};
+    const FineFrame view{&now.edges, &grid, &now.pyramid, &frame.depth, &camera, &ideal};
     Pose T_current_keyframe = aligned.T_current_keyframe;
     Matrix6d covariance;
     if (options.mode == Mode::kCoarse) {
@@ -291,32 +302,38 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
         T_current_keyframe = refined.T_current_keyframe;
         covariance = refined.covariance;
     }
-    row_motion = shutter.motion(T_current_keyframe);
+    now.row_motion = shutter.motion(T_current_keyframe);
     if (options.mode != Mode::kCoarse && shutter.since_previous > 0) {
-        fine.addReadoutEvidence(*keyframe, T_current_keyframe, row_motion, view, motion.readout());
+        fine.addReadoutEvidence(*keyframe, T_current_keyframe, now.row_motion, view, motion.readout());
     }
     result.matched_ratio = fine.matches().matchedRatio();
     result.T_world_camera = T_world_keyframe * T_current_keyframe.inverse();
     orthonormalise(result.T_world_camera);
     setCovariance(covariance, T_current_keyframe, result);
     brightness = aligned.brightness;
+    now.T_world_camera = result.T_world_camera;
+    now.covariance = result.covariance;
+    now.matched_ratio = result.matched_ratio;
+    now.may_be_keyframe = true;
     result.ms.fine += fine_watch.milliseconds();
     return true;
 }
 
 void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
     Stopwatch edge_watch;
-    const cv::Mat& grey = undistorter.apply(frame.grey, undistorted);
-    extractor.extract(grey, edges);
-    grid.build(edges, ideal.width, ideal.height);
-    pyramid.build(grey, options.coarse.levels);
-    result.num_edges = edges.numEdges();
-    result.num_points = static_cast<int>(edges.size());
+    std::swap(now, before);
+    keepForKeyframe(frame);
+    const cv::Mat& grey = undistorter.apply(now.images.grey, now.undistorted);
+    extractor.extract(grey, now.edges);
+    grid.build(now.edges, ideal.width, ideal.height);
+    now.pyramid.build(grey, options.coarse.levels);
+    result.num_edges = now.edges.numEdges();
+    result.num_points = static_cast<int>(now.edges.size());
     result.ms.edges = edge_watch.milliseconds();
 
     if (!keyframe) {
-        result.T_world_camera = T_world_camera;
-        const std::string fault = makeKeyframe(frame, result);
+        result.T_world_camera = now.T_world_camera = T_world_camera;
+        const std::string fault = makeKeyframe(now);
         if (!fault.empty()) {
             result.status = FrameStatus::kRejected;
             result.reason = "cannot start here: " + fault;
@@ -324,22 +341,60 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
         }
         result.status = FrameStatus::kInitialised;
         result.reason = "first usable frame";
-        result.is_keyframe = true;
+        result.new_keyframe = true;
         motion.anchor(frame.timestamp, T_world_camera);
     } else if (trackFrame(frame, result)) {
         result.status = FrameStatus::kOk;
-        T_world_camera = result.T_world_camera;
         lost_frames = 0;
-        if (wantsKeyframe(result)) {
-            const std::string fault = makeKeyframe(frame, result);
-            result.is_keyframe = fault.empty();
-            if (!fault.empty())
-                result.reason += (result.reason.empty() ? "" : "; ") + ("wanted as keyframe, but " + fault);
+        const bool by_search = !result.reason.empty();
+        if (wantsKeyframe(result)) renewKeyframe(result);
+        T_world_camera = result.T_world_camera;
+        if (by_search) {
+            motion.anchor(frame.timestamp, T_world_camera);
+        } else {
+            motion.measure(frame.timestamp, T_world_camera);
         }
     } else {
         bridgeLoss(frame, result);
     }
     last_timestamp = frame.timestamp;
+}
+
+void Odometry::Impl::keepForKeyframe(const RgbdFrame& frame) {
+    now.images.timestamp = frame.timestamp;
+    frame.grey.copyTo(now.images.grey);
+    frame.depth.copyTo(now.images.depth);
+    frame.colour.copyTo(now.images.colour);
+    now.row_motion = motion.stillRows();
+    now.covariance.setZero();
+    now.may_be_keyframe = false;
+}
+
+void Odometry::Impl::renewKeyframe(FrameResult& result) {
+    // A frame that suddenly sees less is often a blurred one, and a bad keyframe. The frame before it was
+    // still tracked well: it takes over, and this frame is tracked once more, from nearer by.
+    const auto promote = [&](const FrameData& data) {
+        const std::string fault = makeKeyframe(data);
+        if (fault.empty()) {
+            result.new_keyframe = true;
+        } else {
+            result.reason += (result.reason.empty() ? "" : "; ") + ("a new keyframe is due, but " + fault);
+        }
+        return fault.empty();
+    };
+    const bool sees_less = result.matched_ratio < options.keyframe.min_matched_ratio;
+    if (!sees_less || !before.may_be_keyframe || before.matched_ratio <= result.matched_ratio) {
+        if (promote(now)) now.may_be_keyframe = false;
+        return;
+    }
+    const FrameResult first = result;
+    if (!promote(before)) return;
+    const Pose T_start = result.T_world_camera.inverse() * keyframe->T_world_camera;
+    if (!trackFrom({T_start}, motion.prior(now.images.timestamp, keyframe->T_world_camera), now.images,
+                   result)) {
+        result = first;
+        result.new_keyframe = true;
+    }
 }
 
 void Odometry::Impl::bridgeLoss(const RgbdFrame& frame, FrameResult& result) {
@@ -351,12 +406,13 @@ void Odometry::Impl::bridgeLoss(const RgbdFrame& frame, FrameResult& result) {
     result.status = bridging ? FrameStatus::kPredicted : FrameStatus::kLost;
     result.reason = (bridging ? "constant velocity: " : "pose held: ") + why;
     T_world_camera = result.T_world_camera;
-    row_motion = motion.stillRows();
     // A lost pose is worth little: say so, growing with every frame
     result.covariance = keyframe->covariance + lost_frames * 1e-2 * Matrix6d::Identity();
-    if (!bridging && makeKeyframe(frame, result).empty()) {
+    now.T_world_camera = T_world_camera;
+    now.covariance = result.covariance;
+    if (!bridging && makeKeyframe(now).empty()) {
         result.status = FrameStatus::kInitialised;
-        result.is_keyframe = true;
+        result.new_keyframe = true;
         result.reason =
             "re-anchored after " + std::to_string(lost_frames) + " frames without tracking: " + why;
         lost_frames = 0;

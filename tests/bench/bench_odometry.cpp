@@ -34,7 +34,7 @@ void processFrame(benchmark::State& state) {
         sum.edges += result.ms.edges;
         sum.coarse += result.ms.coarse;
         sum.fine += result.ms.fine;
-        keyframes += result.is_keyframe ? 1 : 0;
+        keyframes += result.new_keyframe ? 1 : 0;
         ++frames;
     }
     if (frames == 0) return;

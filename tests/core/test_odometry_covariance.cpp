@@ -44,7 +44,7 @@ TEST(OdometryCovariance, GrowsFromKeyframeToKeyframe) {
     double last = 0;
     int keyframes = 0;
     for (const auto& result : run.results) {
-        if (!result.is_keyframe) continue;
+        if (!result.new_keyframe) continue;
         ++keyframes;
         EXPECT_GE(result.sigmaRotationDeg(), last);
         last = result.sigmaRotationDeg();

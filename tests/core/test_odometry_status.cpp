@@ -84,7 +84,7 @@ TEST_F(OdometryStatus, AFrameWithoutDepthIsTracked) {
     const FrameResult zero = feed(frame);
     EXPECT_EQ(zero.status, FrameStatus::kOk) << zero.reason;
     EXPECT_LT(errorAt(zero, 9), 0.006);
-    EXPECT_FALSE(zero.is_keyframe);
+    EXPECT_FALSE(zero.new_keyframe);
     feedRoom(10, 13);
 }
 
@@ -169,7 +169,7 @@ TEST_F(OdometryStatus, ALongLossIsHeldAndReanchoredWithAReason) {
     }
     ASSERT_EQ(result.status, FrameStatus::kInitialised) << result.reason;
     EXPECT_NE(result.reason.find("re-anchored"), std::string::npos) << result.reason;
-    EXPECT_TRUE(result.is_keyframe);
+    EXPECT_TRUE(result.new_keyframe);
     EXPECT_LT((result.T_world_camera.translation() - second.T_world_camera.translation()).norm(), 1e-9)
         << "no silent jump";
     for (++i; i < 4; ++i) {

@@ -35,7 +35,7 @@ struct FrameResult {
     /// Of T_world_camera: position (m) then orientation (rad), both along the world's axes; the orientation
     /// error phi is meant as R <- exp(phi) R.
     Matrix6d covariance = Matrix6d::Zero();
-    bool is_keyframe = false;
+    bool new_keyframe = false;          ///< this frame brought a new keyframe: itself or the frame before it
     int num_edges = 0, num_points = 0;  ///< organized edges and their points in this frame
     double matched_ratio = 0;           ///< share of the keyframe's visible edges that were associated, 0..1
     int inliers = 0;                    ///< associated edge points (in tr: that passed the chi-square test)

@@ -50,7 +50,7 @@ struct FineOptions {
     double normal_angle_deg = 5;  ///< between the reprojected edge's normal and the candidate's
     double vote_ratio = 0.3;      ///< share of the shorter edge's points that must agree on a pair of edges
     int min_votes = 5;            ///< and at least this many points
-    int max_points = 3000;        ///< keyframe edge points used
+    int max_points = 3500;        ///< keyframe edge points used
     int max_iterations = 12;      ///< Gauss-Newton steps, associations renewed in each
     double chi2 = 16;             ///< chi-square limit of a residual
     double photometric_weight =

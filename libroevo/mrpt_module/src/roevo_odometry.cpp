@@ -78,7 +78,7 @@ FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
 FrameResult CRoevoOdometry::processObservation(const CObservation3DRangeScan& scan) {
     const FrameResult result = track(scan);
     if (result.hasPose()) latest_ = result;
-    if (result.is_keyframe) keyframe_covariances_[result.timestamp] = result.covariance;
+    if (result.new_keyframe) keyframe_covariances_[result.timestamp] = result.covariance;
     report(result);
     return result;
 }

@@ -16,6 +16,10 @@ constexpr double kMaxScale = 2.0;  ///< px
 /// How much less the evidence of one frame counts for the read-out time: its velocity is only known from two
 /// poses.
 constexpr double kReadoutCaution = 50;
+/// Points were associated where the present read-out time puts them, so that residuals show only a part of
+/// what it lacks; the gain makes up for about as much as was measured. The fixed point, no residual left,
+/// does not depend on it.
+constexpr double kReadoutGain = 2.5;
 constexpr double kOverRelaxation = 1.6;
 constexpr float kStudentNu = 5;  ///< degrees of freedom of the t-distribution that residuals follow
 constexpr float kUnknown = -1;   ///< depth not looked up yet
@@ -158,7 +162,8 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
         const double by_keyframe =
             -by_point.dot(T_current_keyframe.linear() * keyframe.row_motion.pointVelocity(in_keyframe)) *
             (static_cast<double>(keyframe.edges.image.y[i]) - rows.reference_row);
-        const double residual = static_cast<double>(residual_[k]) - by_current * rows.seconds_per_row -
+        const double residual = kReadoutGain * static_cast<double>(residual_[k]) -
+                                by_current * rows.seconds_per_row -
                                 by_keyframe * keyframe.row_motion.seconds_per_row;
         const double by_readout = by_current + by_keyframe;
         Vector6d by_pose;
