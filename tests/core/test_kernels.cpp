@@ -39,6 +39,7 @@ Projection randomProjection(std::mt19937& random, bool rolling) {
     m.cx = 318.6F;
     m.cy = 255.3F;
     m.reference_row = 240;
+    m.last_row = 479;
     return m;
 }
 
@@ -149,7 +150,9 @@ TEST_P(Kernels, ProjectIsThePlainFormula) {
                 if (std::abs(c.z()) < 0.3)
                     continue;  // the row correction may carry it across the image plane
                 if (c.z() > 1e-3) {
-                    const double rows = m.fy * c.y() / c.z() + m.cy - m.reference_row;
+                    const double row = m.fy * c.y() / c.z() + m.cy;  // no row lies outside the image
+                    const double rows =
+                        std::clamp(row, 0.0, static_cast<double>(m.last_row)) - m.reference_row;
                     c -= rows * (velocity + w.cross(c));
                 }
                 if (c.z() <= 1e-3) {

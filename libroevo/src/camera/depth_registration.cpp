@@ -58,7 +58,7 @@ void requireDepth(const cv::Mat& depth, const PinholeCamera& camera) {
 /// Half the width, in colour pixels, of what a depth pixel covers there: at least half a pixel, so that no
 /// hole opens, at most a few.
 double halfFootprint(double depth_focal, double colour_focal, double depth_z, double colour_z) {
-    return std::clamp(colour_focal / depth_focal * depth_z / colour_z / 2, 0.5, 4.5);
+    return std::clamp(0.55 * colour_focal / depth_focal * depth_z / colour_z, 0.5, 4.5);
 }
 
 }  // namespace

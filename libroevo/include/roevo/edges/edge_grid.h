@@ -16,7 +16,7 @@ class EdgeGrid {
     void build(const OrganizedEdges& edges, int width, int height);
 
     /// Nearest point to (u, v) within `radius` (at most kMaxRadius) pixels that `accept(index)` agrees to, or
-    /// -1. Nothing is near a point outside the image.
+    /// -1. (u, v) may lie outside the image.
     template <class Accept>
     int nearest(float u, float v, float radius, Accept&& accept) const;
 
@@ -44,7 +44,11 @@ class EdgeGrid {
 
 template <class Accept>
 int EdgeGrid::nearest(float u, float v, float radius, Accept&& accept) const {
-    if (!(u >= 0 && v >= 0 && u < static_cast<float>(width_) && v < static_cast<float>(height_))) return -1;
+    constexpr float kFar = kMaxRadius + 1;  // from here on nothing of the image is in reach
+    if (!(u > -kFar && v > -kFar && u < static_cast<float>(width_) + kFar &&
+          v < static_cast<float>(height_) + kFar)) {
+        return -1;
+    }
     const int cu = static_cast<int>(std::lround(u)), cv = static_cast<int>(std::lround(v));
     // Points are within half a pixel of their cell's centre, the query within half a pixel of its own
     const int reach = std::min(static_cast<int>(std::ceil(radius)), kMaxRadius) + 1;
