@@ -72,6 +72,56 @@ TEST_F(OdometryStatus, SeveralBlackFramesAreBridgedAndTheFramesAfterThemAreRight
     }
 }
 
+TEST_F(OdometryStatus, ACameraThatStoodStillInTheDarkIsFoundWhereItStood) {
+    // What was predicted while it was dark is wrong, and must not pull the frames after it
+    constexpr int kLast = 11, kDark = 8;
+    feedRoom(0, kLast + 1);
+    const double step = frameAt(1).timestamp - frameAt(0).timestamp;
+    double time = frameAt(kLast).timestamp;
+    FrameResult dark;
+    for (int i = 0; i < kDark; ++i) {
+        dark = feed(black(time += step));
+        EXPECT_EQ(dark.status, FrameStatus::kPredicted);
+    }
+    EXPECT_GT(errorAt(dark, kLast), 0.02) << "the prediction moves on";
+    RgbdFrame frame = frameAt(kLast);
+    frame.timestamp = (time += step);
+    const FrameResult found = feed(frame);
+    EXPECT_EQ(found.status, FrameStatus::kOk) << found.reason;
+    EXPECT_LT(errorAt(found, kLast), 0.01);
+    EXPECT_LT(errorAt(found, kLast), 5 * found.sigmaTranslation());
+    for (int i = kLast + 1; i < 30; ++i) {
+        frame = frameAt(i);
+        frame.timestamp = (time += step);
+        const FrameResult result = feed(frame);
+        EXPECT_EQ(result.status, FrameStatus::kOk) << i << " " << result.reason;
+        EXPECT_LT(errorAt(result, i), 0.01) << i;
+    }
+}
+
+TEST_F(OdometryStatus, TimeMayBeginBeforeZero) {
+    for (int i = 0; i < 4; ++i) {
+        RgbdFrame frame = frameAt(i);
+        frame.timestamp = -5 + (frameAt(i).timestamp - frameAt(0).timestamp);
+        const FrameResult result = feed(frame);
+        EXPECT_EQ(result.status, i == 0 ? FrameStatus::kInitialised : FrameStatus::kOk) << result.reason;
+        EXPECT_LT(errorAt(result, i), 0.005) << i;
+    }
+    ASSERT_EQ(odometry_.trajectory().size(), 4U);
+    EXPECT_EQ(odometry_.trajectory()[0].timestamp, -5);
+}
+
+TEST_F(OdometryStatus, AStartPoseThatIsNotFiniteIsRefused) {
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        Pose start = room().start();
+        start.translation().y() = bad;
+        EXPECT_THROW(Odometry(room().camera, OdometryOptions(), start), std::invalid_argument);
+        start = room().start();
+        start.linear()(1, 2) = bad;
+        EXPECT_THROW(Odometry(room().camera, OdometryOptions(), start), std::invalid_argument);
+    }
+}
+
 TEST_F(OdometryStatus, AFrameWithoutDepthIsTracked) {
     feedRoom(0, 8);
     RgbdFrame frame = frameAt(8);

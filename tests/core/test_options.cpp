@@ -131,6 +131,24 @@ TEST(Options, NotFiniteIsRefused) {
     }
 }
 
+TEST(Options, ARefusedOneKeepsItsValue) {
+    OdometryOptions reference;
+    const std::size_t count = optionFields(reference).size();
+    for (std::size_t i = 0; i < count; ++i) {
+        OdometryOptions options;
+        const auto field = optionFields(options)[i];
+        const std::string before = field.toText();
+        for (const char* text : {"-1e9", "1e12", "1e999", "nan", "2x", "", "slam"}) {
+            EXPECT_NE(setOption(options, field.name(), text), "") << field.name() << " took '" << text << "'";
+            EXPECT_EQ(field.toText(), before) << field.name() << " after '" << text << "'";
+        }
+    }
+    OdometryOptions options;
+    options.edges.min_length = 17;  // not the default
+    EXPECT_NE(setOption(options, "edges.min_length", "-3"), "");
+    EXPECT_EQ(options.edges.min_length, 17);
+}
+
 TEST(Options, WholeNumbersMustBeWhole) {
     OdometryOptions options;
     EXPECT_TRUE(contains(setOption(options, "edges.min_length", "10.5"), "whole"));
