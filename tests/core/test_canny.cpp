@@ -68,7 +68,8 @@ Errors worstOverDirections(double sigma) {
             const double d = distance(x, y);
             return sigma > 0 ? 120 + 80 * std::erf(d / sigma / std::sqrt(2.0)) : (d < 0 ? 40.0 : 200.0);
         };
-        const Detected found = detect(testing::renderGrey(100, 100, level, 12), 60, 120);
+        // 20 samples per pixel put the step at 50.3 exactly
+        const Detected found = detect(testing::renderGrey(100, 100, level, 20), 60, 120);
         EXPECT_GE(found.points.size(), 88U) << degrees;
         const Errors errors = errorsOf(found.points, distance);
         worst.root_mean_square = std::max(worst.root_mean_square, errors.root_mean_square);
@@ -78,11 +79,11 @@ Errors worstOverDirections(double sigma) {
     return worst;
 }
 
-TEST(Canny, StepOfAnyDirectionThroughALensIsFoundWithinATenthOfAPixel) {
+TEST(Canny, StepOfAnyDirectionThroughALensIsFoundWithinAFifteenthOfAPixel) {
     const Errors errors = worstOverDirections(1.0);
-    EXPECT_LT(errors.root_mean_square, 0.1);
-    EXPECT_LT(errors.mean, 0.04);
-    EXPECT_LT(errors.worst, 0.25);
+    EXPECT_LT(errors.root_mean_square, 0.045);
+    EXPECT_LT(errors.mean, 0.015);
+    EXPECT_LT(errors.worst, 0.08);
 }
 
 TEST(Canny, StepWithNoBlurButThePixelsIsFoundNearlyAsWell) {
@@ -101,8 +102,8 @@ TEST(Canny, RimOfADiscIsFoundWithinATenthOfAPixel) {
         EXPECT_GE(found.points.size(), static_cast<std::size_t>(5.4 * radius)) << radius;
         const Errors errors = errorsOf(
             found.points, [&](double x, double y) { return std::hypot(x - 60.2, y - 59.7) - radius; });
-        EXPECT_LT(errors.root_mean_square, 0.1) << radius;
-        EXPECT_LT(std::abs(errors.mean), 0.06) << radius;
+        EXPECT_LT(errors.root_mean_square, 0.065) << radius;
+        EXPECT_LT(std::abs(errors.mean), 0.041) << radius;
     }
 }
 

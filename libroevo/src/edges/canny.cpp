@@ -115,7 +115,7 @@ cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y) {
     const Neighbours n =
         alongGradient(magnitude, static_cast<std::ptrdiff_t>(gradient.magnitude.step1()), gx, gy);
     // Through the logarithms: a blurred step has a Gaussian ridge, whose logarithm is a parabola
-    const float floor = 0.02F * magnitude[0];  // where a sharp ridge ends, the logarithm would run away
+    const float floor = 0.33F * magnitude[0];  // where a sharp ridge ends, the logarithm would run away
     const float before = std::log(n.before + floor), here = std::log(magnitude[0] + floor),
                 after = std::log(n.after + floor);
     const float curvature = before - 2 * here + after;
