@@ -22,7 +22,8 @@ struct Projection {
     float fx, fy, cx, cy;  ///< px
     /// Rolling shutter: how the camera moves while one row is read (m, rad; in its own frame), and the row
     /// that the motion refers to.
-    float velocity[3], turn[3], reference_row, last_row;
+    float velocity[3], turn[3], reference_row;
+    float last_row;  ///< height - 1, px: no row is later
 };
 
 /// Points moved into the camera and projected; u = v = -1e6 where z <= 1e-3 m.
