@@ -1,13 +1,13 @@
 #include "roevo/odometry.h"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "input_check.h"
+#include "keyframe_maker.h"
 #include "roevo/camera/undistorter.h"
 #include "roevo/edges/edge_extractor.h"
 #include "roevo/tracking/fine_tracker.h"
@@ -46,44 +46,6 @@ std::vector<Pose> searchAround(const Pose& T_current_keyframe) {
 
 }  // namespace
 
-const char* toString(FrameStatus status) {
-    switch (status) {
-        case FrameStatus::kOk:
-            return "ok";
-        case FrameStatus::kInitialised:
-            return "initialised";
-        case FrameStatus::kPredicted:
-            return "predicted";
-        case FrameStatus::kLost:
-            return "lost";
-        case FrameStatus::kRejected:
-            return "rejected";
-    }
-    return "unknown";
-}
-
-double FrameResult::sigmaTranslation() const {
-    return std::sqrt(std::max(0.0, covariance.topLeftCorner<3, 3>().trace()));
-}
-
-double FrameResult::sigmaRotationDeg() const {
-    return std::sqrt(std::max(0.0, covariance.bottomRightCorner<3, 3>().trace())) / kDegree;
-}
-
-/// What a frame leaves behind, so that it can still become a keyframe when the next one turns out to see much
-/// less.
-struct FrameData {
-    RgbdFrame images;  // copies: the caller's buffers may be used again
-    cv::Mat undistorted;
-    OrganizedEdges edges;
-    ImagePyramid pyramid;
-    RowMotion row_motion;
-    Pose T_world_camera = Pose::Identity();
-    Matrix6d covariance = Matrix6d::Zero();
-    double matched_ratio = 0;
-    bool may_be_keyframe = false;  // tracked, and not one yet
-};
-
 struct Odometry::Impl {
     Impl(const PinholeCamera& raw, const OdometryOptions& opts, const Pose& start)
         : camera(raw),
@@ -116,11 +78,9 @@ struct Odometry::Impl {
     double last_timestamp = -std::numeric_limits<double>::infinity();
     int lost_frames = 0;
 
-    std::string faultOf(const RgbdFrame& frame) const;
-    std::string makeKeyframe(const FrameData& data);
+    std::string startKeyframe(const FrameData& data);
     void renewKeyframe(FrameResult& result);
     void keepForKeyframe(const RgbdFrame& frame);
-    void keepMapEdges(const RgbdFrame& frame, const Keyframe& kf);
     void process(const RgbdFrame& frame, FrameResult& result);
     bool trackFrame(const RgbdFrame& frame, FrameResult& result);
     bool trackFrom(const std::vector<Pose>& guesses, const PosePrior& prior, const RgbdFrame& frame,
@@ -131,78 +91,15 @@ struct Odometry::Impl {
     void setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe, FrameResult& result) const;
 };
 
-std::string Odometry::Impl::faultOf(const RgbdFrame& frame) const {
-    if (!std::isfinite(frame.timestamp)) return "time stamp is not finite";
-    if (frame.timestamp <= last_timestamp) {
-        return frame.timestamp == last_timestamp ? "repeated time stamp" : "time stamp goes backward";
-    }
-    if (frame.grey.empty()) return "no colour image";
-    if (frame.grey.type() != CV_8UC1) return "grey image is not 8-bit with one channel";
-    const auto differs = [&](const cv::Mat& image) {
-        return image.cols != camera.width || image.rows != camera.height;
-    };
-    const auto sizeText = [](const cv::Mat& image) {
-        return std::to_string(image.cols) + "x" + std::to_string(image.rows);
-    };
-    const std::string expected = std::to_string(camera.width) + "x" + std::to_string(camera.height);
-    if (differs(frame.grey))
-        return "colour image is " + sizeText(frame.grey) + " but the camera is " + expected;
-    if (!frame.depth.empty() && frame.depth.type() != CV_32FC1) return "depth image is not 32-bit float";
-    if (!frame.depth.empty() && differs(frame.depth)) {
-        return "depth image is " + sizeText(frame.depth) + " but the camera is " + expected;
-    }
-    return {};
-}
-
-std::string Odometry::Impl::makeKeyframe(const FrameData& data) {
-    if (data.images.depth.empty()) return "no depth image";
+std::string Odometry::Impl::startKeyframe(const FrameData& data) {
     auto fresh = std::make_unique<Keyframe>();
-    fresh->edges =
-        liftEdges(data.edges, data.images.depth, camera, data.row_motion, options.edges, options.sensor);
-    const auto needed = static_cast<std::size_t>(options.fine.min_inliers);
-    if (fresh->edges.size() < needed) {
-        return "only " + std::to_string(fresh->edges.size()) + " edge points with depth, " +
-               std::to_string(needed) + " needed";
-    }
-    fresh->id = static_cast<int>(keyframe_infos.size());
-    fresh->timestamp = data.images.timestamp;
-    fresh->T_world_camera = data.T_world_camera;
-    fresh->covariance = data.covariance;
-    fresh->row_motion = data.row_motion;
-    fresh->photometric = samplePhotometricPoints(fresh->edges, data.pyramid, options.coarse.max_points);
-    fresh->median_depth = static_cast<double>(fresh->edges.medianDepth());
+    const int id = static_cast<int>(keyframe_infos.size());
+    if (auto fault = makeKeyframe(data, id, camera, options, *fresh); !fault.empty()) return fault;
     keyframe = std::move(fresh);
     brightness = Brightness();
     keyframe_infos.push_back({keyframe->id, keyframe->timestamp, keyframe->T_world_camera});
-    keepMapEdges(data.images, *keyframe);
+    for (MapEdge& edge : mapEdgesOf(*keyframe, data.images, camera)) edge_map.push_back(std::move(edge));
     return {};
-}
-
-void Odometry::Impl::keepMapEdges(const RgbdFrame& frame, const Keyframe& kf) {
-    const bool coloured = frame.colour.type() == CV_8UC3 && frame.colour.size() == frame.grey.size();
-    for (int e = 0; e < kf.edges.image.numEdges(); ++e) {
-        MapEdge edge;
-        edge.keyframe_id = kf.id;
-        const auto first = static_cast<std::size_t>(kf.edges.image.begin[static_cast<std::size_t>(e)]);
-        const auto end = static_cast<std::size_t>(kf.edges.image.begin[static_cast<std::size_t>(e) + 1]);
-        for (std::size_t i = first; i < end; ++i) {
-            const Eigen::Vector3d p =
-                kf.T_world_camera * Eigen::Vector3d(kf.edges.x[i], kf.edges.y[i], kf.edges.z[i]);
-            edge.points.push_back(p.cast<float>());
-            Eigen::Vector2d pixel(kf.edges.image.x[i], kf.edges.image.y[i]);
-            if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
-            const int u = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, camera.width - 1);
-            const int v = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, camera.height - 1);
-            if (coloured) {
-                const auto& bgr = frame.colour.at<cv::Vec3b>(v, u);
-                edge.colours.push_back({bgr[2], bgr[1], bgr[0]});
-            } else {
-                const std::uint8_t level = frame.grey.at<std::uint8_t>(v, u);
-                edge.colours.push_back({level, level, level});
-            }
-        }
-        edge_map.push_back(std::move(edge));
-    }
 }
 
 void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe,
@@ -333,7 +230,7 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
 
     if (!keyframe) {
         result.T_world_camera = now.T_world_camera = T_world_camera;
-        const std::string fault = makeKeyframe(now);
+        const std::string fault = startKeyframe(now);
         if (!fault.empty()) {
             result.status = FrameStatus::kRejected;
             result.reason = "cannot start here: " + fault;
@@ -374,7 +271,7 @@ void Odometry::Impl::renewKeyframe(FrameResult& result) {
     // A frame that suddenly sees less is often a blurred one, and a bad keyframe. The frame before it was
     // still tracked well: it takes over, and this frame is tracked once more, from nearer by.
     const auto promote = [&](const FrameData& data) {
-        const std::string fault = makeKeyframe(data);
+        const std::string fault = startKeyframe(data);
         if (fault.empty()) {
             result.new_keyframe = true;
         } else {
@@ -410,7 +307,7 @@ void Odometry::Impl::bridgeLoss(const RgbdFrame& frame, FrameResult& result) {
     result.covariance = keyframe->covariance + lost_frames * 1e-2 * Matrix6d::Identity();
     now.T_world_camera = T_world_camera;
     now.covariance = result.covariance;
-    if (!bridging && makeKeyframe(now).empty()) {
+    if (!bridging && startKeyframe(now).empty()) {
         result.status = FrameStatus::kInitialised;
         result.new_keyframe = true;
         result.reason =
@@ -434,7 +331,7 @@ FrameResult Odometry::processFrame(const RgbdFrame& frame) {
     Stopwatch watch;
     FrameResult result;
     result.timestamp = frame.timestamp;
-    if (auto fault = impl_->faultOf(frame); !fault.empty()) {
+    if (auto fault = faultOf(frame, impl_->camera, impl_->last_timestamp); !fault.empty()) {
         result.reason = std::move(fault);
         return result;
     }

@@ -1,0 +1,57 @@
+#include "keyframe_maker.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roevo {
+
+std::string makeKeyframe(const FrameData& data, int id, const PinholeCamera& camera,
+                         const OdometryOptions& options, Keyframe& keyframe) {
+    if (data.images.depth.empty()) return "no depth image";
+    keyframe.edges =
+        liftEdges(data.edges, data.images.depth, camera, data.row_motion, options.edges, options.sensor);
+    const auto needed = static_cast<std::size_t>(options.fine.min_inliers);
+    if (keyframe.edges.size() < needed) {
+        return "only " + std::to_string(keyframe.edges.size()) + " edge points with depth, " +
+               std::to_string(needed) + " needed";
+    }
+    keyframe.id = id;
+    keyframe.timestamp = data.images.timestamp;
+    keyframe.T_world_camera = data.T_world_camera;
+    keyframe.covariance = data.covariance;
+    keyframe.row_motion = data.row_motion;
+    keyframe.photometric = samplePhotometricPoints(keyframe.edges, data.pyramid, options.coarse.max_points);
+    keyframe.median_depth = static_cast<double>(keyframe.edges.medianDepth());
+    return {};
+}
+
+EdgeMap mapEdgesOf(const Keyframe& kf, const RgbdFrame& frame, const PinholeCamera& camera) {
+    EdgeMap edges;
+    const bool coloured = frame.colour.type() == CV_8UC3 && frame.colour.size() == frame.grey.size();
+    for (int e = 0; e < kf.edges.image.numEdges(); ++e) {
+        MapEdge edge;
+        edge.keyframe_id = kf.id;
+        const auto first = static_cast<std::size_t>(kf.edges.image.begin[static_cast<std::size_t>(e)]);
+        const auto end = static_cast<std::size_t>(kf.edges.image.begin[static_cast<std::size_t>(e) + 1]);
+        for (std::size_t i = first; i < end; ++i) {
+            const Eigen::Vector3d p =
+                kf.T_world_camera * Eigen::Vector3d(kf.edges.x[i], kf.edges.y[i], kf.edges.z[i]);
+            edge.points.push_back(p.cast<float>());
+            Eigen::Vector2d pixel(kf.edges.image.x[i], kf.edges.image.y[i]);
+            if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
+            const int u = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, camera.width - 1);
+            const int v = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, camera.height - 1);
+            if (coloured) {
+                const auto& bgr = frame.colour.at<cv::Vec3b>(v, u);
+                edge.colours.push_back({bgr[2], bgr[1], bgr[0]});
+            } else {
+                const std::uint8_t level = frame.grey.at<std::uint8_t>(v, u);
+                edge.colours.push_back({level, level, level});
+            }
+        }
+        edges.push_back(std::move(edge));
+    }
+    return edges;
+}
+
+}  // namespace roevo
