@@ -88,9 +88,9 @@ TEST(Canny, StepOfAnyDirectionThroughALensIsFoundWithinAFifteenthOfAPixel) {
 
 TEST(Canny, StepWithNoBlurButThePixelsIsFoundNearlyAsWell) {
     const Errors errors = worstOverDirections(0);
-    EXPECT_LT(errors.root_mean_square, 0.18);  // a diagonal is the worst: three samples 1.4 px apart
+    EXPECT_LT(errors.root_mean_square, 0.08);  // a diagonal is the worst: three samples 1.4 px apart
     EXPECT_LT(errors.mean, 0.05);
-    EXPECT_LT(errors.worst, 0.35);
+    EXPECT_LT(errors.worst, 0.12);
 }
 
 TEST(Canny, RimOfADiscIsFoundWithinATenthOfAPixel) {

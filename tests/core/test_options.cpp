@@ -28,6 +28,20 @@ bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
+/// Calls `check(options, field, upper)` for every number's lower and upper limit, with fresh default options.
+template <class Check>
+void forEveryLimit(Check&& check) {
+    OdometryOptions reference;
+    const std::size_t count = optionFields(reference).size();
+    for (std::size_t i = 0; i < count; ++i) {
+        for (const bool upper : {false, true}) {
+            OdometryOptions options;
+            const auto field = optionFields(options)[i];
+            if (isNumber(field)) check(options, field, upper);
+        }
+    }
+}
+
 TEST(Options, DefaultsAreInRange) {
     EXPECT_EQ(checkOptions(OdometryOptions()), "");
 }
@@ -50,38 +64,24 @@ TEST(Options, EveryFieldHasAUniqueNameAndADescription) {
 }
 
 TEST(Options, OneOutOfRangeNamesItselfItsValueAndItsRange) {
-    OdometryOptions reference;
-    const std::size_t count = optionFields(reference).size();
-    for (std::size_t i = 0; i < count; ++i) {
-        for (const bool upper : {false, true}) {
-            OdometryOptions options;
-            const auto field = optionFields(options)[i];
-            if (!isNumber(field)) continue;
-            const double step = std::max(1.0, std::abs(limit(field, upper)));
-            put(field, limit(field, upper) + (upper ? step : -step));
-            const std::string fault = checkOptions(options);
-            EXPECT_TRUE(contains(fault, field.name())) << fault;
-            EXPECT_TRUE(contains(fault, field.toText())) << fault;
-            EXPECT_TRUE(contains(fault, "outside")) << fault;
-            EXPECT_EQ(fault.find('\n'), std::string::npos);
-            OdometryOptions again;
-            EXPECT_EQ(setOption(again, field.name(), field.toText()), fault);
-        }
-    }
+    forEveryLimit([](const OdometryOptions& options, const OptionField& field, bool upper) {
+        const double step = std::max(1.0, std::abs(limit(field, upper)));
+        put(field, limit(field, upper) + (upper ? step : -step));
+        const std::string fault = checkOptions(options);
+        EXPECT_TRUE(contains(fault, field.name())) << fault;
+        EXPECT_TRUE(contains(fault, field.toText())) << fault;
+        EXPECT_TRUE(contains(fault, "outside")) << fault;
+        EXPECT_EQ(fault.find('\n'), std::string::npos);
+        OdometryOptions again;
+        EXPECT_EQ(setOption(again, field.name(), field.toText()), fault);
+    });
 }
 
 TEST(Options, LimitsThemselvesAreAllowed) {
-    OdometryOptions reference;
-    const std::size_t count = optionFields(reference).size();
-    for (std::size_t i = 0; i < count; ++i) {
-        for (const bool upper : {false, true}) {
-            OdometryOptions options;
-            const auto field = optionFields(options)[i];
-            if (!isNumber(field)) continue;
-            put(field, limit(field, upper));
-            EXPECT_EQ(field.check(), "") << field.name();
-        }
-    }
+    forEveryLimit([](const OdometryOptions&, const OptionField& field, bool upper) {
+        put(field, limit(field, upper));
+        EXPECT_EQ(field.check(), "") << field.name();
+    });
 }
 
 TEST(Options, TextGoesThereAndBack) {

@@ -144,6 +144,30 @@ TEST(RollingShutter, MotionIsTheCamerasVelocityInItsOwnFrame) {
     }
 }
 
+/// Normal equations of one frame, residual by residual.
+struct Evidence {
+    Matrix6d information = Matrix6d::Zero();
+    Vector6d mixed = Vector6d::Zero(), gradient = Vector6d::Zero();
+    double own = 0, own_gradient = 0;
+
+    void add(const Vector6d& by_pose, double by_readout, double residual) {
+        information += by_pose * by_pose.transpose();
+        mixed += by_readout * by_pose;
+        gradient += residual * by_pose;
+        own += by_readout * by_readout;
+        own_gradient += by_readout * residual;
+    }
+    void giveTo(ReadoutEstimator& estimator) const {
+        estimator.add(information, mixed, own, gradient, own_gradient);
+    }
+};
+
+Vector6d randomJacobian(std::mt19937& random) {
+    Vector6d j;
+    for (int k = 0; k < 6; ++k) j[k] = uniform(random, -500, 500);
+    return j;
+}
+
 TEST(ReadoutEstimator, FindsAKnownReadoutTimeInLinearData) {
     std::mt19937 random(97);
     const double truth = 2.5e-5;  // s per row
@@ -152,23 +176,17 @@ TEST(ReadoutEstimator, FindsAKnownReadoutTimeInLinearData) {
     const double sigma_before = estimator.sigma();
     EXPECT_NEAR(sigma_before, 1e-4, 1e-12);
     for (int frame = 0; frame < 60; ++frame) {
-        Matrix6d information = Matrix6d::Zero();
-        Vector6d mixed = Vector6d::Zero(), gradient = Vector6d::Zero(), pose_error;
-        double own = 0, own_gradient = 0;
+        Evidence evidence;
+        Vector6d pose_error;
         for (int k = 0; k < 6; ++k) pose_error[k] = uniform(random, -0.01, 0.01);
         for (int i = 0; i < 300; ++i) {
-            Vector6d j;
-            for (int k = 0; k < 6; ++k) j[k] = uniform(random, -500, 500);
+            const Vector6d j = randomJacobian(random);
             const double by_readout = uniform(random, -1e5, 1e5);
             // The residual at no read-out time and a pose that is off: r = -(j e + by_readout s) + noise
-            const double residual = -(j.dot(pose_error) + by_readout * truth) + uniform(random, -0.3, 0.3);
-            information += j * j.transpose();
-            mixed += by_readout * j;
-            gradient += residual * j;
-            own += by_readout * by_readout;
-            own_gradient += by_readout * residual;
+            evidence.add(j, by_readout,
+                         -(j.dot(pose_error) + by_readout * truth) + uniform(random, -0.3, 0.3));
         }
-        estimator.add(information, mixed, own, gradient, own_gradient);
+        evidence.giveTo(estimator);
     }
     EXPECT_NEAR(estimator.secondsPerRow(), truth, 0.01 * truth);
     EXPECT_LT(estimator.sigma(), sigma_before / 10);
@@ -178,21 +196,13 @@ TEST(ReadoutEstimator, WhatThePoseExplainsAsWellTeachesNothing) {
     std::mt19937 random(98);
     ReadoutEstimator estimator(1e-4, 0.95);
     for (int frame = 0; frame < 30; ++frame) {
-        Matrix6d information = Matrix6d::Identity() * 1e-6;
-        Vector6d mixed = Vector6d::Zero(), gradient = Vector6d::Zero();
-        double own = 0, own_gradient = 0;
+        Evidence evidence;
+        evidence.information = Matrix6d::Identity() * 1e-6;
         for (int i = 0; i < 100; ++i) {
-            Vector6d j;
-            for (int k = 0; k < 6; ++k) j[k] = uniform(random, -500, 500);
-            const double by_readout = 200 * j[1];  // indistinguishable from moving along y
-            const double residual = j[1] * 0.01;
-            information += j * j.transpose();
-            mixed += by_readout * j;
-            gradient += residual * j;
-            own += by_readout * by_readout;
-            own_gradient += by_readout * residual;
+            const Vector6d j = randomJacobian(random);
+            evidence.add(j, 200 * j[1], j[1] * 0.01);  // indistinguishable from moving along y
         }
-        estimator.add(information, mixed, own, gradient, own_gradient);
+        evidence.giveTo(estimator);
     }
     EXPECT_LT(std::abs(estimator.secondsPerRow()), 1e-6);
 }
