@@ -18,5 +18,5 @@ if(NOT ROEVO_SANITIZE)
            COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/apps/consumer
                    -DWORK=${CMAKE_BINARY_DIR}/install_test -DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
                    -P ${CMAKE_CURRENT_SOURCE_DIR}/apps/install_test.cmake)
-  set_tests_properties(Install.LibrariesCanBeFoundAndUsed PROPERTIES TIMEOUT 300)
+  set_tests_properties(Install.LibrariesCanBeFoundAndUsed PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endif()

@@ -15,7 +15,7 @@ add_executable(test_core_odometry core/test_odometry_accuracy.cpp core/test_odom
 target_link_libraries(test_core_odometry PRIVATE roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
 foreach(suite OdometryAccuracy OdometryStatus OdometryCovariance)
   add_test(NAME ${suite} COMMAND test_core_odometry --gtest_filter=${suite}.*)
-  set_tests_properties(${suite} PROPERTIES TIMEOUT 300)
+  set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
 roevo_test(test_core_sequences
   SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp
