@@ -44,7 +44,7 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 }  // namespace
 
 const char* toString(Mode mode) {
-    return mode == Mode::kCoarse ? "ct" : "tr";
+    return mode == Mode::kCoarse ? "ct" : mode == Mode::kTracking ? "tr" : "ba";
 }
 
 std::string OptionField::toText() const {
@@ -77,12 +77,12 @@ std::string OptionField::fromText(const std::string& text) const {
         return {};
     }
     auto* mode = std::get<Mode*>(value);
-    for (const Mode known : {Mode::kCoarse, Mode::kTracking}) {
+    for (const Mode known : {Mode::kCoarse, Mode::kTracking, Mode::kBundleAdjustment}) {
         if (word != toString(known)) continue;
         *mode = known;
         return {};
     }
-    return "option " + name() + ": '" + word + "' is not one of ct, tr";
+    return "option " + name() + ": '" + word + "' is not one of ct, tr, ba";
 }
 
 std::string OptionField::check() const {
@@ -106,7 +106,8 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
     auto& f = o.fine;
     auto& k = o.keyframe;
     return {
-        {"odometry", "mode", "", "ct: coarse tracking only; tr: coarse and fine", 0, 0, &o.mode},
+        {"odometry", "mode", "", "ct: coarse tracking only; tr: coarse and fine; ba: with local mapping", 0,
+         0, &o.mode},
         {"sensor", "depth_weight_k", "1/m", "k of the depth weight, Eq. (20)", 0, 10, &s.depth_weight_k},
         {"sensor", "min_depth", "m", "d_min of Eq. (20); nearer depths are not used", 0.01, 10, &s.min_depth},
         {"sensor", "max_depth", "m", "d_max of Eq. (20)", 0.1, 100, &s.max_depth},
@@ -180,6 +181,35 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
         {"motion", "speed", "m/s", "likely speed where none is known, one sigma", 0.01, 1e6, &o.motion.speed},
         {"motion", "angular_speed_deg", "deg/s", "likely turning speed where none is known, one sigma", 1,
          1e8, &o.motion.angular_speed_deg},
+        {"mapping", "window", "keyframes", "newest keyframes that are refined together", 2, 100,
+         &o.mapping.window},
+        {"mapping", "max_points", "points", "edge points kept of a keyframe", 100, 100000,
+         &o.mapping.max_points},
+        {"mapping", "max_iterations", "", "steps of the bundle adjustment per keyframe", 1, 100,
+         &o.mapping.max_iterations},
+        {"mapping", "joint_refinement", "",
+         "poses move together; else each is registered alone, as in the paper", 0, 1,
+         &o.mapping.joint_refinement},
+        {"mapping", "chi2", "", "chi-square limit of a point-to-tangent residual", 0.5, 100, &o.mapping.chi2},
+        {"mapping", "depth_weight", "", "weight of the depth of an observation", 0, 100,
+         &o.mapping.depth_weight},
+        {"mapping", "depth_chi2", "", "chi-square limit of a depth", 0.5, 100, &o.mapping.depth_chi2},
+        {"mapping", "prior_weight", "", "weight of the tracked motion between keyframes", 0, 100,
+         &o.mapping.prior_weight},
+        {"mapping", "max_spread", "sigmas", "an edge whose observations differ by more is a pseudo-edge", 0.01,
+         100, &o.mapping.max_spread},
+        {"mapping", "min_seen", "", "share of the keyframes looking at an edge's place that must see it", 0,
+         1, &o.mapping.min_seen},
+        {"mapping", "min_looks", "keyframes", "fewer of them cannot judge", 2, 100, &o.mapping.min_looks},
+        {"mapping", "reuse_keyframes", "", "old keyframes that look at the same place take part again", 0, 1,
+         &o.mapping.reuse_keyframes},
+        {"mapping", "max_reused", "keyframes", "so many of them", 0, 100, &o.mapping.max_reused},
+        {"mapping", "deterministic", "", "the tracker waits for the map; else it takes what is ready", 0, 1,
+         &o.mapping.deterministic},
+        {"mapping", "latency", "frames", "frames after which the mapping of a keyframe takes effect", 1, 100,
+         &o.mapping.latency},
+        {"mapping", "refine_depth", "", "the tracker uses the fused depth of its keyframe", 0, 1,
+         &o.mapping.refine_depth},
         {"loss", "max_predicted", "frames", "frames bridged by constant velocity before re-anchoring", 0,
          1000, &o.loss.max_predicted},
     };

@@ -7,12 +7,29 @@
 
 namespace roevo {
 
+using Rgb = std::array<std::uint8_t, 3>;
+
+/// What mapping thinks of an edge.
+enum class EdgeVerdict : std::uint8_t {
+    kUnconfirmed,  ///< seen by one keyframe so far
+    kTrue,         ///< seen by several keyframes at one place
+    kSpread,       ///< pseudo-edge: its observations do not agree on a place (moving shadow, reflection)
+    kVanishing     ///< pseudo-edge: most keyframes that look at its place do not see it (occlusion border)
+};
+const char* toString(EdgeVerdict verdict);
+inline bool isPseudo(EdgeVerdict verdict) {
+    return verdict == EdgeVerdict::kSpread || verdict == EdgeVerdict::kVanishing;
+}
+
 /// An organized edge of the map: points in order along the edge, world frame, metres.
 struct MapEdge {
     std::vector<Eigen::Vector3f> points;
-    std::vector<std::array<std::uint8_t, 3>> colours;  ///< RGB of the image, one per point
-    int keyframe_id = 0;                               ///< keyframe that saw it
-    float confidence = 1;                              ///< 0..1
+    std::vector<Rgb> colours;  ///< of the image, one per point
+    int keyframe_id = 0;       ///< keyframe that saw it first
+    int cluster = 0;           ///< edges of different keyframes that show the same edge have the same number
+    int views = 1;             ///< keyframes that see it
+    EdgeVerdict verdict = EdgeVerdict::kUnconfirmed;
+    float confidence = 1;  ///< 0..1
 };
 
 using EdgeMap = std::vector<MapEdge>;

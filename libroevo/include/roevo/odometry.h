@@ -24,6 +24,8 @@ const char* toString(FrameStatus status);
 /// Milliseconds spent in each stage of one frame.
 struct StageTimes {
     double edges = 0, coarse = 0, fine = 0, total = 0;
+    double mapping = 0;  ///< of the keyframe whose map took effect with this frame, in its own thread
+    double waiting = 0;  ///< for mapping to finish; part of the total
 };
 
 /// What became of one frame.
@@ -39,6 +41,9 @@ struct FrameResult {
     int num_edges = 0, num_points = 0;  ///< organized edges and their points in this frame
     double matched_ratio = 0;           ///< share of the keyframe's visible edges that were associated, 0..1
     int inliers = 0;                    ///< associated edge points (in tr: that passed the chi-square test)
+    /// m: how far the map moved the camera before this frame was tracked (mode ba); positions before and
+    /// after differ by it without any motion.
+    double map_correction = 0;
     StageTimes ms;
 
     bool hasPose() const { return status != FrameStatus::kRejected; }
@@ -69,11 +74,15 @@ class Odometry {
 
     /// Final poses of all frames that have one, in time order, unique stamps.
     std::vector<StampedPose> trajectory() const;
+    /// The poses as they were known when their frames were processed.
+    std::vector<StampedPose> liveTrajectory() const;
 
     std::vector<KeyframeInfo> keyframes() const;
 
-    /// The 3-D edges of all keyframes, in the world.
+    /// The 3-D edges in the world: fused over all keyframes in mode ba, else the keyframes' own.
     EdgeMap map() const;
+    /// The edges of each keyframe as it saw them, with the cluster that they belong to.
+    EdgeMap keyframeEdges() const;
 
     /// Read-out time of the rolling shutter as learned so far or as set, s.
     double readoutTime() const;

@@ -9,7 +9,7 @@
 
 namespace roevo {
 
-enum class Mode { kCoarse, kTracking };  ///< paper's ct and tr
+enum class Mode { kCoarse, kTracking, kBundleAdjustment };  ///< paper's ct, tr and tr+ba
 
 struct SensorOptions {
     double depth_weight_k = 0.6;   ///< k of Eq. (20), 1/m
@@ -80,6 +80,26 @@ struct LossOptions {
     int max_predicted = 10;  ///< frames bridged by constant velocity
 };
 
+/// Local mapping, in mode ba.
+struct MappingOptions {
+    int window = 10;               ///< newest keyframes that are refined together
+    int max_points = 2500;         ///< edge points kept of a keyframe
+    int max_iterations = 8;        ///< of the bundle adjustment, per keyframe
+    bool joint_refinement = true;  ///< poses move together; else each is registered alone, as in the paper
+    double chi2 = 16;              ///< chi-square limit of a point-to-tangent residual
+    double depth_weight = 0.3;     ///< weight of the depth of an observation
+    double depth_chi2 = 12;        ///< chi-square limit of a depth
+    double prior_weight = 0;       ///< weight of the tracked motion between keyframes
+    double max_spread = 8;        ///< sigmas; an edge whose observations differ by more is a pseudo-edge
+    double min_seen = 0.4;         ///< share of the keyframes that look at an edge's place and must see it
+    int min_looks = 3;             ///< fewer such keyframes cannot judge
+    bool reuse_keyframes = true;   ///< old keyframes that look at the same place take part again
+    int max_reused = 4;            ///< so many of them
+    bool deterministic = true;     ///< the tracker waits for the map; else it takes what is ready
+    int latency = 4;               ///< frames after which the mapping of a keyframe takes effect
+    bool refine_depth = true;      ///< the tracker uses the fused depth of its keyframe
+};
+
 struct OdometryOptions {
     Mode mode = Mode::kTracking;
     SensorOptions sensor;
@@ -88,6 +108,7 @@ struct OdometryOptions {
     FineOptions fine;
     KeyframeOptions keyframe;
     MotionOptions motion;
+    MappingOptions mapping;
     LossOptions loss;
 };
 

@@ -19,6 +19,7 @@ struct FrameData {
     RowMotion row_motion;
     Pose T_world_camera = Pose::Identity();
     Matrix6d covariance = Matrix6d::Zero();
+    Matrix6d relative_covariance = Matrix6d::Zero();  ///< of the motion since the keyframe, same axes
     double matched_ratio = 0;
     bool may_be_keyframe = false;  // tracked, and not one yet
 };

@@ -25,6 +25,55 @@ std::string makeKeyframe(const FrameData& data, int id, const PinholeCamera& cam
     return {};
 }
 
+std::vector<float> foundShares(const Keyframe& keyframe) {
+    constexpr int kMinTrials = 10;  // of points and frames together
+    const OrganizedEdges& image = keyframe.edges.image;
+    std::vector<float> shares(static_cast<std::size_t>(image.numEdges()), -1);
+    if (keyframe.trials.empty()) return shares;
+    for (std::size_t e = 0; e < shares.size(); ++e) {
+        int hits = 0, trials = 0;
+        for (auto i = static_cast<std::size_t>(image.begin[e]);
+             i < static_cast<std::size_t>(image.begin[e + 1]); ++i) {
+            hits += keyframe.hits[i];
+            trials += keyframe.trials[i];
+        }
+        if (trials >= kMinTrials) shares[e] = static_cast<float>(hits) / static_cast<float>(trials);
+    }
+    return shares;
+}
+
+void refineDepth(Keyframe& keyframe, const MapUpdate& update) {
+    EdgePoints3D& edges = keyframe.edges;
+    std::vector<float> ratio(edges.size(), 1);
+    // The map keeps every n-th point; those between take the nearest one's
+    for (std::size_t k = 0; k < update.source.size(); ++k) {
+        const std::int32_t edge = edges.image.edge_of[static_cast<std::size_t>(update.source[k])];
+        const bool has_before =
+            k > 0 && edges.image.edge_of[static_cast<std::size_t>(update.source[k - 1])] == edge;
+        const bool has_after = k + 1 < update.source.size() &&
+                               edges.image.edge_of[static_cast<std::size_t>(update.source[k + 1])] == edge;
+        const std::int32_t from = has_before ? (update.source[k - 1] + update.source[k] + 1) / 2
+                                             : edges.image.begin[static_cast<std::size_t>(edge)];
+        const std::int32_t to = has_after ? (update.source[k] + update.source[k + 1] + 1) / 2
+                                          : edges.image.begin[static_cast<std::size_t>(edge) + 1];
+        for (std::int32_t i = from; i < to; ++i) {
+            ratio[static_cast<std::size_t>(i)] = update.depth_ratio[k];
+        }
+    }
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        edges.x[i] *= ratio[i];
+        edges.y[i] *= ratio[i];
+        edges.z[i] *= ratio[i];
+    }
+    PhotometricPoints& points = keyframe.photometric;
+    for (std::size_t k = 0; k < points.source.size(); ++k) {
+        const auto i = static_cast<std::size_t>(points.source[k]);
+        points.x[k] = edges.x[i];
+        points.y[k] = edges.y[i];
+        points.z[k] = edges.z[i];
+    }
+}
+
 EdgeMap mapEdgesOf(const Keyframe& kf, const RgbdFrame& frame, const PinholeCamera& camera) {
     EdgeMap edges;
     const bool coloured = frame.colour.type() == CV_8UC3 && frame.colour.size() == frame.grey.size();

@@ -3,6 +3,7 @@
 
 #include "frame_data.h"
 #include "roevo/edge_map.h"
+#include "roevo/mapping/local_mapper.h"
 #include "roevo/options.h"
 #include "roevo/tracking/keyframe.h"
 
@@ -12,6 +13,12 @@ namespace roevo {
 /// `keyframe` is not to be used).
 std::string makeKeyframe(const FrameData& data, int id, const PinholeCamera& camera,
                          const OdometryOptions& options, Keyframe& keyframe);
+
+/// Share of the frames that looked for each edge of the keyframe and found it; negative where too few did.
+std::vector<float> foundShares(const Keyframe& keyframe);
+
+/// Gives the keyframe's points the depth that all keyframes together found.
+void refineDepth(Keyframe& keyframe, const MapUpdate& update);
 
 /// The keyframe's edges in the world, coloured from its image.
 EdgeMap mapEdgesOf(const Keyframe& keyframe, const RgbdFrame& frame, const PinholeCamera& camera);

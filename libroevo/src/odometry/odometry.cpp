@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <stdexcept>
 
@@ -10,6 +11,7 @@
 #include "keyframe_maker.h"
 #include "roevo/camera/undistorter.h"
 #include "roevo/edges/edge_extractor.h"
+#include "roevo/mapping/local_mapper.h"
 #include "roevo/tracking/fine_tracker.h"
 #include "roevo/tracking/motion_model.h"
 #include "roevo/tracking/se3.h"
@@ -46,6 +48,23 @@ std::vector<Pose> searchAround(const Pose& T_current_keyframe) {
 
 }  // namespace
 
+struct TrackedPose {
+    double timestamp = 0;
+    int keyframe = 0;
+    Pose T_keyframe_camera = Pose::Identity();
+};
+
+struct KeyframeLink {
+    int parent = -1;
+    Pose T_parent_camera = Pose::Identity();
+};
+
+struct PendingUpdate {
+    long due = 0;  ///< index of the frame with which it takes effect
+    MapUpdate update;
+    double milliseconds = 0;
+};
+
 struct Odometry::Impl {
     Impl(const PinholeCamera& raw, const OdometryOptions& opts, const Pose& start)
         : camera(raw),
@@ -56,7 +75,9 @@ struct Odometry::Impl {
           coarse(opts.coarse),
           fine(opts.fine, opts.edges, opts.sensor),
           T_world_camera(start),
-          motion(opts.motion, opts.sensor, raw.height) {}
+          motion(opts.motion, opts.sensor, raw.height) {
+        if (opts.mode == Mode::kBundleAdjustment) mapper = std::make_unique<LocalMapper>(ideal, opts);
+    }
 
     PinholeCamera camera, ideal;
     OdometryOptions options;
@@ -70,8 +91,13 @@ struct Odometry::Impl {
 
     std::unique_ptr<Keyframe> keyframe;
     std::vector<KeyframeInfo> keyframe_infos;
+    std::vector<KeyframeLink> keyframe_links;
     EdgeMap edge_map;
-    std::vector<StampedPose> poses;
+    std::vector<TrackedPose> poses;
+    std::vector<StampedPose> live_poses;
+    std::unique_ptr<LocalMapper> mapper;
+    std::deque<PendingUpdate> pending;  ///< in the order of keyframes
+    long frame_index = 0;
     Pose T_world_camera;  // last pose, measured or predicted
     MotionModel motion;
     Brightness brightness;
@@ -79,6 +105,9 @@ struct Odometry::Impl {
     int lost_frames = 0;
 
     std::string startKeyframe(const FrameData& data);
+    void applyMapUpdates(FrameResult& result);
+    void applyMapUpdate(const MapUpdate& update, FrameResult& result);
+    void keepPose(const FrameResult& result);
     void renewKeyframe(FrameResult& result);
     void keepForKeyframe(const RgbdFrame& frame);
     void process(const RgbdFrame& frame, FrameResult& result);
@@ -88,22 +117,92 @@ struct Odometry::Impl {
     void bridgeLoss(const RgbdFrame& frame, FrameResult& result);
     std::string lackOf(const FineResult& refined) const;
     bool wantsKeyframe(const FrameResult& result) const;
-    void setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe, FrameResult& result) const;
+    void setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe, FrameResult& result);
 };
 
 std::string Odometry::Impl::startKeyframe(const FrameData& data) {
     auto fresh = std::make_unique<Keyframe>();
     const int id = static_cast<int>(keyframe_infos.size());
     if (auto fault = makeKeyframe(data, id, camera, options, *fresh); !fault.empty()) return fault;
+    KeyframeLink link;
+    if (keyframe && data.may_be_keyframe) {
+        link.parent = keyframe->id;
+        link.T_parent_camera = keyframe->T_world_camera.inverse() * data.T_world_camera;
+    }
+    if (keyframe && mapper) mapper->setFound(keyframe->id, foundShares(*keyframe));
     keyframe = std::move(fresh);
     brightness = Brightness();
     keyframe_infos.push_back({keyframe->id, keyframe->timestamp, keyframe->T_world_camera});
-    for (MapEdge& edge : mapEdgesOf(*keyframe, data.images, camera)) edge_map.push_back(std::move(edge));
+    keyframe_links.push_back(link);
+    EdgeMap own_edges = mapEdgesOf(*keyframe, data.images, camera);
+    if (mapper) {
+        std::vector<Rgb> colours;
+        for (const MapEdge& edge : own_edges)
+            colours.insert(colours.end(), edge.colours.begin(), edge.colours.end());
+        MapKeyframe kept = toMapKeyframe(*keyframe, colours, ideal, options.mapping.max_points);
+        kept.parent = link.parent;
+        kept.T_parent_camera = link.T_parent_camera;
+        if (link.parent >= 0) kept.parent_information = data.relative_covariance.inverse();
+        const Stopwatch watch;
+        PendingUpdate next;
+        next.update = mapper->insert(std::move(kept));
+        next.milliseconds = watch.milliseconds();
+        next.due = frame_index + options.mapping.latency;
+        pending.push_back(std::move(next));
+    }
+    if (!mapper) {
+        for (MapEdge& edge : own_edges) {
+            edge.cluster = static_cast<int>(edge_map.size());
+            edge_map.push_back(std::move(edge));
+        }
+    }
     return {};
 }
 
+void Odometry::Impl::applyMapUpdates(FrameResult& result) {
+    while (!pending.empty() && pending.front().due <= frame_index) {
+        result.ms.mapping += pending.front().milliseconds;
+        applyMapUpdate(pending.front().update, result);
+        pending.pop_front();
+    }
+}
+
+void Odometry::Impl::applyMapUpdate(const MapUpdate& update, FrameResult& result) {
+    for (const auto& [id, pose] : update.poses) {
+        keyframe_infos[static_cast<std::size_t>(id)].T_world_camera = pose;
+    }
+    // Younger keyframes follow the one that they were tracked from
+    for (std::size_t id = static_cast<std::size_t>(update.keyframe) + 1; id < keyframe_infos.size(); ++id) {
+        const KeyframeLink& link = keyframe_links[id];
+        if (link.parent < 0) continue;
+        keyframe_infos[id].T_world_camera =
+            keyframe_infos[static_cast<std::size_t>(link.parent)].T_world_camera * link.T_parent_camera;
+    }
+    if (!keyframe) return;
+    const Pose T_new = keyframe_infos[static_cast<std::size_t>(keyframe->id)].T_world_camera;
+    const Pose correction = T_new * keyframe->T_world_camera.inverse();
+    const Eigen::Vector3d position = T_world_camera.translation();
+    keyframe->T_world_camera = T_new;
+    T_world_camera = correction * T_world_camera;
+    orthonormalise(T_world_camera);
+    now.T_world_camera = correction * now.T_world_camera;
+    motion.moveWorld(correction);
+    result.map_correction = (T_world_camera.translation() - position).norm();
+    if (update.keyframe == keyframe->id && options.mapping.refine_depth) refineDepth(*keyframe, update);
+}
+
+void Odometry::Impl::keepPose(const FrameResult& result) {
+    live_poses.push_back({result.timestamp, result.T_world_camera});
+    TrackedPose kept;
+    kept.timestamp = result.timestamp;
+    kept.keyframe = keyframe ? keyframe->id : -1;
+    kept.T_keyframe_camera =
+        keyframe ? keyframe->T_world_camera.inverse() * result.T_world_camera : result.T_world_camera;
+    poses.push_back(kept);
+}
+
 void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe,
-                                   FrameResult& result) const {
+                                   FrameResult& result) {
     const Eigen::Matrix3d R = result.T_world_camera.linear();
     Matrix6d to_world = Matrix6d::Zero();
     to_world.topLeftCorner<3, 3>() = R;
@@ -112,8 +211,9 @@ void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_curre
     const Pose T_keyframe_current = T_current_keyframe.inverse();
     from_keyframe.topRightCorner<3, 3>() =
         -skew(keyframe->T_world_camera.linear() * T_keyframe_current.translation());
-    result.covariance = from_keyframe * keyframe->covariance * from_keyframe.transpose() +
-                        to_world * relative * to_world.transpose();
+    now.relative_covariance = to_world * relative * to_world.transpose();
+    result.covariance =
+        from_keyframe * keyframe->covariance * from_keyframe.transpose() + now.relative_covariance;
 }
 
 bool Odometry::Impl::wantsKeyframe(const FrameResult& result) const {
@@ -203,6 +303,7 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
     if (options.mode != Mode::kCoarse && shutter.since_previous > 0) {
         fine.addReadoutEvidence(*keyframe, T_current_keyframe, now.row_motion, view, motion.readout());
     }
+    if (mapper) fine.countHits(*keyframe, ideal);
     result.matched_ratio = fine.matches().matchedRatio();
     result.T_world_camera = T_world_keyframe * T_current_keyframe.inverse();
     orthonormalise(result.T_world_camera);
@@ -217,6 +318,7 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
 }
 
 void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
+    applyMapUpdates(result);
     Stopwatch edge_watch;
     std::swap(now, before);
     keepForKeyframe(frame);
@@ -255,6 +357,7 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
         bridgeLoss(frame, result);
     }
     last_timestamp = frame.timestamp;
+    ++frame_index;
 }
 
 void Odometry::Impl::keepForKeyframe(const RgbdFrame& frame) {
@@ -336,19 +439,35 @@ FrameResult Odometry::processFrame(const RgbdFrame& frame) {
         return result;
     }
     impl_->process(frame, result);
-    if (result.hasPose()) impl_->poses.push_back({frame.timestamp, result.T_world_camera});
+    if (result.hasPose()) impl_->keepPose(result);
     result.ms.total = watch.milliseconds();
     return result;
 }
 
 std::vector<StampedPose> Odometry::trajectory() const {
-    return impl_->poses;
+    for (; !impl_->pending.empty(); impl_->pending.pop_front()) {
+        FrameResult result;
+        impl_->applyMapUpdate(impl_->pending.front().update, result);
+    }
+    std::vector<StampedPose> trajectory;
+    for (const TrackedPose& pose : impl_->poses) {
+        const Pose& T_world_keyframe =
+            impl_->keyframe_infos[static_cast<std::size_t>(pose.keyframe)].T_world_camera;
+        trajectory.push_back({pose.timestamp, T_world_keyframe * pose.T_keyframe_camera});
+    }
+    return trajectory;
+}
+std::vector<StampedPose> Odometry::liveTrajectory() const {
+    return impl_->live_poses;
 }
 std::vector<KeyframeInfo> Odometry::keyframes() const {
     return impl_->keyframe_infos;
 }
 EdgeMap Odometry::map() const {
-    return impl_->edge_map;
+    return impl_->mapper ? impl_->mapper->fusedMap() : impl_->edge_map;
+}
+EdgeMap Odometry::keyframeEdges() const {
+    return impl_->mapper ? impl_->mapper->keyframeEdges() : impl_->edge_map;
 }
 double Odometry::readoutTime() const {
     return impl_->motion.secondsPerRow() * impl_->camera.height;

@@ -178,6 +178,20 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
     estimator.add(hessian, mixed, own, gradient, own_gradient);
 }
 
+void FineTracker::countHits(Keyframe& keyframe, const PinholeCamera& camera) const {
+    keyframe.trials.resize(keyframe.edges.size(), 0);
+    keyframe.hits.resize(keyframe.edges.size(), 0);
+    constexpr float kMargin = 5;
+    const float max_u = static_cast<float>(camera.width) - 1 - kMargin;
+    const float max_v = static_cast<float>(camera.height) - 1 - kMargin;
+    for (std::size_t i = associator_.firstLookedUp(); i < keyframe.edges.size(); i += associator_.stride()) {
+        if (u_[i] >= kMargin && v_[i] >= kMargin && u_[i] <= max_u && v_[i] <= max_v) ++keyframe.trials[i];
+    }
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        if (weight_[k] > 0) ++keyframe.hits[static_cast<std::size_t>(matches_.reference[k])];
+    }
+}
+
 FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
                               const PosePrior& prior, const RollingShutter& shutter,
                               const Brightness& brightness) {

@@ -61,6 +61,7 @@ PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const Image
     for (std::size_t i = step / 2; i < edges.size(); i += step) chosen.push_back(i);
     const std::size_t padded = kernels::paddedSize(chosen.size());
     for (const std::size_t i : chosen) {
+        points.source.push_back(static_cast<std::int32_t>(i));
         points.x.push_back(edges.x[i]);
         points.y.push_back(edges.y[i]);
         points.z.push_back(edges.z[i]);

@@ -38,6 +38,10 @@ class EdgeAssociator {
                    const Eigen::Vector2f& turn, int span, const OrganizedEdges& current, const EdgeGrid& grid,
                    int width, int height, double radius, EdgeMatches& out);
 
+    /// Only every stride()-th reference point was looked up, from this one on.
+    std::size_t stride() const { return static_cast<std::size_t>(stride_); }
+    std::size_t firstLookedUp() const { return static_cast<std::size_t>(stride_ / 2); }
+
   private:
     void vote(const OrganizedEdges& reference, const OrganizedEdges& current, EdgeMatches& matches);
 

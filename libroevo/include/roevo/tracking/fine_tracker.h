@@ -49,6 +49,9 @@ class FineTracker {
     void addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe, const RowMotion& rows,
                             const FineFrame& frame, ReadoutEstimator& estimator) const;
 
+    /// Counts which of the keyframe's points the last frame found.
+    void countHits(Keyframe& keyframe, const PinholeCamera& camera) const;
+
     const EdgeMatches& matches() const { return matches_; }  ///< of the last frame
 
   private:

@@ -19,6 +19,9 @@ class MotionModel {
     /// The velocity is too old to be believed.
     void forgetVelocity() { velocity_dt_ = 0; }
 
+    /// The world's axes were corrected: poses become correction * pose.
+    void moveWorld(const Pose& correction) { T_world_last_ = correction * T_world_last_; }
+
     Pose predict(double timestamp) const;
     /// About predict(), as wide as the likely acceleration allows since the last measured pose.
     PosePrior prior(double timestamp, const Pose& T_world_keyframe) const;

@@ -16,6 +16,7 @@ struct PhotometricPoints {
     std::vector<float> axis_x, axis_y;                 ///< unit gradient, the patch's first axis
     std::vector<float> weight;                         ///< w_i of Eq. (3)
     std::vector<std::vector<kernels::Patch>> patches;  ///< [level][point]
+    std::vector<std::int32_t> source;                  ///< index of the edge point
 
     std::size_t size() const { return axis_x.size(); }
 };

@@ -1,0 +1,65 @@
+#pragma once
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "roevo/mapping/bundle_adjustment.h"
+#include "roevo/mapping/covisibility.h"
+#include "roevo/mapping/edge_fusion.h"
+
+namespace roevo {
+
+/// What mapping found when a keyframe was inserted.
+struct MapUpdate {
+    int keyframe = 0;                         ///< the inserted one
+    std::vector<std::pair<int, Pose>> poses;  ///< T_world_camera of all keyframes that were refined
+    std::vector<float> depth_ratio;           ///< of the inserted keyframe's points: refined / measured depth
+    std::vector<std::int32_t> source;         ///< tracker's point of each of them
+    int reused = 0;                           ///< old keyframes that took part
+    RefinementResult refinement;
+    std::string reason;  ///< in words, where something was left as it was
+};
+
+/// Local mapping: keeps the keyframes, relates the edges of a new one to those of its neighbours, fuses them
+/// and refines the poses of the window. No threads, no clocks: the same keyframes give the same map.
+class LocalMapper {
+  public:
+    LocalMapper(const PinholeCamera& camera, const OdometryOptions& options);
+
+    MapUpdate insert(MapKeyframe keyframe);
+
+    /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
+    void setFound(int keyframe, std::vector<float> shares);
+
+    const std::map<int, MapKeyframe>& keyframes() const { return keyframes_; }
+
+    /// All keyframes' edges fused at the present poses.
+    EdgeMap fusedMap() const;
+    /// The edges of each keyframe as it saw them, with the cluster that they belong to.
+    EdgeMap keyframeEdges() const;
+
+  private:
+    std::vector<const MapKeyframe*> recentOf(int id) const;
+    std::vector<const MapKeyframe*> nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const;
+    void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
+    bool acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const;
+    void addPriors();
+    void keepVerdicts();
+    EdgeVerdict keptVerdict(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
+                            std::size_t edge) const;
+    void describeNewest(MapUpdate& update) const;
+
+    PinholeCamera camera_;
+    OdometryOptions options_;
+    CovisibilityGraph graph_;
+    EdgeFuser fuser_;
+    BundleAdjuster adjuster_;
+    std::map<int, MapKeyframe> keyframes_;
+    std::map<int, std::vector<EdgeVerdict>> verdicts_;  ///< of each keyframe's edges
+    std::vector<WindowKeyframe> window_;
+    std::vector<RelativePrior> priors_;
+    FusedEdges fused_;
+};
+
+}  // namespace roevo

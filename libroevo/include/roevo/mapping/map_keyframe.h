@@ -1,0 +1,39 @@
+#pragma once
+#include <vector>
+
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/edge_map.h"
+#include "roevo/tracking/keyframe.h"
+
+namespace roevo {
+
+/// What the map keeps of a keyframe: its edges with every n-th point, all moved to one moment of a rolling
+/// shutter.
+struct MapKeyframe {
+    int id = 0;
+    double timestamp = 0;
+    Pose T_world_camera = Pose::Identity();
+    int parent = -1;  ///< keyframe that it was tracked from, -1: none (the first, or re-anchored)
+    Pose T_parent_camera = Pose::Identity();  ///< as tracked
+    Matrix6d parent_information =
+        Matrix6d::Zero();        ///< of T_parent_camera: perturbation (t, phi) in the world's axes
+    OrganizedEdges image;        ///< where the points would be seen at the reference row's time, ideal px
+    std::vector<float> x, y, z;  ///< camera frame, m; padded for the kernels
+    std::vector<float> weight;   ///< w_s(depth), Eq. (20)
+    std::vector<std::int32_t> source;  ///< index of each point in the tracker's keyframe
+    std::vector<Rgb> colours;          ///< of each point
+    std::vector<float> found;  ///< of each edge: share of the frames after it that found it; < 0: not known
+    double median_depth = 0;   ///< m
+
+    std::size_t size() const { return image.size(); }
+    Eigen::Vector3d point(std::size_t i) const {
+        return {static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
+    }
+};
+
+/// @param colours  one per point of the keyframe's edges
+/// @param max_points  points are thinned evenly along the edges until there are no more than these
+MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,
+                          const PinholeCamera& camera, int max_points);
+
+}  // namespace roevo

@@ -1,0 +1,113 @@
+#include "roevo/mapping/covisibility.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "roevo/tracking/photometric.h"
+
+namespace roevo {
+
+namespace {
+
+/// Map keyframes hold every n-th point, so that fewer of them must agree.
+FineOptions forThinned(FineOptions options) {
+    options.min_votes = 2;
+    options.max_points = std::numeric_limits<int>::max();
+    return options;
+}
+
+}  // namespace
+
+CovisibilityGraph::CovisibilityGraph(const FineOptions& fine, int span)
+    : options_(forThinned(fine)), associator_(options_), span_(span) {}
+
+void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<const MapKeyframe*>& others,
+                               const PinholeCamera& camera, double radius) {
+    auto& links = links_[current.id];
+    std::vector<char> associated(static_cast<std::size_t>(current.image.numEdges()), 0);
+    const std::size_t padded = current.x.size();
+    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
+    constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
+    for (const MapKeyframe* other : others) {
+        const Pose T_other_current = other->T_world_camera.inverse() * current.T_world_camera;
+        kernels::best().project(makeProjection(T_other_current, camera, RowMotion()), current.x.data(),
+                                current.y.data(), current.z.data(), padded,
+                                {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+        for (std::size_t i = 0; i < current.size(); ++i) {
+            if (associated[static_cast<std::size_t>(current.image.edge_of[i])] != 0) u_[i] = kNowhere;
+        }
+        grid_.build(other->image, camera.width, camera.height);
+        associator_.associate(current.image, u_.data(), v_.data(), imageRotation(T_other_current), span_,
+                              other->image, grid_, camera.width, camera.height, radius, matches_);
+        // Pairs come in the order of the current edges
+        for (std::size_t k = 0; k < matches_.size(); ++k) {
+            const int edge = current.image.edge_of[static_cast<std::size_t>(matches_.reference[k])];
+            const int found = other->image.edge_of[static_cast<std::size_t>(matches_.current[k])];
+            associated[static_cast<std::size_t>(edge)] = 1;
+            const auto same = std::find_if(links.rbegin(), links.rend(), [&](const Link& link) {
+                return link.edge != edge || link.other.keyframe != other->id || link.other.edge == found;
+            });
+            if (same != links.rend() && same->edge == edge && same->other.keyframe == other->id &&
+                same->other.edge == found) {
+                ++same->points;
+            } else {
+                links.push_back({edge, {other->id, found}, 1});
+            }
+        }
+    }
+}
+
+void CovisibilityGraph::remove(int keyframe) {
+    links_.erase(keyframe);
+    for (auto& [id, links] : links_) {
+        links.erase(std::remove_if(links.begin(), links.end(),
+                                   [&](const Link& link) { return link.other.keyframe == keyframe; }),
+                    links.end());
+    }
+}
+
+int CovisibilityGraph::sharedPoints(int a, int b) const {
+    const auto found = links_.find(a);
+    if (found == links_.end()) return 0;
+    int points = 0;
+    for (const Link& link : found->second) {
+        if (link.other.keyframe == b) points += link.points;
+    }
+    return points;
+}
+
+std::vector<std::vector<int>> CovisibilityGraph::clusters(
+    const std::vector<const MapKeyframe*>& keyframes) const {
+    std::map<int, std::size_t> first_edge;
+    std::size_t count = 0;
+    for (const MapKeyframe* keyframe : keyframes) {
+        first_edge[keyframe->id] = count;
+        count += static_cast<std::size_t>(keyframe->image.numEdges());
+    }
+    DisjointSet sets(count);
+    for (const auto& [id, first] : first_edge) {
+        const auto found = links_.find(id);
+        if (found == links_.end()) continue;
+        for (const Link& link : found->second) {
+            const auto other = first_edge.find(link.other.keyframe);
+            if (other == first_edge.end()) continue;
+            sets.unite(first + static_cast<std::size_t>(link.edge),
+                       other->second + static_cast<std::size_t>(link.other.edge));
+        }
+    }
+    std::vector<int> number(count, -1);
+    int next = 0;
+    std::vector<std::vector<int>> result;
+    for (const MapKeyframe* keyframe : keyframes) {
+        const std::size_t first = first_edge[keyframe->id];
+        auto& of_edges = result.emplace_back();
+        for (int e = 0; e < keyframe->image.numEdges(); ++e) {
+            int& cluster = number[sets.find(first + static_cast<std::size_t>(e))];
+            if (cluster < 0) cluster = next++;
+            of_edges.push_back(cluster);
+        }
+    }
+    return result;
+}
+
+}  // namespace roevo

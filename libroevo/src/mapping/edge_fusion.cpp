@@ -1,0 +1,217 @@
+#include "roevo/mapping/edge_fusion.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace roevo {
+namespace {
+
+constexpr std::size_t kMinRun = 4;  ///< points of the shortest run that is stitched
+constexpr std::int32_t kApart = -1;
+/// Farther from the reference than this, a point shows something else.
+constexpr double kReachPixels = 8, kReachSigmas = 8;
+
+}  // namespace
+
+void FusedEdges::clear() {
+    points.clear();
+    begin.assign(1, 0);
+    observation_begin.assign(1, 0);
+    observations.clear();
+    clusters.clear();
+    views.clear();
+    verdicts.clear();
+}
+
+void EdgeFuser::fuse(const std::vector<WindowKeyframe>& window, const std::vector<std::vector<int>>& clusters,
+                     FusedEdges& out) {
+    out.clear();
+    int count = 0;
+    for (const auto& of_edges : clusters) {
+        for (const int cluster : of_edges) count = std::max(count, cluster + 1);
+    }
+    std::vector<std::vector<Member>> members(static_cast<std::size_t>(count));
+    for (std::size_t slot = 0; slot < window.size(); ++slot) {
+        const auto& begin = window[slot].keyframe->image.begin;
+        for (std::size_t e = 0; e + 1 < begin.size(); ++e) {
+            members[static_cast<std::size_t>(clusters[slot][e])].push_back(
+                {static_cast<int>(slot), begin[e], begin[e + 1] - begin[e]});
+        }
+    }
+    for (int cluster = 0; cluster < count; ++cluster) {
+        auto& of_cluster = members[static_cast<std::size_t>(cluster)];
+        fuseCluster(window, cluster, of_cluster, out);
+    }
+}
+
+void EdgeFuser::observe(std::size_t node, Observation observation) {
+    observations_.push_back({observation, chain_[node].first_observation});
+    chain_[node].first_observation = static_cast<std::int32_t>(observations_.size()) - 1;
+}
+
+void EdgeFuser::fuseCluster(const std::vector<WindowKeyframe>& window, int cluster,
+                            const std::vector<Member>& members, FusedEdges& out) {
+    rest_ = members;
+    while (!rest_.empty()) {
+        std::vector<Member> apart;
+        chain_.clear();
+        observations_.clear();
+        // The longest is the reference; among equals the first
+        std::stable_sort(rest_.begin(), rest_.end(),
+                         [](const Member& a, const Member& b) { return a.length > b.length; });
+        apart.swap(rest_);
+        for (const Member& member : apart) merge(window, member);
+        keepChain(window.size(), cluster, out);
+    }
+}
+
+void EdgeFuser::keepChain(std::size_t slots, int cluster, FusedEdges& out) {
+    int views = 0;
+    std::vector<char> seen(slots, 0);
+    for (const Node& node : chain_) {
+        out.points.push_back(node.position);
+        for (std::int32_t k = node.first_observation; k >= 0;
+             k = observations_[static_cast<std::size_t>(k)].next) {
+            const Observation& observation = observations_[static_cast<std::size_t>(k)].observation;
+            out.observations.push_back(observation);
+            char& flag = seen[static_cast<std::size_t>(observation.slot)];
+            views += flag == 0 ? 1 : 0;
+            flag = 1;
+        }
+        out.observation_begin.push_back(static_cast<std::int32_t>(out.observations.size()));
+    }
+    out.begin.push_back(static_cast<std::int32_t>(out.points.size()));
+    out.clusters.push_back(cluster);
+    out.views.push_back(views);
+    out.verdicts.push_back(views > 1 ? EdgeVerdict::kTrue : EdgeVerdict::kUnconfirmed);
+}
+
+std::size_t EdgeFuser::nearest(const Eigen::Vector3d& p, std::size_t from, bool search_all) const {
+    const auto squared = [&](std::size_t i) { return (chain_[i].position - p).squaredNorm(); };
+    std::size_t best = from;
+    double best_squared = squared(from);
+    if (search_all) {
+        for (std::size_t i = 0; i < chain_.size(); ++i) {
+            const double d = squared(i);
+            if (d < best_squared) {
+                best_squared = d;
+                best = i;
+            }
+        }
+        return best;
+    }
+    // Both edges are in order: the next point's neighbour is near the last one's
+    constexpr std::size_t kLook = 4;
+    for (bool moved = true; moved;) {
+        moved = false;
+        const std::size_t low = best > kLook ? best - kLook : 0;
+        const std::size_t high = std::min(chain_.size() - 1, best + kLook);
+        const std::size_t centre = best;
+        for (std::size_t i = low; i <= high; ++i) {
+            if (i == centre) continue;
+            const double d = squared(i);
+            if (d < best_squared) {
+                best_squared = d;
+                best = i;
+                moved = true;
+            }
+        }
+    }
+    return best;
+}
+
+bool EdgeFuser::isNear(const Eigen::Vector3d& p, const Eigen::Vector3d& reference, double depth) const {
+    const double across = kReachPixels * depth / focal_length_;
+    const double along = kReachSigmas * depth_noise_ * depth * depth;
+    return (p - reference).squaredNorm() < across * across + along * along;
+}
+
+std::int32_t EdgeFuser::fit(const Eigen::Vector3d& p, std::size_t near) const {
+    const std::size_t before = near > 0 ? near - 1 : near;
+    const std::size_t after = std::min(near + 1, chain_.size() - 1);
+    const Eigen::Vector3d chord = chain_[after].position - chain_[before].position;
+    const double length = chord.squaredNorm();
+    const double k = length > 0 ? (p - chain_[before].position).dot(chord) / length : -1;  // Eq. (14)
+    if (!(k > 0 && k < 1)) return kApart;
+    const Eigen::Vector3d foot = chain_[before].position + k * chord;  // Eq. (15)
+    std::size_t closest = near;
+    for (const std::size_t candidate : {before, after}) {
+        if ((chain_[candidate].position - foot).squaredNorm() <
+            (chain_[closest].position - foot).squaredNorm()) {
+            closest = candidate;
+        }
+    }
+    return static_cast<std::int32_t>(closest);
+}
+
+void EdgeFuser::merge(const std::vector<WindowKeyframe>& window, const Member& member) {
+    const WindowKeyframe& view = window[static_cast<std::size_t>(member.slot)];
+    const MapKeyframe& keyframe = *view.keyframe;
+    const auto first = static_cast<std::size_t>(member.first);
+    const auto count = static_cast<std::size_t>(member.length);
+    const auto observation = [&](std::size_t i) {
+        return Observation{member.slot, static_cast<std::int32_t>(first + i)};
+    };
+    points_.clear();
+    for (std::size_t i = 0; i < count; ++i)
+        points_.push_back(view.T_world_camera * keyframe.point(first + i));
+    if (chain_.empty()) {
+        for (std::size_t i = 0; i < count; ++i) {
+            chain_.push_back({points_[i], -1});
+            observe(i, observation(i));
+        }
+        return;
+    }
+    assigned_.assign(count, kApart);
+    std::size_t near = 0;
+    bool search_all = true;
+    for (std::size_t i = 0; i < count; ++i) {
+        near = nearest(points_[i], near, search_all);
+        search_all = !isNear(points_[i], chain_[near].position, static_cast<double>(keyframe.z[first + i]));
+        if (!search_all) assigned_[i] = fit(points_[i], near);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        if (assigned_[i] >= 0) observe(static_cast<std::size_t>(assigned_[i]), observation(i));
+    }
+    // Runs that did not fit: stitched where they go on from an end of the reference, else an edge of their
+    // own
+    for (std::size_t from = 0; from < count;) {
+        if (assigned_[from] >= 0) {
+            ++from;
+            continue;
+        }
+        std::size_t to = from;
+        while (to < count && assigned_[to] < 0) ++to;
+        if (to - from >= kMinRun && !stitch(member, from, to)) {
+            rest_.push_back(
+                {member.slot, member.first + static_cast<int>(from), static_cast<int>(to - from)});
+        }
+        from = to;
+    }
+}
+
+bool EdgeFuser::stitch(const Member& member, std::size_t from, std::size_t to) {
+    const bool follows = from > 0;  // a fitted point before the run, or after it
+    const std::size_t joint = follows ? from - 1 : to;
+    if (joint >= assigned_.size()) return false;
+    const auto anchor = static_cast<std::size_t>(assigned_[joint]);
+    const bool at_front = anchor < kMinRun, at_back = anchor + kMinRun >= chain_.size();
+    if (at_front == at_back) return false;
+    std::vector<Node> run;
+    for (std::size_t i = from; i < to; ++i) {
+        observations_.push_back({{member.slot, member.first + static_cast<std::int32_t>(i)}, -1});
+        run.push_back({points_[i], static_cast<std::int32_t>(observations_.size()) - 1});
+    }
+    if (at_front == follows) std::reverse(run.begin(), run.end());
+    if (at_back) {
+        chain_.insert(chain_.end(), run.begin(), run.end());
+        return true;
+    }
+    chain_.insert(chain_.begin(), run.begin(), run.end());
+    for (std::int32_t& node : assigned_) {
+        if (node >= 0) node += static_cast<std::int32_t>(run.size());
+    }
+    return true;
+}
+
+}  // namespace roevo

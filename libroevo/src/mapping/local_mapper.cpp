@@ -1,0 +1,283 @@
+#include "roevo/mapping/local_mapper.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "roevo/tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+constexpr int kRoughIterations = 3;  ///< before edges are judged
+constexpr double kReusedScale = 1;   ///< px of spread that drift may cause at first
+/// Keyframes that see about the same: camera centres nearer than this share of the depth, and turned by less.
+constexpr double kNearDistance = 0.4, kNearDegrees = 30;
+/// A keyframe that bundle adjustment moves by more (share of its depth; degrees) went astray.
+constexpr double kLargestJump = 0.1, kLargestTurn = 5;
+
+}  // namespace
+
+LocalMapper::LocalMapper(const PinholeCamera& camera, const OdometryOptions& options)
+    : camera_(camera),
+      options_(options),
+      graph_(options.fine, 3),
+      fuser_(camera.fx, options.sensor.depth_noise),
+      adjuster_(options.mapping, options.sensor, camera) {}
+
+std::vector<const MapKeyframe*> LocalMapper::recentOf(int id) const {
+    std::vector<const MapKeyframe*> recent;
+    for (auto it = keyframes_.rbegin(); it != keyframes_.rend(); ++it) {
+        if (it->first >= id) continue;
+        if (static_cast<int>(recent.size()) >= options_.mapping.window - 1) break;
+        recent.push_back(&it->second);
+    }
+    return recent;
+}
+
+std::vector<const MapKeyframe*> LocalMapper::nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const {
+    std::vector<std::pair<double, const MapKeyframe*>> found;
+    auto last = keyframes_.find(keyframe.id);
+    for (std::size_t i = 0; i < recent && last != keyframes_.begin(); ++i) --last;
+    for (auto it = keyframes_.begin(); it != last; ++it) {
+        const Pose T = it->second.T_world_camera.inverse() * keyframe.T_world_camera;
+        const double distance = T.translation().norm() / std::max(0.1, keyframe.median_depth);
+        const double degrees = rotationAngle(T) / kDegree;
+        if (distance > kNearDistance || degrees > kNearDegrees) continue;
+        found.emplace_back(distance / kNearDistance + degrees / kNearDegrees, &it->second);
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<const MapKeyframe*> nearby;
+    for (const auto& [score, candidate] : found) {
+        if (static_cast<int>(nearby.size()) >= options_.mapping.max_reused) break;
+        nearby.push_back(candidate);
+    }
+    return nearby;
+}
+
+void LocalMapper::buildWindow(int newest, const std::vector<const MapKeyframe*>& reused) {
+    window_.clear();
+    // In the order of time: fused points take the colour and the place of their first observation
+    std::vector<const MapKeyframe*> members = reused;
+    std::sort(members.begin(), members.end(),
+              [](const MapKeyframe* a, const MapKeyframe* b) { return a->id < b->id; });
+    const std::size_t fixed = std::max<std::size_t>(1, members.size());
+    const std::vector<const MapKeyframe*> recent = recentOf(newest);
+    members.insert(members.end(), recent.rbegin(), recent.rend());
+    members.push_back(&keyframes_.at(newest));
+    for (const MapKeyframe* keyframe : members) {
+        window_.push_back({keyframe, keyframe->T_world_camera, window_.size() < fixed});
+    }
+}
+
+bool LocalMapper::acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const {
+    const MapKeyframe& keyframe = *view.keyframe;
+    const Pose jump = keyframe.T_world_camera.inverse() * view.T_world_camera;
+    const double share = jump.translation().norm() / std::max(0.1, keyframe.median_depth);
+    const double degrees = rotationAngle(jump) / kDegree;
+    if (inliers < options_.fine.min_inliers) {
+        reason = "keyframe " + std::to_string(keyframe.id) + " left as it was: only " +
+                 std::to_string(inliers) + " observations of it fit the map";
+        return false;
+    }
+    if (!view.T_world_camera.matrix().allFinite() || share > kLargestJump || degrees > kLargestTurn) {
+        reason = "keyframe " + std::to_string(keyframe.id) +
+                 " left as it was: bundle adjustment moved it by " +
+                 std::to_string(std::lround(1000 * jump.translation().norm())) + " mm";
+        return false;
+    }
+    return true;
+}
+
+void LocalMapper::addPriors() {
+    priors_.clear();
+    for (std::size_t to = 0; to < window_.size(); ++to) {
+        const MapKeyframe& keyframe = *window_[to].keyframe;
+        for (std::size_t from = 0; from < to; ++from) {
+            if (window_[from].keyframe->id != keyframe.parent) continue;
+            RelativePrior prior;
+            prior.from = static_cast<int>(from);
+            prior.to = static_cast<int>(to);
+            prior.T_from_to = keyframe.T_parent_camera;
+            prior.information = options_.mapping.prior_weight * keyframe.parent_information;
+            priors_.push_back(prior);
+        }
+    }
+}
+
+void LocalMapper::setFound(int keyframe, std::vector<float> shares) {
+    const auto at = keyframes_.find(keyframe);
+    if (at != keyframes_.end() && at->second.found.size() == shares.size())
+        at->second.found = std::move(shares);
+}
+
+MapUpdate LocalMapper::insert(MapKeyframe inserted) {
+    const int id = inserted.id;
+    if (const auto parent = keyframes_.find(inserted.parent); parent != keyframes_.end()) {
+        inserted.T_world_camera = parent->second.T_world_camera * inserted.T_parent_camera;
+    }
+    MapKeyframe& keyframe = keyframes_.emplace(id, std::move(inserted)).first->second;
+    const std::vector<const MapKeyframe*> recent = recentOf(id);
+    graph_.insert(keyframe, recent, camera_, options_.fine.final_radius);
+    std::vector<const MapKeyframe*> reused;
+    if (options_.mapping.reuse_keyframes) {
+        // What drifted since is found in a wider circle
+        reused = nearbyOf(keyframe, recent.size());
+        graph_.insert(keyframe, reused, camera_, options_.fine.search_radius);
+    }
+
+    MapUpdate update;
+    update.keyframe = id;
+    update.reused = static_cast<int>(reused.size());
+    buildWindow(id, reused);
+    addPriors();
+    if (window_.size() < 2) return update;
+    std::vector<const MapKeyframe*> members;
+    for (const WindowKeyframe& view : window_) members.push_back(view.keyframe);
+    fuser_.fuse(window_, graph_.clusters(members), fused_);
+    const int rough = std::min(kRoughIterations, options_.mapping.max_iterations);
+    adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kReusedScale);
+    adjuster_.judge(window_, fused_);
+    update.refinement = adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
+    for (std::size_t slot = 0; slot < window_.size(); ++slot) {
+        WindowKeyframe& view = window_[slot];
+        const int inliers = slot < update.refinement.inliers.size() ? update.refinement.inliers[slot] : 0;
+        if (view.fixed) continue;
+        if (!acceptable(view, inliers, update.reason)) {
+            view.T_world_camera = view.keyframe->T_world_camera;
+            continue;
+        }
+        keyframes_.at(view.keyframe->id).T_world_camera = view.T_world_camera;
+        update.poses.emplace_back(view.keyframe->id, view.T_world_camera);
+    }
+    keepVerdicts();
+    describeNewest(update);
+    return update;
+}
+
+EdgeVerdict LocalMapper::keptVerdict(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
+                                     std::size_t edge) const {
+    std::array<int, 4> votes{};
+    const auto first =
+        static_cast<std::size_t>(edges.observation_begin[static_cast<std::size_t>(edges.begin[edge])]);
+    const auto end =
+        static_cast<std::size_t>(edges.observation_begin[static_cast<std::size_t>(edges.begin[edge + 1])]);
+    for (std::size_t k = first; k < end; ++k) {
+        const MapKeyframe& keyframe = *window[static_cast<std::size_t>(edges.observations[k].slot)].keyframe;
+        const auto kept = verdicts_.find(keyframe.id);
+        if (kept == verdicts_.end()) continue;
+        const auto own = static_cast<std::size_t>(
+            keyframe.image.edge_of[static_cast<std::size_t>(edges.observations[k].point)]);
+        ++votes[static_cast<std::size_t>(kept->second[own])];
+    }
+    const auto most = std::max_element(votes.begin(), votes.end());
+    return static_cast<EdgeVerdict>(most - votes.begin());
+}
+
+EdgeMap LocalMapper::fusedMap() const {
+    std::vector<WindowKeyframe> window;
+    std::vector<const MapKeyframe*> members;
+    for (const auto& [id, keyframe] : keyframes_) {
+        members.push_back(&keyframe);
+        window.push_back({&keyframe, keyframe.T_world_camera, true});
+    }
+    FusedEdges edges;
+    EdgeFuser fuser(camera_.fx, options_.sensor.depth_noise);
+    fuser.fuse(window, graph_.clusters(members), edges);
+    BundleAdjuster(options_.mapping, options_.sensor, camera_).refine(window, edges, {}, kRoughIterations);
+    EdgeMap map;
+    for (int e = 0; e < edges.numEdges(); ++e) {
+        const auto number = static_cast<std::size_t>(e);
+        MapEdge edge;
+        edge.cluster = edges.clusters[number];
+        edge.views = edges.views[number];
+        edge.verdict = keptVerdict(window, edges, number);
+        edge.confidence = isPseudo(edge.verdict) ? 0 : 1 - 1 / (1 + static_cast<float>(edge.views));
+        for (auto p = static_cast<std::size_t>(edges.begin[number]);
+             p < static_cast<std::size_t>(edges.begin[number + 1]); ++p) {
+            // Observations are in reverse order: the last one is the reference's own
+            const Observation& seen =
+                edges.observations[static_cast<std::size_t>(edges.observation_begin[p + 1]) - 1];
+            const MapKeyframe& keyframe = *window[static_cast<std::size_t>(seen.slot)].keyframe;
+            if (edge.points.empty()) edge.keyframe_id = keyframe.id;
+            edge.points.push_back(edges.points[p].cast<float>());
+            edge.colours.push_back(keyframe.colours[static_cast<std::size_t>(seen.point)]);
+        }
+        map.push_back(std::move(edge));
+    }
+    return map;
+}
+
+void LocalMapper::describeNewest(MapUpdate& update) const {
+    // Where the newest keyframe's points are according to all that see them
+    const MapKeyframe& keyframe = *window_.back().keyframe;
+    const auto newest = static_cast<std::int32_t>(window_.size()) - 1;
+    update.depth_ratio.assign(keyframe.size(), 1);
+    update.source = keyframe.source;
+    const Pose T_camera_world = keyframe.T_world_camera.inverse();
+    for (int e = 0; e < fused_.numEdges(); ++e) {
+        const auto edge = static_cast<std::size_t>(e);
+        for (auto p = static_cast<std::size_t>(fused_.begin[edge]);
+             p < static_cast<std::size_t>(fused_.begin[edge + 1]); ++p) {
+            const auto first = static_cast<std::size_t>(fused_.observation_begin[p]);
+            const auto end = static_cast<std::size_t>(fused_.observation_begin[p + 1]);
+            for (std::size_t k = first; k < end; ++k) {
+                if (fused_.observations[k].slot != newest) continue;
+                const auto i = static_cast<std::size_t>(fused_.observations[k].point);
+                if (end - first < 2 || fused_.verdicts[edge] != EdgeVerdict::kTrue) continue;
+                const double z = (T_camera_world * fused_.points[p]).z();
+                const double ratio = z / static_cast<double>(keyframe.z[i]);
+                if (std::abs(ratio - 1) < 0.1) update.depth_ratio[i] = static_cast<float>(ratio);
+            }
+        }
+    }
+}
+
+void LocalMapper::keepVerdicts() {
+    std::vector<const MapKeyframe*> members;
+    for (const WindowKeyframe& view : window_) {
+        auto& verdicts = verdicts_[view.keyframe->id];
+        verdicts.resize(static_cast<std::size_t>(view.keyframe->image.numEdges()), EdgeVerdict::kUnconfirmed);
+    }
+    for (int e = 0; e < fused_.numEdges(); ++e) {
+        const auto edge = static_cast<std::size_t>(e);
+        const auto first =
+            static_cast<std::size_t>(fused_.observation_begin[static_cast<std::size_t>(fused_.begin[edge])]);
+        const auto end = static_cast<std::size_t>(
+            fused_.observation_begin[static_cast<std::size_t>(fused_.begin[edge + 1])]);
+        for (std::size_t k = first; k < end; ++k) {
+            const MapKeyframe& keyframe =
+                *window_[static_cast<std::size_t>(fused_.observations[k].slot)].keyframe;
+            const std::int32_t own =
+                keyframe.image.edge_of[static_cast<std::size_t>(fused_.observations[k].point)];
+            verdicts_[keyframe.id][static_cast<std::size_t>(own)] = fused_.verdicts[edge];
+        }
+    }
+}
+
+EdgeMap LocalMapper::keyframeEdges() const {
+    std::vector<const MapKeyframe*> members;
+    for (const auto& [id, keyframe] : keyframes_) members.push_back(&keyframe);
+    const auto clusters = graph_.clusters(members);
+    EdgeMap map;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+        const MapKeyframe& keyframe = *members[k];
+        const auto verdicts = verdicts_.find(keyframe.id);
+        for (std::size_t e = 0; e + 1 < keyframe.image.begin.size(); ++e) {
+            MapEdge edge;
+            edge.keyframe_id = keyframe.id;
+            edge.cluster = clusters[k][e];
+            if (verdicts != verdicts_.end()) edge.verdict = verdicts->second[e];
+            for (auto i = static_cast<std::size_t>(keyframe.image.begin[e]);
+                 i < static_cast<std::size_t>(keyframe.image.begin[e + 1]); ++i) {
+                edge.points.push_back((keyframe.T_world_camera * keyframe.point(i)).cast<float>());
+                edge.colours.push_back(keyframe.colours[i]);
+            }
+            map.push_back(std::move(edge));
+        }
+    }
+    return map;
+}
+
+}  // namespace roevo

@@ -1,0 +1,62 @@
+#include "roevo/mapping/map_keyframe.h"
+
+#include <algorithm>
+
+#include "roevo/tracking/kernels.h"
+
+namespace roevo {
+
+const char* toString(EdgeVerdict verdict) {
+    switch (verdict) {
+        case EdgeVerdict::kUnconfirmed:
+            return "unconfirmed";
+        case EdgeVerdict::kTrue:
+            return "true";
+        case EdgeVerdict::kSpread:
+            return "pseudo: observations disagree";
+        case EdgeVerdict::kVanishing:
+            return "pseudo: seen too rarely";
+    }
+    return "unknown";
+}
+
+MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,
+                          const PinholeCamera& camera, int max_points) {
+    MapKeyframe out;
+    out.id = keyframe.id;
+    out.timestamp = keyframe.timestamp;
+    out.T_world_camera = keyframe.T_world_camera;
+    out.median_depth = keyframe.median_depth;
+    const EdgePoints3D& edges = keyframe.edges;
+    const std::size_t limit = static_cast<std::size_t>(std::max(1, max_points));
+    const std::size_t stride = std::max<std::size_t>(1, (edges.size() + limit - 1) / limit);
+    out.image.clear();
+    for (std::size_t e = 0; e + 1 < edges.image.begin.size(); ++e) {
+        const auto first = static_cast<std::size_t>(edges.image.begin[e]);
+        const auto end = static_cast<std::size_t>(edges.image.begin[e + 1]);
+        for (std::size_t i = first + (end - first - 1) % stride / 2; i < end; i += stride) {
+            const Eigen::Vector2d pixel =
+                camera.project({static_cast<double>(edges.x[i]), static_cast<double>(edges.y[i]),
+                                static_cast<double>(edges.z[i])});
+            out.image.addPoint(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
+                               edges.image.gradient_x[i], edges.image.gradient_y[i], edges.image.strength[i]);
+            out.image.normal_x.push_back(edges.image.normal_x[i]);
+            out.image.normal_y.push_back(edges.image.normal_y[i]);
+            out.x.push_back(edges.x[i]);
+            out.y.push_back(edges.y[i]);
+            out.z.push_back(edges.z[i]);
+            out.weight.push_back(edges.weight[i]);
+            out.source.push_back(static_cast<std::int32_t>(i));
+            out.colours.push_back(colours.at(i));
+        }
+        out.image.finishEdge();
+    }
+    out.found.assign(static_cast<std::size_t>(out.image.numEdges()), -1);
+    const std::size_t padded = kernels::paddedSize(out.size());
+    out.x.resize(padded, 0);
+    out.y.resize(padded, 0);
+    out.z.resize(padded, 1);
+    return out;
+}
+
+}  // namespace roevo
