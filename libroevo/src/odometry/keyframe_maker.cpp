@@ -103,4 +103,10 @@ EdgeMap mapEdgesOf(const Keyframe& kf, const RgbdFrame& frame, const PinholeCame
     return edges;
 }
 
+std::vector<Rgb> coloursOf(const EdgeMap& edges) {
+    std::vector<Rgb> colours;
+    for (const MapEdge& edge : edges) colours.insert(colours.end(), edge.colours.begin(), edge.colours.end());
+    return colours;
+}
+
 }  // namespace roevo

@@ -23,4 +23,7 @@ void refineDepth(Keyframe& keyframe, const MapUpdate& update);
 /// The keyframe's edges in the world, coloured from its image.
 EdgeMap mapEdgesOf(const Keyframe& keyframe, const RgbdFrame& frame, const PinholeCamera& camera);
 
+/// The colours of all points, edge after edge.
+std::vector<Rgb> coloursOf(const EdgeMap& edges);
+
 }  // namespace roevo

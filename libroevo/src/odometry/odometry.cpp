@@ -1,70 +1,23 @@
 #include "roevo/odometry.h"
 
 #include <Eigen/LU>
-#include <chrono>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <stdexcept>
 
 #include "input_check.h"
 #include "keyframe_maker.h"
+#include "map_link.h"
+#include "pose_history.h"
+#include "recovery.h"
 #include "roevo/camera/undistorter.h"
 #include "roevo/edges/edge_extractor.h"
-#include "roevo/mapping/local_mapper.h"
 #include "roevo/tracking/fine_tracker.h"
 #include "roevo/tracking/motion_model.h"
 #include "roevo/tracking/se3.h"
+#include "stopwatch.h"
 
 namespace roevo {
-namespace {
-
-class Stopwatch {
-  public:
-    double milliseconds() const {
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-/// Rotations about the camera's x and y axes around a pose, as far as half the field of view: where to look
-/// when the camera was turned faster than the trackers converge.
-std::vector<Pose> searchAround(const Pose& T_current_keyframe) {
-    constexpr double kStep = 3 * kDegree;
-    constexpr int kReach = 6;
-    std::vector<Pose> guesses;
-    for (int yaw = -kReach; yaw <= kReach; ++yaw) {
-        for (int pitch = -kReach; pitch <= kReach; ++pitch) {
-            Vector6d turn = Vector6d::Zero();
-            turn[3] = pitch * kStep;
-            turn[4] = yaw * kStep;
-            guesses.push_back(poseIncrement(turn) * T_current_keyframe);
-        }
-    }
-    return guesses;
-}
-
-}  // namespace
-
-struct TrackedPose {
-    double timestamp = 0;
-    int keyframe = 0;
-    Pose T_keyframe_camera = Pose::Identity();
-};
-
-struct KeyframeLink {
-    int parent = -1;
-    Pose T_parent_camera = Pose::Identity();
-};
-
-struct PendingUpdate {
-    long due = 0;  ///< index of the frame with which it takes effect
-    MapUpdate update;
-    double milliseconds = 0;
-};
-
 struct Odometry::Impl {
     Impl(const PinholeCamera& raw, const OdometryOptions& opts, const Pose& start)
         : camera(raw),
@@ -76,7 +29,7 @@ struct Odometry::Impl {
           fine(opts.fine, opts.edges, opts.sensor),
           T_world_camera(start),
           motion(opts.motion, opts.sensor, raw.height) {
-        if (opts.mode == Mode::kBundleAdjustment) mapper = std::make_unique<LocalMapper>(ideal, opts);
+        if (opts.mode == Mode::kBundleAdjustment) map = std::make_unique<MapLink>(ideal, opts);
     }
 
     PinholeCamera camera, ideal;
@@ -90,13 +43,10 @@ struct Odometry::Impl {
     EdgeGrid grid;          // of the present frame
 
     std::unique_ptr<Keyframe> keyframe;
-    std::vector<KeyframeInfo> keyframe_infos;
-    std::vector<KeyframeLink> keyframe_links;
-    EdgeMap edge_map;
-    std::vector<TrackedPose> poses;
+    PoseHistory history;
     std::vector<StampedPose> live_poses;
-    std::unique_ptr<LocalMapper> mapper;
-    std::deque<PendingUpdate> pending;  ///< in the order of keyframes
+    std::unique_ptr<MapLink> map;  // in mode ba
+    EdgeMap edge_map;              // in the other modes
     long frame_index = 0;
     Pose T_world_camera;  // last pose, measured or predicted
     MotionModel motion;
@@ -107,7 +57,7 @@ struct Odometry::Impl {
     std::string startKeyframe(const FrameData& data);
     void applyMapUpdates(FrameResult& result);
     void applyMapUpdate(const MapUpdate& update, FrameResult& result);
-    void keepPose(const FrameResult& result);
+    PoseHistory finalPoses() const;
     void renewKeyframe(FrameResult& result);
     void keepForKeyframe(const RgbdFrame& frame);
     void process(const RgbdFrame& frame, FrameResult& result);
@@ -115,90 +65,69 @@ struct Odometry::Impl {
     bool trackFrom(const std::vector<Pose>& guesses, const PosePrior& prior, const RgbdFrame& frame,
                    FrameResult& result);
     void bridgeLoss(const RgbdFrame& frame, FrameResult& result);
-    std::string lackOf(const FineResult& refined) const;
     bool wantsKeyframe(const FrameResult& result) const;
     void setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe, FrameResult& result);
 };
 
 std::string Odometry::Impl::startKeyframe(const FrameData& data) {
     auto fresh = std::make_unique<Keyframe>();
-    const int id = static_cast<int>(keyframe_infos.size());
+    const int id = static_cast<int>(history.keyframes().size());
     if (auto fault = makeKeyframe(data, id, camera, options, *fresh); !fault.empty()) return fault;
-    KeyframeLink link;
-    if (keyframe && data.may_be_keyframe) {
-        link.parent = keyframe->id;
-        link.T_parent_camera = keyframe->T_world_camera.inverse() * data.T_world_camera;
-    }
-    if (keyframe && mapper) mapper->setFound(keyframe->id, foundShares(*keyframe));
+    const std::unique_ptr<Keyframe> last = std::move(keyframe);
     keyframe = std::move(fresh);
     brightness = Brightness();
-    keyframe_infos.push_back({keyframe->id, keyframe->timestamp, keyframe->T_world_camera});
-    keyframe_links.push_back(link);
+    history.addKeyframe({id, keyframe->timestamp, keyframe->T_world_camera},
+                        last && data.may_be_keyframe ? last->id : -1);
     EdgeMap own_edges = mapEdgesOf(*keyframe, data.images, camera);
-    if (mapper) {
-        std::vector<Rgb> colours;
-        for (const MapEdge& edge : own_edges)
-            colours.insert(colours.end(), edge.colours.begin(), edge.colours.end());
-        MapKeyframe kept = toMapKeyframe(*keyframe, colours, ideal, options.mapping.max_points);
-        kept.parent = link.parent;
-        kept.T_parent_camera = link.T_parent_camera;
-        if (link.parent >= 0) kept.parent_information = data.relative_covariance.inverse();
-        const Stopwatch watch;
-        PendingUpdate next;
-        next.update = mapper->insert(std::move(kept));
-        next.milliseconds = watch.milliseconds();
-        next.due = frame_index + options.mapping.latency;
-        pending.push_back(std::move(next));
-    }
-    if (!mapper) {
-        for (MapEdge& edge : own_edges) {
-            edge.cluster = static_cast<int>(edge_map.size());
-            edge_map.push_back(std::move(edge));
+    if (map) {
+        MapJob job;
+        job.keyframe = toMapKeyframe(*keyframe, coloursOf(own_edges), ideal, options.mapping.max_points);
+        job.keyframe.parent = history.parentOf(id);
+        job.keyframe.T_parent_camera = history.parentToKeyframe(id);
+        if (job.keyframe.parent >= 0) job.keyframe.parent_information = data.relative_covariance.inverse();
+        if (last) {
+            job.previous = last->id;
+            job.found = foundShares(*last);
         }
+        map->submit(std::move(job), frame_index);
+        return {};
+    }
+    for (MapEdge& edge : own_edges) {
+        edge.cluster = static_cast<int>(edge_map.size());
+        edge_map.push_back(std::move(edge));
     }
     return {};
 }
 
 void Odometry::Impl::applyMapUpdates(FrameResult& result) {
-    while (!pending.empty() && pending.front().due <= frame_index) {
-        result.ms.mapping += pending.front().milliseconds;
-        applyMapUpdate(pending.front().update, result);
-        pending.pop_front();
+    if (!map) return;
+    while (const auto next = map->next(frame_index, result.ms.waiting)) {
+        result.ms.mapping += next->milliseconds;
+        applyMapUpdate(next->update, result);
     }
 }
 
 void Odometry::Impl::applyMapUpdate(const MapUpdate& update, FrameResult& result) {
-    for (const auto& [id, pose] : update.poses) {
-        keyframe_infos[static_cast<std::size_t>(id)].T_world_camera = pose;
-    }
-    // Younger keyframes follow the one that they were tracked from
-    for (std::size_t id = static_cast<std::size_t>(update.keyframe) + 1; id < keyframe_infos.size(); ++id) {
-        const KeyframeLink& link = keyframe_links[id];
-        if (link.parent < 0) continue;
-        keyframe_infos[id].T_world_camera =
-            keyframe_infos[static_cast<std::size_t>(link.parent)].T_world_camera * link.T_parent_camera;
-    }
-    if (!keyframe) return;
-    const Pose T_new = keyframe_infos[static_cast<std::size_t>(keyframe->id)].T_world_camera;
-    const Pose correction = T_new * keyframe->T_world_camera.inverse();
+    history.apply(update);
+    result.map_reason += (result.map_reason.empty() || update.reason.empty() ? "" : "; ") + update.reason;
+    const Pose& T_world_keyframe = history.keyframePose(keyframe->id);
+    const Pose correction = T_world_keyframe * keyframe->T_world_camera.inverse();
     const Eigen::Vector3d position = T_world_camera.translation();
-    keyframe->T_world_camera = T_new;
+    keyframe->T_world_camera = T_world_keyframe;
     T_world_camera = correction * T_world_camera;
     orthonormalise(T_world_camera);
     now.T_world_camera = correction * now.T_world_camera;
     motion.moveWorld(correction);
-    result.map_correction = (T_world_camera.translation() - position).norm();
+    result.map_correction += (T_world_camera.translation() - position).norm();
     if (update.keyframe == keyframe->id && options.mapping.refine_depth) refineDepth(*keyframe, update);
 }
 
-void Odometry::Impl::keepPose(const FrameResult& result) {
-    live_poses.push_back({result.timestamp, result.T_world_camera});
-    TrackedPose kept;
-    kept.timestamp = result.timestamp;
-    kept.keyframe = keyframe ? keyframe->id : -1;
-    kept.T_keyframe_camera =
-        keyframe ? keyframe->T_world_camera.inverse() * result.T_world_camera : result.T_world_camera;
-    poses.push_back(kept);
+PoseHistory Odometry::Impl::finalPoses() const {
+    PoseHistory poses = history;
+    if (map) {
+        for (const MapResult& result : map->outstanding()) poses.apply(result.update);
+    }
+    return poses;
 }
 
 void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe,
@@ -223,17 +152,6 @@ bool Odometry::Impl::wantsKeyframe(const FrameResult& result) const {
            degrees > options.keyframe.max_rotation_deg ||
            T_keyframe_current.translation().norm() >
                options.keyframe.max_translation * keyframe->median_depth;
-}
-
-std::string Odometry::Impl::lackOf(const FineResult& refined) const {
-    if (refined.inliers < options.fine.min_inliers) {
-        return "only " + std::to_string(refined.inliers) + " associated edge points, " +
-               std::to_string(options.fine.min_inliers) + " needed";
-    }
-    if (refined.matched_ratio >= options.fine.min_matched_ratio) return "the pose diverged";
-    return "only " + std::to_string(std::lround(100 * refined.matched_ratio)) +
-           " % of the edges associated, " +
-           std::to_string(std::lround(100 * options.fine.min_matched_ratio)) + " % needed";
 }
 
 bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
@@ -293,7 +211,7 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
         if (!refined.converged) {
             result.matched_ratio = refined.matched_ratio;
             result.ms.fine += fine_watch.milliseconds();
-            result.reason = lackOf(refined);
+            result.reason = lackOf(refined, options.fine);
             return false;
         }
         T_current_keyframe = refined.T_current_keyframe;
@@ -303,7 +221,7 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
     if (options.mode != Mode::kCoarse && shutter.since_previous > 0) {
         fine.addReadoutEvidence(*keyframe, T_current_keyframe, now.row_motion, view, motion.readout());
     }
-    if (mapper) fine.countHits(*keyframe, ideal);
+    if (map) fine.countHits(*keyframe, ideal);
     result.matched_ratio = fine.matches().matchedRatio();
     result.T_world_camera = T_world_keyframe * T_current_keyframe.inverse();
     orthonormalise(result.T_world_camera);
@@ -439,35 +357,28 @@ FrameResult Odometry::processFrame(const RgbdFrame& frame) {
         return result;
     }
     impl_->process(frame, result);
-    if (result.hasPose()) impl_->keepPose(result);
+    if (result.hasPose()) {
+        impl_->history.addFrame(frame.timestamp, result.T_world_camera);
+        impl_->live_poses.push_back({frame.timestamp, result.T_world_camera});
+    }
     result.ms.total = watch.milliseconds();
     return result;
 }
 
 std::vector<StampedPose> Odometry::trajectory() const {
-    for (; !impl_->pending.empty(); impl_->pending.pop_front()) {
-        FrameResult result;
-        impl_->applyMapUpdate(impl_->pending.front().update, result);
-    }
-    std::vector<StampedPose> trajectory;
-    for (const TrackedPose& pose : impl_->poses) {
-        const Pose& T_world_keyframe =
-            impl_->keyframe_infos[static_cast<std::size_t>(pose.keyframe)].T_world_camera;
-        trajectory.push_back({pose.timestamp, T_world_keyframe * pose.T_keyframe_camera});
-    }
-    return trajectory;
+    return impl_->finalPoses().frames();
 }
 std::vector<StampedPose> Odometry::liveTrajectory() const {
     return impl_->live_poses;
 }
 std::vector<KeyframeInfo> Odometry::keyframes() const {
-    return impl_->keyframe_infos;
+    return impl_->finalPoses().keyframes();
 }
 EdgeMap Odometry::map() const {
-    return impl_->mapper ? impl_->mapper->fusedMap() : impl_->edge_map;
+    return impl_->map ? impl_->map->finished().fusedMap() : impl_->edge_map;
 }
 EdgeMap Odometry::keyframeEdges() const {
-    return impl_->mapper ? impl_->mapper->keyframeEdges() : impl_->edge_map;
+    return impl_->map ? impl_->map->finished().keyframeEdges() : impl_->edge_map;
 }
 double Odometry::readoutTime() const {
     return impl_->motion.secondsPerRow() * impl_->camera.height;
