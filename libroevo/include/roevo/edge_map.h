@@ -34,4 +34,10 @@ struct MapEdge {
 
 using EdgeMap = std::vector<MapEdge>;
 
+/// A point of a surface with the colour that the image has there.
+struct ColouredPoint {
+    Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< m
+    Rgb colour{};
+};
+
 }  // namespace roevo
