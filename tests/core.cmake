@@ -9,6 +9,11 @@ roevo_test(test_core_tracking
   SOURCES core/test_kernels.cpp core/test_photometric.cpp core/test_fine_jacobians.cpp core/test_gauss_newton.cpp
           core/test_se3.cpp core/test_motion_model.cpp core/test_edge_association.cpp core/test_rolling_shutter.cpp core/test_edge_points.cpp core/test_options.cpp
   LIBS roevo)
+# Ceres solves the bundle adjustment once more, as an independent oracle.
+find_package(Ceres REQUIRED)
+roevo_test(test_core_mapping
+  SOURCES core/test_disjoint_set.cpp core/test_covisibility.cpp
+  LIBS roevo Ceres::ceres)
 # One ctest entry per suite, since the cases of a suite share a rendered sequence.
 add_executable(test_core_odometry core/test_odometry_accuracy.cpp core/test_odometry_status.cpp
                core/test_odometry_covariance.cpp)
@@ -20,7 +25,7 @@ endforeach()
 roevo_test(test_core_sequences
   SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp
   LIBS roevo_simulator roevo_evaluation roevo_datasets)
-foreach(program camera edges tracking odometry sequences)
+foreach(program camera edges tracking mapping odometry sequences)
   target_include_directories(test_core_${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_include_directories(test_core_${program} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 endforeach()
