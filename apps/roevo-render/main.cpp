@@ -6,6 +6,7 @@
 
 #include "evaluation/trajectory_io.h"
 #include "offscreen.h"
+#include "roevo_mrpt/scene_builder.h"
 #include "scene_content.h"
 #include "support/atomic_file.h"
 #include "support/program.h"
@@ -33,7 +34,7 @@ Eigen::Isometry3d lastCamera(const std::string& trajectory_file) {
 }
 
 int run(int argc, char** argv) {
-    std::string scene_file, output, size = "1280x800", view_name = "iso", trajectory_file;
+    std::string scene_file, output, size = "1280x800", view_name = "iso", layer = "edges", trajectory_file;
     CLI::App app("Draws a .3Dscene into a PNG; needs no display.", kName);
     app.add_option("--scene", scene_file, "Scene, e.g. map.3Dscene of roevo-odometry")->required();
     app.add_option("--output", output, "Picture to write (.png)")->required();
@@ -41,11 +42,15 @@ int run(int argc, char** argv) {
     app.add_option("--view", view_name, "Where to look from")
         ->capture_default_str()
         ->check(CLI::IsMember({"iso", "top", "front", "follow"}));
+    const auto* layer_option = app.add_option("--layer", layer, "What to show of the map")
+                                   ->capture_default_str()
+                                   ->check(CLI::IsMember(layerNames()));
     app.add_option(
         "--trajectory", trajectory_file,
         "For the view 'follow': look from behind its last camera (default: trajectory.txt beside the scene)");
     app.footer(
-        "Example:\n  roevo-render --scene out/map.3Dscene --output map.png --size 1600x1000 --view iso");
+        "Example:\n  roevo-render --scene out/map.3Dscene --output map.png --size 1600x1000 --view iso\n"
+        "  roevo-render --scene out/map.3Dscene --output covisibility.png --layer covisibility --view front");
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
 
     int width = 0, height = 0;
@@ -56,6 +61,8 @@ int run(int argc, char** argv) {
         trajectory_file = (std::filesystem::path(scene_file).parent_path() / "trajectory.txt").string();
 
     const auto scene = loadScene(scene_file);
+    // A scene that is none of ours has no layers: it is shown as it is
+    if (layer_option->count() > 0 || scene->getByName(SceneNames::kEdges)) showLayer(*scene, layer);
     const ViewContent content = sceneContent(*scene);
     const View view = view_name == "follow"
                           ? followView(lastCamera(trajectory_file), content)
@@ -63,8 +70,8 @@ int run(int argc, char** argv) {
     preparePoints(*scene, kSuperSampling * std::max(1.f, static_cast<float>(height) / kPointSizeHeight));
     const cv::Mat picture = renderOffscreen(*scene, view, width, height);
     writeAtomically(output, [&](const std::string& path) { cv::imwrite(path, picture); });
-    std::printf("%s: %d x %d pixels, view %s, %zu points\n", output.c_str(), width, height, view_name.c_str(),
-                content.cloud.size());
+    std::printf("%s: %d x %d pixels, view %s, layer %s, %zu points\n", output.c_str(), width, height,
+                view_name.c_str(), layer.c_str(), content.cloud.size());
     return 0;
 }
 

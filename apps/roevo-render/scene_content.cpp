@@ -16,10 +16,21 @@
 #include <functional>
 #include <stdexcept>
 
+#include "roevo_mrpt/scene_builder.h"
+
 namespace roevo {
 namespace {
 
 using namespace mrpt::opengl;
+
+struct LayerName {
+    const char *user, *object;
+};
+constexpr LayerName kLayers[] = {{"edges", SceneNames::kEdges},
+                                 {"covisibility", SceneNames::kCovisibility},
+                                 {"semi-dense", SceneNames::kSemiDense},
+                                 {"pseudo-edges", SceneNames::kPseudoEdges}};
+constexpr char kAllLayers[] = "all";
 
 // Calls visit(object, pose of its parent) for everything that is not a group.
 template <class Container, class Visitor>
@@ -85,6 +96,29 @@ COpenGLScene::Ptr loadScene(const std::string& path) {
     if (!loaded || !scene->getViewport("main"))
         throw std::runtime_error(path + " is not a whole MRPT .3Dscene file");
     return scene;
+}
+
+std::vector<std::string> layerNames() {
+    std::vector<std::string> names;
+    for (const LayerName& layer : kLayers) names.emplace_back(layer.user);
+    names.emplace_back(kAllLayers);
+    return names;
+}
+
+void showLayer(COpenGLScene& scene, const std::string& layer) {
+    bool found = false;
+    std::string held;
+    for (const LayerName& each : kLayers) {
+        const auto object = scene.getByName(each.object);
+        if (!object) continue;
+        const bool wanted = layer == each.user || layer == kAllLayers;
+        object->setVisibility(wanted);
+        found = found || wanted;
+        held += (held.empty() ? "" : ", ") + std::string(each.user);
+    }
+    if (found) return;
+    throw std::runtime_error("the scene has no layer '" + layer + "'; it has " +
+                             (held.empty() ? "none" : held));
 }
 
 ViewContent sceneContent(const COpenGLScene& scene) {

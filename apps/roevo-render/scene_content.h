@@ -2,6 +2,7 @@
 #include <mrpt/opengl/COpenGLScene.h>
 
 #include <string>
+#include <vector>
 
 #include "view.h"
 
@@ -9,6 +10,13 @@ namespace roevo {
 
 /// Loads a .3Dscene file. @throws std::runtime_error
 mrpt::opengl::COpenGLScene::Ptr loadScene(const std::string& path);
+
+/// Layers of a map that can be shown, as users name them.
+std::vector<std::string> layerNames();
+
+/// Shows one layer of the map ("all": every one) and hides the others; what is no layer stays as it is.
+/// @throws std::runtime_error when the scene does not hold it
+void showLayer(mrpt::opengl::COpenGLScene& scene, const std::string& layer);
 
 /// Points of the scene's point clouds, and the corners of its other objects (ground grids and axes do not
 /// count).

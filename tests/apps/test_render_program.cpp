@@ -101,12 +101,67 @@ TEST_F(RenderProgram, FollowLooksFromBehindTheLastCamera) {
     EXPECT_GT(red, 5);
 }
 
+// Share of the picture's pixels that are clearly of that colour (BGR channels that are high, the others low).
+double shareOf(const cv::Mat& picture, bool blue, bool green, bool red) {
+    int count = 0;
+    for (const auto& p : cv::Mat3b(picture)) {
+        const int high = std::max({p[0], p[1], p[2]});
+        const auto is = [&](int c, bool wanted) { return wanted ? p[c] > 0.75 * high : p[c] < 0.5 * high; };
+        count += high > 90 && is(0, blue) && is(1, green) && is(2, red);
+    }
+    return static_cast<double>(count) / static_cast<double>(picture.total());
+}
+
+TEST_F(RenderProgram, ShowsTheLayerThatIsWanted) {
+    // Each layer in a place of its own: yellow edges, white co-visibility, cyan surface, orange or magenta
+    // pseudo-edges.
+    SceneContent content;
+    const auto line = [](float x, Rgb colour) {
+        MapEdge edge;
+        for (int i = 0; i <= 100; ++i) {
+            edge.points.emplace_back(x, 0.01f * static_cast<float>(i), 2.f);
+            edge.colours.push_back(colour);
+        }
+        return edge;
+    };
+    content.map = {line(0, {250, 250, 0}), line(1, {250, 250, 0})};
+    content.map.back().verdict = EdgeVerdict::kVanishing;
+    content.keyframe_edges = {line(2, {250, 250, 0})};
+    for (int i = 0; i <= 500; ++i)
+        content.semi_dense.push_back({{3.f, 0.002f * static_cast<float>(i), 2.f}, {0, 250, 250}});
+    content.point_size = 4;
+    saveScene(folder_ / "room.3Dscene", *buildScene(content));
+    const auto shown = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"--view", "front", "--size", "400x300"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const auto result = render(arguments);
+        EXPECT_EQ(result.exit_code, 0) << result.all();
+        const cv::Mat picture = cv::imread(folder_ / "room.png");
+        std::string layers;
+        constexpr double kThere = 0.002;
+        if (shareOf(picture, false, true, true) > kThere) layers += "edges ";
+        if (shareOf(picture, true, true, true) > kThere) layers += "covisibility ";
+        if (shareOf(picture, true, true, false) > kThere) layers += "semi-dense ";
+        if (shareOf(picture, true, false, true) > kThere) layers += "pseudo-edges ";
+        return layers;
+    };
+    EXPECT_EQ(shown({}), "edges ");
+    for (const std::string layer : {"edges", "covisibility", "semi-dense", "pseudo-edges"})
+        EXPECT_EQ(shown({"--layer", layer}), layer + ' ');
+    EXPECT_EQ(shown({"--layer", "all"}), "edges covisibility semi-dense pseudo-edges ");
+}
+
 TEST_F(RenderProgram, FailuresAreOneLine) {
     namespace fs = std::filesystem;
     expectError(render({"--size", "1000"}), 2, kName, {"--size", "1000"});
     expectError(render({"--size", "8x8"}), 2, kName, {"16"});
     expectError(render({"--view", "inside"}), 2, kName, {"--view"});
     expectError(render({"--view", "follow", "--trajectory", folder_ / "none.txt"}), 1, kName, {"none.txt"});
+    // This scene has edges only
+    EXPECT_EQ(render({"--layer", "all"}).exit_code, 0);
+    for (const std::string layer : {"covisibility", "semi-dense", "pseudo-edges"})
+        expectError(render({"--layer", layer}), 1, kName, {"no layer '" + layer + "'", "it has edges"});
+    expectError(render({"--layer", "walls"}), 2, kName, {"--layer", "walls"});
     const std::string png = folder_ / "x.png";
     expectError(test::runProgram(kName, {"--scene", folder_ / "none.3Dscene", "--output", png}), 1, kName,
                 {"none.3Dscene", "No such file"});

@@ -3,9 +3,10 @@
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CSetOfTriangles.h>
 
-#include <cstring>
+#include <algorithm>
+#include <cmath>
 #include <fstream>
-#include <sstream>
+#include <map>
 
 #include "mrpt/test_helpers.h"
 #include "roevo_mrpt/scene_builder.h"
@@ -21,7 +22,8 @@ SceneContent someContent() {
     for (int e = 0; e < 20; e++) {
         MapEdge edge;
         for (int i = 0; i < 10; i++) {
-            edge.points.emplace_back(0.1f * static_cast<float>(e), 0.05f * static_cast<float>(i),
+            // Too far apart to be joined
+            edge.points.emplace_back(0.1f * static_cast<float>(e), 0.3f * static_cast<float>(i),
                                      2 + 0.1f * static_cast<float>(e));
             edge.colours.push_back({static_cast<std::uint8_t>(e), static_cast<std::uint8_t>(i), 200});
         }
@@ -87,6 +89,146 @@ TEST(SceneBuilder, FrustaSitWhereTheKeyframesAre) {
     EXPECT_LT(corner.y, apex.y);
 }
 
+using mrpt::opengl::CPointCloudColoured;
+
+Eigen::Vector3f positionOf(const CPointCloudColoured& cloud, std::size_t i) {
+    const auto& p = cloud.getPoint3Df(i);
+    return {p.x, p.y, p.z};
+}
+
+Rgb colourOf(const CPointCloudColoured& cloud, std::size_t i) {
+    const auto c = cloud.getPointColor(i);
+    return {c.R, c.G, c.B};
+}
+
+MapEdge edgeAt(float y, int keyframe, int cluster, EdgeVerdict verdict = EdgeVerdict::kTrue) {
+    MapEdge edge;
+    for (const float x : {0.f, 0.04f}) {
+        edge.points.emplace_back(x, y, 1.f);
+        edge.colours.push_back({10, 20, 30});
+    }
+    edge.keyframe_id = keyframe;
+    edge.cluster = cluster;
+    edge.verdict = verdict;
+    return edge;
+}
+
+TEST(SceneBuilder, GapsOfAnEdgeAreFilledUnlessTheyAreUnusual) {
+    SceneContent content;
+    content.T_scene_world = Pose::Identity();
+    const auto draw = [&](const std::vector<float>& along, std::uint8_t last_red) {
+        MapEdge edge;
+        for (std::size_t i = 0; i < along.size(); i++) {
+            edge.points.emplace_back(along[i], 2 * along[i], 3.f);
+            edge.colours.push_back({i + 1 < along.size() ? std::uint8_t{0} : last_red, 0, 100});
+        }
+        content.map = {edge};
+        return find<CPointCloudColoured>(*buildScene(content), SceneNames::kEdges);
+    };
+    // 44.7 mm: eight points in between, on the line, their colours from one end's to the other's
+    const auto line = draw({0, 0.02f}, 90);
+    ASSERT_EQ(line->size(), 10u);
+    for (std::size_t i = 0; i < 9; i++) {
+        const Eigen::Vector3f p = positionOf(*line, i + 1);
+        EXPECT_NEAR((p - positionOf(*line, i)).norm(), std::sqrt(5.) * 0.02 / 9, 1e-6);
+        EXPECT_NEAR(p.y(), 2 * p.x(), 1e-6);
+        EXPECT_EQ(colourOf(*line, i + 1), (Rgb{static_cast<std::uint8_t>(10 * (i + 1)), 0, 100}));
+    }
+    // Far away all gaps are wide, and are filled; one that is four times the others is not, nor a huge one.
+    const double root5 = std::sqrt(5.);
+    const auto wide = draw({0, 0.04f, 0.08f, 0.12f}, 0);
+    EXPECT_EQ(wide->size(), 1 + 3 * static_cast<std::size_t>(std::ceil(root5 * 0.04 / 0.005)));
+    EXPECT_EQ(draw({0, 0.04f, 0.08f, 0.24f}, 0)->size(), wide->size() - 17);
+    EXPECT_EQ(draw({0, 0.2f, 0.4f}, 0)->size(), 3u);
+}
+
+TEST(SceneBuilder, PseudoEdgesAreALayerOfTheirOwn) {
+    SceneContent content;
+    content.T_scene_world = Pose::Identity();
+    content.map = {edgeAt(0, 0, 0), edgeAt(1, 0, 1, EdgeVerdict::kSpread),
+                   edgeAt(2, 0, 2, EdgeVerdict::kUnconfirmed), edgeAt(3, 0, 3, EdgeVerdict::kVanishing)};
+    const test::TemporaryFolder folder;
+    saveScene(folder / "map.3Dscene", *buildScene(content));
+    compat::Scene scene;
+    ASSERT_TRUE(scene.loadFromFile(folder / "map.3Dscene"));
+    const auto edges = find<CPointCloudColoured>(scene, SceneNames::kEdges),
+               pseudo = find<CPointCloudColoured>(scene, SceneNames::kPseudoEdges);
+    ASSERT_TRUE(edges && pseudo);
+    EXPECT_TRUE(edges->isVisible());
+    EXPECT_FALSE(pseudo->isVisible());
+    ASSERT_EQ(edges->size(), 2 * 9u);
+    ASSERT_EQ(pseudo->size(), 2 * 9u);
+    for (std::size_t i = 0; i < 9; i++) {
+        EXPECT_EQ(positionOf(*edges, i).y(), 0);
+        EXPECT_EQ(positionOf(*edges, 9 + i).y(), 2);
+        EXPECT_EQ(positionOf(*pseudo, i).y(), 1);
+        EXPECT_EQ(positionOf(*pseudo, 9 + i).y(), 3);
+        EXPECT_EQ(colourOf(*edges, i), (Rgb{10, 20, 30}));
+    }
+    EXPECT_NE(colourOf(*pseudo, 0), colourOf(*pseudo, 9));  // says which kind
+}
+
+TEST(SceneBuilder, UncertainEdgesAreFainter) {
+    SceneContent content;
+    content.map = {edgeAt(0, 0, 0), edgeAt(1, 0, 1)};
+    content.map[0].confidence = 0.2f;
+    const auto edges = find<CPointCloudColoured>(*buildScene(content), SceneNames::kEdges);
+    EXPECT_EQ(edges->getPointColor(9).A, 255);
+    EXPECT_LT(edges->getPointColor(0).A, 180);
+    EXPECT_GT(edges->getPointColor(0).A, 60);
+}
+
+TEST(SceneBuilder, CovisibilityHasOneColourPerSharedEdge) {
+    SceneContent content;
+    content.T_scene_world = Pose::Identity();
+    constexpr int kClusters = 40;
+    // Of two keyframes; besides, two edges of one keyframe in a cluster, which is not shared.
+    for (int keyframe = 0; keyframe < 2; keyframe++)
+        for (int c = 0; c < kClusters; c++)
+            content.keyframe_edges.push_back(edgeAt(static_cast<float>(c), keyframe, c));
+    for (int k = 0; k < 2; k++) content.keyframe_edges.push_back(edgeAt(-1, 1, kClusters));
+    const auto scene = buildScene(content);
+    const auto cloud = find<CPointCloudColoured>(*scene, SceneNames::kCovisibility);
+    ASSERT_TRUE(cloud);
+    EXPECT_FALSE(cloud->isVisible());
+    ASSERT_EQ(cloud->size(), content.keyframe_edges.size() * 9);
+    std::map<int, Rgb> colours;
+    for (std::size_t i = 0; i < cloud->size(); i++) {
+        const int cluster = static_cast<int>(std::lround(positionOf(*cloud, i).y()));
+        const Rgb colour = colourOf(*cloud, i);
+        EXPECT_EQ(colours.try_emplace(cluster, colour).first->second, colour) << cluster;
+        const auto [low, high] = std::minmax_element(colour.begin(), colour.end());
+        if (cluster < 0) {
+            EXPECT_EQ(*low, *high);  // grey
+            EXPECT_GT(*low, 180);
+        } else {
+            EXPECT_GT(*high - *low, 120) << cluster;
+        }
+    }
+    // Neighbouring numbers look quite different, any two differ.
+    for (int a = 0; a < kClusters; a++)
+        for (int b = a + 1; b < kClusters; b++) {
+            int difference = 0;
+            for (std::size_t c = 0; c < 3; c++)
+                difference = std::max(difference, std::abs(colours.at(a)[c] - colours.at(b)[c]));
+            EXPECT_GT(difference, b == a + 1 ? 100 : 10) << a << ' ' << b;
+        }
+    EXPECT_FALSE(scene->getByName(SceneNames::kPseudoEdges));
+    EXPECT_FALSE(scene->getByName(SceneNames::kSemiDense));
+}
+
+TEST(SceneBuilder, SemiDensePointsAreThereAndHidden) {
+    SceneContent content;
+    content.semi_dense = {{{1, 2, 3}, {4, 5, 6}}, {{-1, 0, 2}, {7, 8, 9}}};
+    const auto cloud = find<CPointCloudColoured>(*buildScene(content), SceneNames::kSemiDense);
+    ASSERT_TRUE(cloud);
+    EXPECT_FALSE(cloud->isVisible());
+    ASSERT_EQ(cloud->size(), 2u);
+    EXPECT_TRUE(positionOf(*cloud, 0).isApprox(Eigen::Vector3f(3, -1, -2)));  // x forward, y left, z up
+    EXPECT_EQ(colourOf(*cloud, 0), (Rgb{4, 5, 6}));
+    EXPECT_EQ(colourOf(*cloud, 1), (Rgb{7, 8, 9}));
+}
+
 TEST(SceneBuilder, EmptyContentIsAScene) {
     const test::TemporaryFolder folder;
     saveScene(folder / "empty.3Dscene", *buildScene({}));
@@ -94,26 +236,45 @@ TEST(SceneBuilder, EmptyContentIsAScene) {
     EXPECT_TRUE(loaded.loadFromFile(folder / "empty.3Dscene"));
 }
 
+template <class Value>
+Value take(std::istream& in) {
+    Value value{};
+    in.read(reinterpret_cast<char*>(&value), sizeof value);  // tests run on little-endian machines
+    return value;
+}
+
 TEST(SceneBuilder, PlyHoldsEveryPointExactly) {
     const test::TemporaryFolder folder;
-    const EdgeMap map = someContent().map;
+    EdgeMap map = someContent().map;
+    for (std::size_t e = 0; e < map.size(); e++) {
+        map[e].confidence = 0.05f * static_cast<float>(e);
+        map[e].views = static_cast<int>(100 * e);
+        map[e].verdict = static_cast<EdgeVerdict>(e % 4);
+    }
     savePly(folder / "map.ply", map);
     std::ifstream in(folder / "map.ply", std::ios::binary);
-    std::string line;
+    std::string line, properties, comments;
     std::size_t count = 0;
-    while (std::getline(in, line) && line != "end_header")
+    while (std::getline(in, line) && line != "end_header") {
         if (line.rfind("element vertex ", 0) == 0) count = std::stoul(line.substr(15));
+        if (line.rfind("property ", 0) == 0) properties += line.substr(9) + '\n';
+        if (line.rfind("comment ", 0) == 0) comments += line;
+    }
     ASSERT_EQ(count, 200u);
+    EXPECT_EQ(properties,
+              "float x\nfloat y\nfloat z\nuchar red\nuchar green\nuchar blue\n"
+              "float confidence\nint views\nuchar verdict\n");
+    for (const char* word : {"confidence", "views", "verdict", "metres"})
+        EXPECT_NE(comments.find(word), std::string::npos) << word;
     for (const MapEdge& edge : map)
         for (std::size_t i = 0; i < edge.points.size(); i++) {
-            char bytes[15];
-            ASSERT_TRUE(in.read(bytes, sizeof bytes));
-            float xyz[3];
-            std::memcpy(xyz, bytes, sizeof xyz);  // tests run on little-endian machines
-            for (int axis = 0; axis < 3; axis++) EXPECT_EQ(xyz[axis], edge.points[i][axis]);
-            for (std::size_t c = 0; c < 3; c++)
-                EXPECT_EQ(static_cast<std::uint8_t>(bytes[12 + c]), edge.colours[i][c]);
+            for (int axis = 0; axis < 3; axis++) EXPECT_EQ(take<float>(in), edge.points[i][axis]);
+            for (std::size_t c = 0; c < 3; c++) EXPECT_EQ(take<std::uint8_t>(in), edge.colours[i][c]);
+            EXPECT_EQ(take<float>(in), edge.confidence);
+            EXPECT_EQ(take<std::int32_t>(in), edge.views);
+            EXPECT_EQ(take<std::uint8_t>(in), static_cast<std::uint8_t>(edge.verdict));
         }
+    ASSERT_TRUE(in);
     EXPECT_EQ(in.peek(), EOF);
 }
 

@@ -120,7 +120,7 @@ mrpt::poses::CPose3DInterpolator CRoevoOdometry::getTrajectory() const {
 void CRoevoOdometry::getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out) const {
     out.clear();
     if (!odometry_) return;
-    const EdgeMap map = odometry_->map();
+    const EdgeMap edges = odometry_->keyframeEdges();
     for (const KeyframeInfo& keyframe : odometry_->keyframes()) {
         const Pose T_robot_optical = robotFromOptical(keyframe.timestamp);
         auto cloud = mrpt::obs::CObservationPointCloud::Create();
@@ -129,7 +129,7 @@ void CRoevoOdometry::getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out) const {
         cloud->sensorPose = toMrpt(T_robot_optical * sensorFromOptical().inverse());
         auto points = CColouredPointsMap::Create();
         const Pose T_sensor_world = sensorFromOptical() * keyframe.T_world_camera.inverse();
-        for (const MapEdge& edge : map)
+        for (const MapEdge& edge : edges)
             if (edge.keyframe_id == keyframe.id) appendEdge(*points, edge, T_sensor_world);
         cloud->pointcloud = points;
 
@@ -157,7 +157,8 @@ void CRoevoOdometry::saveCurrentMapToFile(const std::string& simplemap_file) con
 CColouredPointsMap::Ptr CRoevoOdometry::getMap() const {
     auto out = CColouredPointsMap::Create();
     if (odometry_)
-        for (const MapEdge& edge : odometry_->map()) appendEdge(*out, edge, Pose::Identity());
+        for (const MapEdge& edge : odometry_->map())
+            if (!isPseudo(edge.verdict)) appendEdge(*out, edge, Pose::Identity());
     return out;
 }
 
@@ -166,6 +167,9 @@ compat::Scene::Ptr CRoevoOdometry::getScene() const {
     content.T_scene_world = Pose::Identity();  // the robot's world has z up already
     if (odometry_) {
         content.map = odometry_->map();
+        // The other modes do not tell which edges are the same
+        if (odometry_->options().mode == Mode::kBundleAdjustment)
+            content.keyframe_edges = odometry_->keyframeEdges();
         content.trajectory = odometry_->trajectory();
         content.keyframes = odometry_->keyframes();
         content.camera = odometry_->camera();

@@ -1,14 +1,13 @@
 #include "roevo_mrpt/scene_builder.h"
 
 #include <mrpt/opengl/CGridPlaneXY.h>
-#include <mrpt/opengl/CPointCloudColoured.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CSetOfTriangles.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "edge_layers.h"
 #include "tubes.h"
 #include "whole_file.h"
 
@@ -51,20 +50,6 @@ Points positions(const std::vector<StampedPose>& poses, const Pose& T_scene_worl
     for (const StampedPose& pose : poses)
         points.push_back((T_scene_world * pose.T_world_camera.translation()).cast<float>());
     return points;
-}
-
-mrpt::opengl::CPointCloudColoured::Ptr edgeCloud(const SceneContent& content) {
-    auto cloud = mrpt::opengl::CPointCloudColoured::Create();
-    cloud->setName(SceneNames::kEdges);
-    cloud->setPointSize(content.point_size);
-    const Eigen::Isometry3f T = content.T_scene_world.cast<float>();
-    for (const MapEdge& edge : content.map)
-        for (std::size_t i = 0; i < edge.points.size(); i++) {
-            const Eigen::Vector3f p = T * edge.points[i];
-            const auto& [r, g, b] = edge.colours.at(i);
-            cloud->insertPoint({p.x(), p.y(), p.z(), r, g, b, 255});
-        }
-    return cloud;
 }
 
 mrpt::opengl::CSetOfTriangles::Ptr path(const char* name, const Points& points, float radius,
@@ -145,7 +130,7 @@ compat::Scene::Ptr buildScene(const SceneContent& content) {
 
     auto scene = compat::Scene::Create();
     insertGround(*scene, extent);
-    scene->insert(edgeCloud(content));
+    insertEdgeLayers(*scene, content);
     if (!reference.empty())
         scene->insert(path(SceneNames::kReference, reference, path_radius, kReferenceColour));
     scene->insert(path(SceneNames::kTrajectory, trajectory, path_radius, kTrajectoryColour));

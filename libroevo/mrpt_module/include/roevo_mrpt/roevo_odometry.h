@@ -73,16 +73,16 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// The robot's poses at all tracked observations.
     mrpt::poses::CPose3DInterpolator getTrajectory() const;
 
-    /// The keyframes: robot pose, and the keyframe's edges as a CObservationPointCloud of a
-    /// CColouredPointsMap.
+    /// The keyframes: robot pose, and the keyframe's edges as it saw them (pseudo-edges too) as a
+    /// CObservationPointCloud of a CColouredPointsMap.
     void getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out) const;
     unsigned int getCurrentlyBuiltMapSize() const;
     void saveCurrentMapToFile(const std::string& simplemap_file) const;
 
-    /// All edges as coloured points in the world.
+    /// The edges as coloured points in the world, without pseudo-edges; in mode ba fused over all keyframes.
     mrpt::maps::CColouredPointsMap::Ptr getMap() const;
 
-    /// Edges, trajectory and keyframes, see buildScene().
+    /// Edges, trajectory and keyframes, in mode ba also pseudo-edges and the co-visibility, see buildScene().
     compat::Scene::Ptr getScene() const;
 
     /// Time spent per stage.

@@ -14,6 +14,9 @@ namespace roevo {
 /// What a scene shows; all in the same world.
 struct SceneContent {
     EdgeMap map;
+    EdgeMap
+        keyframe_edges;  ///< each keyframe's own, numbered by cluster, for the co-visibility; may be empty
+    std::vector<ColouredPoint> semi_dense;  ///< may be empty
     std::vector<StampedPose> trajectory;
     std::vector<KeyframeInfo> keyframes;
     PinholeCamera camera;                ///< shape of the keyframe frusta
@@ -26,6 +29,9 @@ struct SceneContent {
 /// Names of the objects in a scene, for programs that look for them.
 struct SceneNames {
     static constexpr const char* kEdges = "edges";
+    static constexpr const char* kPseudoEdges = "pseudo_edges";
+    static constexpr const char* kCovisibility = "covisibility";
+    static constexpr const char* kSemiDense = "semi_dense";
     static constexpr const char* kTrajectory = "trajectory";
     static constexpr const char* kReference = "reference";
     static constexpr const char* kKeyframes = "keyframes";
@@ -33,15 +39,23 @@ struct SceneNames {
     static constexpr const char* kGround = "ground";
 };
 
-/// Coloured edge points (CPointCloudColoured), trajectory and reference as tubes, keyframe frusta as lines
-/// and as thin tubes (offscreen rendering ignores line widths), a ground grid, and a camera that sees it all.
+/// The map's layers (each a CPointCloudColoured, only there when it has points, except for the edges):
+/// - edges: those that are no pseudo-edges, with points put in between so that they look like lines, and
+///   fainter where the map trusts them less;
+/// - pseudo_edges (hidden): orange where observations are spread, magenta where edges vanish;
+/// - covisibility (hidden): the keyframes' edges, one colour for those that show the same edge, light grey
+///   where no other keyframe shows it;
+/// - semi_dense (hidden): the surface next to the edges.
+/// Besides, trajectory and reference as tubes, keyframe frusta as lines and as thin tubes (offscreen
+/// rendering ignores line widths), a ground grid, and a camera that sees it all.
 compat::Scene::Ptr buildScene(const SceneContent& content);
 
 /// Writes a .3Dscene, which appears when whole. @throws std::runtime_error
 void saveScene(const std::string& file, const compat::Scene& scene);
 
-/// Writes the edge points, in the map's own frame, as binary PLY (x y z float, red green blue uchar); appears
-/// when whole.
+/// Writes all edge points, in the map's own frame, as binary PLY; appears when whole. Of each point: x y z
+/// (float), red green blue (uchar), and of its edge: confidence (float, 0..1), views (int, keyframes that see
+/// it), verdict (uchar, as in EdgeVerdict).
 /// @throws std::runtime_error
 void savePly(const std::string& file, const EdgeMap& map);
 
