@@ -12,7 +12,7 @@ roevo_test(test_core_tracking
 # Ceres solves the bundle adjustment once more, as an independent oracle.
 find_package(Ceres REQUIRED)
 roevo_test(test_core_mapping
-  SOURCES core/test_disjoint_set.cpp core/test_covisibility.cpp
+  SOURCES core/test_disjoint_set.cpp core/test_covisibility.cpp core/test_semi_dense.cpp
   LIBS roevo Ceres::ceres)
 # One ctest entry per suite, since the cases of a suite share a rendered sequence.
 add_executable(test_core_odometry core/test_odometry_accuracy.cpp core/test_odometry_status.cpp

@@ -105,10 +105,12 @@ std::vector<StampedPose> keyframePoses(const RunReport& report) {
     return poses;
 }
 
-void writeMap(const fs::path& dir, const RunReport& report, const EdgeMap& map,
+void writeMap(const fs::path& dir, const RunReport& report, const EdgeMap& map, const Odometry& odometry,
               std::vector<StampedPose> reference) {
     SceneContent content;
     content.map = map;
+    // The other modes do not tell which edges are the same
+    if (report.mode == Mode::kBundleAdjustment) content.keyframe_edges = odometry.keyframeEdges();
     content.trajectory = report.trajectory;
     content.keyframes = report.keyframes;
     content.camera = report.camera.undistorted();
@@ -158,7 +160,7 @@ RunReport runOdometry(const RunSettings& settings) {
         writeTumTrajectory((dir / "trajectory.txt").string(), report.trajectory);
         writeTumTrajectory((dir / "trajectory_live.txt").string(), livePoses(report));
         writeTumTrajectory((dir / "keyframes.txt").string(), keyframePoses(report));
-        writeMap(dir, report, map, alignedReference(report, ground_truth));
+        writeMap(dir, report, map, odometry, alignedReference(report, ground_truth));
     }
     saveConfigFile((dir / "config_used.ini").string(), odometry.options());
     writeTextAtomically((dir / "frames.csv").string(), framesCsv(report));
