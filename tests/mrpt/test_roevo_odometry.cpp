@@ -8,6 +8,7 @@
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_mrpt/roevo_odometry.h"
+#include "roevo_mrpt/scene_builder.h"
 
 namespace roevo {
 namespace {
@@ -94,6 +95,50 @@ TEST_F(RoevoOdometryTest, TheSimpleMapHoldsTheMapsPoints) {
         rebuilt.getPoint(i, b[0], b[1], b[2]);
         for (int axis = 0; axis < 3; axis++) EXPECT_NEAR(a[axis], b[axis], 1e-4);
     }
+}
+
+TEST_F(RoevoOdometryTest, OnlyBundleAdjustmentTellsWhichEdgesAreTheSame) {
+    for (const Mode mode : {Mode::kTracking, Mode::kBundleAdjustment}) {
+        odometry_.options.odometry.mode = mode;
+        odometry_.initialize();
+        odometry_.processObservation(*scan_);
+        const auto scene = odometry_.getScene();
+        EXPECT_TRUE(scene->getByName(SceneNames::kEdges));
+        EXPECT_EQ(scene->getByName(SceneNames::kCovisibility) != nullptr, mode == Mode::kBundleAdjustment);
+    }
+}
+
+TEST_F(RoevoOdometryTest, TheMapLeavesOutPseudoEdgesTheSimpleMapDoesNot) {
+    odometry_.options.odometry.mode = Mode::kBundleAdjustment;
+    odometry_.options.odometry.keyframe.min_matched_ratio = 1;  // many keyframes
+    odometry_.processObservation(*scan_);
+    // The left third of what the first keyframe sees is not seen again
+    cv::Mat image = scan_->intensityImage.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
+    image.colRange(0, image.cols / 3).setTo(128);
+    scan_->intensityImage = mrpt::img::CImage(image, mrpt::img::DEEP_COPY);
+    for (int i = 1; i < 10; i++) odometry_.processObservation(*laterScan(*scan_, 0.033 * i));
+
+    std::size_t pseudo = 0, kept = 0, of_keyframes = 0, in_simple_map = 0;
+    for (const MapEdge& edge : odometry_.odometry()->map())
+        (isPseudo(edge.verdict) ? pseudo : kept) += edge.points.size();
+    for (const MapEdge& edge : odometry_.odometry()->keyframeEdges()) of_keyframes += edge.points.size();
+    EXPECT_GT(pseudo, 100u);
+    EXPECT_EQ(odometry_.getMap()->size(), kept);
+    EXPECT_TRUE(odometry_.getScene()->getByName(SceneNames::kPseudoEdges));
+
+    mrpt::maps::CSimpleMap map;
+    odometry_.getCurrentlyBuiltMap(map);
+    EXPECT_GT(map.size(), 3u);
+    for (std::size_t i = 0; i < map.size(); i++) {
+        mrpt::poses::CPose3DPDF::Ptr pose;
+        mrpt::obs::CSensoryFrame::Ptr frame;
+        map.get(i, pose, frame);
+        mrpt::maps::CColouredPointsMap cloud;
+        frame->insertObservationsInto(cloud);
+        in_simple_map += cloud.size();
+    }
+    EXPECT_EQ(in_simple_map, of_keyframes);
+    EXPECT_GT(of_keyframes, kept + pseudo);
 }
 
 TEST_F(RoevoOdometryTest, SensoryFramesAndStartPosesOfMrpt) {
