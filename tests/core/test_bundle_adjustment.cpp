@@ -1,0 +1,387 @@
+// Bundle adjustment of a window: what it converges to, how fast, and against an independent solver.
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+#include <gtest/gtest.h>
+
+#include "core/support/mapping_world.h"
+#include "roevo/mapping/bundle_adjustment.h"
+
+namespace roevo {
+namespace {
+
+using namespace testing;
+
+constexpr double kFewMillimetres = 0.004, kThirdOfADegree = 0.3 * kDegree;
+
+class BundleAdjustment : public ::testing::Test {
+  protected:
+    void SetUp() override { look(walkThrough(room(), 6)); }
+
+    void look(std::vector<TestKeyframe> made) {
+        made_ = std::move(made);
+        truth_ = windowOf(made_);
+        window_ = truth_;
+        edges_ = fuse(window_, clustersByCurve(made_));
+    }
+    /// Poses off the truth, and edges as they are fused at those.
+    void drift(unsigned seed = 1, double share = 1) {
+        std::mt19937 random(seed);
+        window_ = truth_;
+        disturb(window_, random, share * kFewMillimetres, share * kThirdOfADegree);
+        edges_ = fuse(window_, clustersByCurve(made_));
+    }
+    BundleAdjuster adjuster() const { return {mapping_, sensor_, mappingCamera()}; }
+    RefinementResult refine(int iterations, const std::vector<RelativePrior>& priors = {}) {
+        return adjuster().refine(window_, edges_, priors, iterations);
+    }
+    /// Single iterations do not stop at the image motion that is too small to matter.
+    double refineToTheEnd(int iterations) {
+        double scale = 0;
+        for (int k = 0; k < iterations; ++k) scale = refine(1).scale;
+        return scale;
+    }
+    /// Iterations until all positions are within `bound` of the truth.
+    int iterationsTo(double bound, int most) {
+        for (int k = 1; k <= most; ++k) {
+            refine(1);
+            if (positionError(window_) < bound) return k;
+        }
+        return most + 1;
+    }
+
+    MappingOptions mapping_;
+    SensorOptions sensor_;
+    std::vector<TestKeyframe> made_;
+    std::vector<WindowKeyframe> truth_, window_;
+    FusedEdges edges_;
+};
+
+TEST_F(BundleAdjustment, ExactPosesStay) {
+    for (const bool joint : {true, false}) {
+        mapping_.joint_refinement = joint;
+        window_ = truth_;
+        const FusedEdges before = edges_;
+        const RefinementResult result = refine(10);
+        EXPECT_LT(positionError(window_), 1e-6);
+        EXPECT_LT(rotationError(window_), 1e-6);
+        EXPECT_EQ(result.iterations, 1) << "still at once";
+        for (std::size_t p = 0; p < edges_.points.size(); ++p)
+            ASSERT_LT((edges_.points[p] - before.points[p]).norm(), 1e-5);
+        for (std::size_t s = 0; s < window_.size(); ++s)
+            EXPECT_GT(result.inliers[s], 0.99 * static_cast<double>(made_[s].keyframe.size()));
+    }
+}
+
+TEST_F(BundleAdjustment, DriftedPosesConvergeToTheTruth) {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        drift(seed);
+        ASSERT_GT(positionError(window_), 1e-3);
+        refine(20);
+        EXPECT_LT(positionError(window_), 2e-4) << seed;
+        EXPECT_LT(rotationError(window_), 1e-4) << seed;
+    }
+}
+
+TEST_F(BundleAdjustment, JointNeedsFewerIterationsThanAlternating) {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        mapping_.joint_refinement = true;
+        drift(seed);
+        const int joint = iterationsTo(5e-4, 8);
+        EXPECT_LE(joint, 4) << seed;
+        mapping_.joint_refinement = false;
+        drift(seed);
+        EXPECT_GT(iterationsTo(5e-4, 4 * joint), 4 * joint) << seed;
+    }
+}
+
+TEST_F(BundleAdjustment, AlternatingConvergesFromASmallDrift) {
+    mapping_.joint_refinement = false;
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        drift(seed, 0.25);
+        ASSERT_GT(positionError(window_), 1e-3);
+        refineToTheEnd(100);
+        EXPECT_LT(positionError(window_), 5e-5) << seed;
+        EXPECT_LT(rotationError(window_), 3e-5) << seed;
+    }
+}
+
+TEST_F(BundleAdjustment, AWindowThatDriftedAsAWholeComesBack) {
+    for (const double metres : {0.005, 0.01, 0.02}) {
+        window_ = truth_;
+        for (auto& view : window_) {
+            if (!view.fixed) view.T_world_camera.translation() += Eigen::Vector3d(metres, metres / 2, 0);
+        }
+        edges_ = fuse(window_, clustersByCurve(made_));
+        refine(20);
+        EXPECT_LT(positionError(window_), 2e-4) << metres;
+    }
+}
+
+// Fails: those that drifted agree among themselves before they are back, the spread shrinks with them, and
+// the observations of the fixed keyframe are then outliers for ever (372 of 1397 left with seed 1).
+TEST_F(BundleAdjustment, DISABLED_AlternatingHoldsOnToTheFixedKeyframe) {
+    mapping_.joint_refinement = false;
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        drift(seed);
+        refineToTheEnd(100);
+        EXPECT_LT(positionError(window_), 5e-4) << seed;
+        EXPECT_GT(refine(1).inliers[0], 0.9 * static_cast<double>(made_[0].keyframe.size())) << seed;
+    }
+}
+
+TEST_F(BundleAdjustment, OtherSamplesOfTheCurvesBiasNothing) {
+    // Fused points then lie up to half a step beside the observed ones, along the edge
+    look(walkThrough(room(), 6, true));
+    refineToTheEnd(30);
+    EXPECT_LT(positionError(window_), 1e-4);
+    EXPECT_LT(rotationError(window_), 3e-5);
+}
+
+TEST_F(BundleAdjustment, FixedKeyframesNeverMove) {
+    drift();
+    window_[3].fixed = true;
+    window_[3].T_world_camera = truth_[3].T_world_camera;
+    const auto before = window_;
+    refine(8);
+    for (const std::size_t s : {0U, 3U})
+        EXPECT_EQ(window_[s].T_world_camera.matrix(), before[s].T_world_camera.matrix()) << s;
+    EXPECT_LT(positionError(window_), 2e-4);
+
+    drift();
+    for (auto& view : window_) view.fixed = true;
+    const auto all = window_;
+    const RefinementResult result = refine(3);
+    for (std::size_t s = 0; s < all.size(); ++s) {
+        EXPECT_EQ(window_[s].T_world_camera.matrix(), all[s].T_world_camera.matrix());
+        EXPECT_GT(result.inliers[s], 0);
+    }
+}
+
+TEST_F(BundleAdjustment, ARigidMotionOfTheWorldMovesTheResultAlong) {
+    Vector6d xi;
+    xi << 4, -7, 2, 0.9, -1.4, 0.6;
+    const Pose motion = poseIncrement(xi);
+    drift();
+    auto moved = window_;
+    FusedEdges moved_edges = edges_;
+    for (auto& view : moved) view.T_world_camera = motion * view.T_world_camera;
+    for (auto& p : moved_edges.points) p = motion * p;
+    // On the way there they differ, since rotations are about the world's origin
+    for (int k = 0; k < 30; ++k) adjuster().refine(moved, moved_edges, {}, 1);
+    refineToTheEnd(30);
+    for (std::size_t s = 0; s < window_.size(); ++s) {
+        const Pose expected = motion * window_[s].T_world_camera;
+        EXPECT_LT((expected.matrix() - moved[s].T_world_camera.matrix()).norm(), 2e-6) << s;
+    }
+}
+
+TEST_F(BundleAdjustment, AGrossOutlierDoesNoHarm) {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+        SetUp();
+        drift(seed);
+        OrganizedEdges& image = made_[3].keyframe.image;
+        for (std::int32_t i = image.begin[0]; i < image.begin[1]; ++i)
+            image.y[static_cast<std::size_t>(i)] += 20;
+        refine(8);
+        EXPECT_LT(positionError(window_), 3e-4);
+        EXPECT_LT(rotationError(window_), 2e-4);
+    }
+}
+
+TEST_F(BundleAdjustment, AKeyframeWithoutObservationsStaysAndStaysFinite) {
+    std::vector<TestKeyframe> made = walkThrough(room(), 4);
+    made.push_back(makeKeyframe(4, placeOnPath(4), room(), {}));
+    made.insert(made.begin() + 2,
+                makeKeyframe(5, placeOnPath(5), {segment({-0.1, 0, 1.5}, {0.1, 0, 1.5})}, {{0}}));
+    made[2].curve_of_edge = {99};
+    look(std::move(made));
+    drift();
+    const auto before = window_;
+    const RefinementResult result = refine(8);
+    for (const std::size_t s : {2U, 5U}) {
+        EXPECT_LT((window_[s].T_world_camera.matrix() - before[s].T_world_camera.matrix()).norm(), 1e-12);
+    }
+    EXPECT_EQ(result.inliers[5], 0);
+    for (const std::size_t s : {1U, 3U, 4U}) {
+        const Pose error = made_[s].keyframe.T_world_camera.inverse() * window_[s].T_world_camera;
+        EXPECT_LT(error.translation().norm(), 3e-4) << s;
+    }
+}
+
+TEST_F(BundleAdjustment, NothingToRefine) {
+    std::vector<WindowKeyframe> none;
+    FusedEdges no_edges;
+    EXPECT_EQ(adjuster().refine(none, no_edges, {}, 5).iterations, 0);
+    adjuster().judge(none, no_edges);
+    // One keyframe alone, fixed or not
+    for (const bool fixed : {true, false}) {
+        std::vector<WindowKeyframe> one{truth_[1]};
+        one[0].fixed = fixed;
+        FusedEdges own = fuse(one, {made_[1].curve_of_edge});
+        adjuster().refine(one, own, {}, 5);
+        EXPECT_LT((one[0].T_world_camera.matrix() - truth_[1].T_world_camera.matrix()).norm(), 1e-12);
+    }
+    // No iterations
+    drift();
+    const auto before = window_;
+    EXPECT_EQ(refine(0).iterations, 0);
+    // All edges are pseudo-edges
+    std::fill(edges_.verdicts.begin(), edges_.verdicts.end(), EdgeVerdict::kSpread);
+    refine(5);
+    for (std::size_t s = 0; s < window_.size(); ++s)
+        EXPECT_LT((window_[s].T_world_camera.matrix() - before[s].T_world_camera.matrix()).norm(), 1e-12);
+}
+
+TEST_F(BundleAdjustment, WithoutDepthOnlyTheScaleIsFree) {
+    mapping_.depth_weight = 0;
+    drift(2);
+    refineToTheEnd(40);
+    // Positions relative to the fixed first camera are the true ones but for one factor
+    const Eigen::Vector3d origin = truth_[0].T_world_camera.translation();
+    const double scale = (window_[5].T_world_camera.translation() - origin).norm() /
+                         (truth_[5].T_world_camera.translation() - origin).norm();
+    EXPECT_NEAR(scale, 1, 0.2);
+    for (std::size_t s = 1; s < window_.size(); ++s) {
+        const Eigen::Vector3d expected = scale * (truth_[s].T_world_camera.translation() - origin);
+        const Eigen::Vector3d found = window_[s].T_world_camera.translation() - origin;
+        EXPECT_LT((found - expected).norm(), 3e-4) << s;
+    }
+    EXPECT_LT(rotationError(window_), 2e-4);
+}
+
+TEST_F(BundleAdjustment, APriorPlacesAKeyframeThatSeesNothing) {
+    std::vector<TestKeyframe> made = walkThrough(room(), 3);
+    for (int k = 3; k < 5; ++k) made.push_back(makeKeyframe(k, placeOnPath(k), room(), {}));
+    look(std::move(made));
+    drift();
+    std::vector<RelativePrior> priors;
+    for (const int to : {3, 4}) {  // 4 hangs on 3, which hangs on 2, which is refined
+        RelativePrior prior;
+        prior.from = to - 1;
+        prior.to = to;
+        prior.T_from_to = truth_[static_cast<std::size_t>(prior.from)].T_world_camera.inverse() *
+                          truth_[static_cast<std::size_t>(to)].T_world_camera;
+        prior.information = 1e6 * Matrix6d::Identity();
+        priors.push_back(prior);
+    }
+    for (int k = 0; k < 15; ++k) refine(1, priors);
+    const Pose expected = window_[2].T_world_camera * priors[0].T_from_to;
+    EXPECT_LT((window_[3].T_world_camera.matrix() - expected.matrix()).norm(), 1e-6);
+    EXPECT_LT((window_[4].T_world_camera.matrix() - (expected * priors[1].T_from_to).matrix()).norm(), 1e-6);
+    EXPECT_LT(positionError(window_), 5e-4);
+}
+
+/// One observation for Ceres: the pose is T_camera_world (angle-axis, translation).
+struct CeresObservation {
+    PinholeCamera camera;
+    Eigen::Vector2d measured, normal;
+    double across, along, depth;  // factors of the two residuals; measured depth
+
+    template <class T>
+    bool operator()(const T* pose, const T* point, T* residual) const {
+        T q[3];
+        ceres::AngleAxisRotatePoint(pose, point, q);
+        for (int k = 0; k < 3; ++k) q[k] += pose[3 + k];
+        const T u = camera.fx * q[0] / q[2] + camera.cx, v = camera.fy * q[1] / q[2] + camera.cy;
+        residual[0] = across * (normal.x() * (u - measured.x()) + normal.y() * (v - measured.y()));
+        residual[1] = along * (q[2] - depth);
+        return true;
+    }
+};
+
+/// Camera centres of the window by Ceres, from where the poses and points are now. No robust loss.
+std::vector<Eigen::Vector3d> solveWithCeres(const std::vector<WindowKeyframe>& window,
+                                            const FusedEdges& edges, const MappingOptions& mapping,
+                                            const SensorOptions& sensor, double scale) {
+    std::vector<std::array<double, 6>> poses(window.size());
+    std::vector<Eigen::Vector3d> points = edges.points;
+    ceres::Problem problem;
+    for (std::size_t s = 0; s < window.size(); ++s) {
+        const Pose T = window[s].T_world_camera.inverse();
+        const Eigen::AngleAxisd turn(T.linear());
+        for (int k = 0; k < 3; ++k) {
+            poses[s][static_cast<std::size_t>(k)] = turn.angle() * turn.axis()[k];
+            poses[s][static_cast<std::size_t>(k) + 3] = T.translation()[k];
+        }
+        problem.AddParameterBlock(poses[s].data(), 6);
+        if (window[s].fixed) problem.SetParameterBlockConstant(poses[s].data());
+    }
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const auto first = static_cast<std::size_t>(edges.observation_begin[p]);
+        const auto end = static_cast<std::size_t>(edges.observation_begin[p + 1]);
+        if (end - first < 2) continue;
+        for (std::size_t k = first; k < end; ++k) {
+            const auto slot = static_cast<std::size_t>(edges.observations[k].slot);
+            const auto i = static_cast<std::size_t>(edges.observations[k].point);
+            const MapKeyframe& keyframe = *window[slot].keyframe;
+            const double trust = std::sqrt(static_cast<double>(keyframe.weight[i]));
+            const double depth = keyframe.z[i];
+            // A millimetre is the least deviation of a depth
+            const double sigma = std::hypot(sensor.depth_noise * depth * depth, 1e-3);
+            problem.AddResidualBlock(
+                new ceres::AutoDiffCostFunction<CeresObservation, 2, 6, 3>(
+                    new CeresObservation{mappingCamera(),
+                                         {keyframe.image.x[i], keyframe.image.y[i]},
+                                         {keyframe.image.normal_x[i], keyframe.image.normal_y[i]},
+                                         trust / scale,
+                                         trust * std::sqrt(mapping.depth_weight) / sigma,
+                                         depth}),
+                nullptr, poses[slot].data(), points[p].data());
+        }
+    }
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::SPARSE_SCHUR;
+    options.max_num_iterations = 100;
+    options.function_tolerance = 1e-16;
+    options.gradient_tolerance = 1e-14;
+    options.parameter_tolerance = 1e-14;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    EXPECT_TRUE(summary.IsSolutionUsable()) << summary.FullReport();
+    std::vector<Eigen::Vector3d> centres;
+    for (const auto& pose : poses) {
+        const double back[3] = {-pose[0], -pose[1], -pose[2]}, t[3] = {-pose[3], -pose[4], -pose[5]};
+        Eigen::Vector3d centre;
+        ceres::AngleAxisRotatePoint(back, t, centre.data());
+        centres.push_back(centre);
+    }
+    return centres;
+}
+
+TEST_F(BundleAdjustment, AgreesWithCeresOnNoisyKeyframes) {
+    for (unsigned seed = 1; seed <= 2; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> normal;
+        SetUp();
+        for (auto& made : made_) {
+            MapKeyframe& keyframe = made.keyframe;
+            double bias = 0;
+            for (std::size_t i = 0; i < keyframe.size(); ++i) {
+                // Errors of an edge go together. So small that all weights of the t-distribution are alike
+                if (i == 0 || keyframe.image.edge_of[i] != keyframe.image.edge_of[i - 1])
+                    bias = 0.01 * normal(random);
+                const double error = bias + 0.003 * normal(random);
+                keyframe.image.x[i] += static_cast<float>(error) * keyframe.image.normal_x[i];
+                keyframe.image.y[i] += static_cast<float>(error) * keyframe.image.normal_y[i];
+                keyframe.z[i] += static_cast<float>(2e-4 * normal(random));
+                keyframe.weight[i] = static_cast<float>(uniform(random, 0.2, 1));
+            }
+        }
+        // Associations are those of the true poses: false ones make residuals that weigh differently
+        disturb(window_, random, kFewMillimetres, kThirdOfADegree);
+        mapping_.chi2 = mapping_.depth_chi2 = 1e9;
+        const double scale = refineToTheEnd(600);
+        const auto centres = solveWithCeres(truth_, edges_, mapping_, sensor_, scale);
+        double moved = 0, apart = 0;
+        for (std::size_t s = 1; s < window_.size(); ++s) {
+            const Eigen::Vector3d found = window_[s].T_world_camera.translation();
+            moved = std::max(moved, (centres[s] - truth_[s].T_world_camera.translation()).norm());
+            apart = std::max(apart, (centres[s] - found).norm());
+        }
+        EXPECT_GT(moved, 2e-5) << "the noise must matter for the comparison to mean something";
+        EXPECT_LT(apart, 0.01 * moved) << "weights differ by up to 1 %";
+    }
+}
+
+}  // namespace
+}  // namespace roevo

@@ -1,0 +1,201 @@
+// The mapper as a whole: keyframes go in with drift, and come out at their places.
+#include <gtest/gtest.h>
+
+#include "core/support/mapping_world.h"
+#include "roevo/mapping/local_mapper.h"
+
+namespace roevo {
+namespace {
+
+using namespace testing;
+
+class Mapper : public ::testing::Test {
+  protected:
+    /// Keyframe at its true place, or off it by `drift`.
+    static MapKeyframe keyframeAt(int id, int place, const Pose& drift = Pose::Identity()) {
+        const auto curves = room();
+        TestKeyframe made =
+            makeKeyframe(id, placeOnPath(place), curves, seeAll(curves, std::fmod(0.37 * id, 1.0)));
+        made.keyframe.T_world_camera = made.keyframe.T_world_camera * drift;
+        return made.keyframe;
+    }
+    /// Tracked from the one before: the pose is that of the parent, as the mapper has it, times the motion.
+    static MapKeyframe tracked(int id, int place, int from, const Pose& error) {
+        MapKeyframe keyframe = keyframeAt(id, place);
+        keyframe.parent = id - 1;
+        keyframe.T_parent_camera = placeOnPath(from).inverse() * placeOnPath(place) * error;
+        return keyframe;
+    }
+    static double errorOf(const LocalMapper& mapper, int id, int place) {
+        const Pose& found = mapper.keyframes().at(id).T_world_camera;
+        return (found.translation() - placeOnPath(place).translation()).norm();
+    }
+
+    OdometryOptions options_;
+};
+
+TEST_F(Mapper, DriftedKeyframesArePulledBack) {
+    LocalMapper mapper(mappingCamera(), options_);
+    std::mt19937 random(1);
+    double chained = 0;
+    Pose dead_reckoned = placeOnPath(0);
+    for (int k = 0; k < 10; ++k) {
+        const Pose error = randomPose(random, 0.003, 0.2 * kDegree);
+        const MapKeyframe keyframe = k == 0 ? keyframeAt(0, 0) : tracked(k, k, k - 1, error);
+        if (k > 0) dead_reckoned = dead_reckoned * keyframe.T_parent_camera;
+        const MapUpdate update = mapper.insert(keyframe);
+        EXPECT_EQ(update.keyframe, k);
+        EXPECT_EQ(update.reason, "");
+        EXPECT_EQ(update.poses.size(), static_cast<std::size_t>(k)) << "all but the first";
+        for (const auto& [id, pose] : update.poses)
+            EXPECT_EQ(pose.matrix(), mapper.keyframes().at(id).T_world_camera.matrix());
+        chained = std::max(chained, (dead_reckoned.translation() - placeOnPath(k).translation()).norm());
+    }
+    double worst = 0;
+    for (int k = 0; k < 10; ++k) worst = std::max(worst, errorOf(mapper, k, k));
+    RecordProperty("chained_mm", std::to_string(1000 * chained));
+    RecordProperty("mapped_mm", std::to_string(1000 * worst));
+    EXPECT_GT(chained, 0.004);
+    EXPECT_LT(worst, 4e-4);
+}
+
+TEST_F(Mapper, TheSameKeyframesGiveTheSameBits) {
+    const auto run = [&] {
+        LocalMapper mapper(mappingCamera(), options_);
+        std::mt19937 random(2);
+        std::vector<double> numbers;
+        for (int k = 0; k < 5; ++k) {
+            const MapUpdate update = mapper.insert(
+                k == 0 ? keyframeAt(0, 0) : tracked(k, k, k - 1, randomPose(random, 0.003, 0.004)));
+            for (const auto& [id, pose] : update.poses)
+                numbers.insert(numbers.end(), pose.data(), pose.data() + 16);
+            numbers.insert(numbers.end(), update.depth_ratio.begin(), update.depth_ratio.end());
+        }
+        for (const MapEdge& edge : mapper.fusedMap()) {
+            numbers.push_back(edge.cluster);
+            for (const auto& p : edge.points) numbers.insert(numbers.end(), p.data(), p.data() + 3);
+        }
+        return numbers;
+    };
+    const auto first = run();
+    EXPECT_GT(first.size(), 1000U);
+    EXPECT_EQ(first, run());
+}
+
+TEST_F(Mapper, AKeyframeThatSeesNothingOfTheMapIsLeftWithAReason) {
+    LocalMapper mapper(mappingCamera(), options_);
+    for (int k = 0; k < 3; ++k) mapper.insert(keyframeAt(k, k));
+    const std::vector<Curve> elsewhere{segment({-0.3, 0.32, 2.0}, {0.05, 0.45, 2.0})};
+    MapKeyframe stranger = makeKeyframe(3, placeOnPath(3), elsewhere, seeAll(elsewhere)).keyframe;
+    const MapUpdate update = mapper.insert(stranger);
+    EXPECT_NE(update.reason.find("keyframe 3"), std::string::npos) << update.reason;
+    EXPECT_EQ(mapper.keyframes().at(3).T_world_camera.matrix(), stranger.T_world_camera.matrix());
+    for (const auto& [id, pose] : update.poses) EXPECT_NE(id, 3);
+    for (int k = 0; k < 3; ++k) EXPECT_LT(errorOf(mapper, k, k), 2e-4);
+}
+
+TEST_F(Mapper, AKeyframeThatJumpsTooFarIsLeftWithAReason) {
+    // Where it was tracked to is half a metre wrong, and that is said to be certain
+    options_.mapping.prior_weight = 1;
+    LocalMapper mapper(mappingCamera(), options_);
+    for (int k = 0; k < 3; ++k) mapper.insert(keyframeAt(k, k));
+    MapKeyframe sound = keyframeAt(3, 3);
+    ASSERT_TRUE(mapper.insert(sound).reason.empty());
+    MapKeyframe torn = keyframeAt(4, 4);
+    torn.parent = 3;
+    torn.T_parent_camera = placeOnPath(3).inverse() * placeOnPath(4);
+    torn.T_parent_camera.translation().z() += 0.5;
+    torn.parent_information = 1e12 * Matrix6d::Identity();
+    const MapUpdate update = mapper.insert(torn);
+    EXPECT_NE(update.reason.find("left as it was"), std::string::npos) << update.reason;
+    for (int k = 0; k < 3; ++k) EXPECT_LT(errorOf(mapper, k, k), 2e-3);
+}
+
+TEST_F(Mapper, ComingBackFindsTheOldKeyframes) {
+    options_.mapping.window = 4;
+    double with = 0, without = 0;
+    for (const bool reuse : {true, false}) {
+        options_.mapping.reuse_keyframes = reuse;
+        LocalMapper mapper(mappingCamera(), options_);
+        // Away to where other curves are, and back; the drift of 12 mm comes in where the views change
+        const std::vector<Sighting> here{{0}, {1}, {2}, {3}}, there{{4}, {5}, {6}, {7}};
+        const auto curves = room();
+        Pose drift = Pose::Identity();
+        drift.translation() << 0.009, -0.006, 0.005;
+        MapUpdate update;
+        for (int id = 0; id < 12; ++id) {
+            const bool away = id >= 4 && id < 11;
+            const int place = away ? 4 : id % 4;
+            TestKeyframe made =
+                makeKeyframe(id, placeOnPath(id == 11 ? 1 : place), curves, away ? there : here);
+            if (id >= 4) made.keyframe.T_world_camera = drift * made.keyframe.T_world_camera;
+            update = mapper.insert(made.keyframe);
+        }
+        EXPECT_EQ(update.reused > 0, reuse);
+        EXPECT_LE(update.reused, options_.mapping.max_reused);
+        (reuse ? with : without) = errorOf(mapper, 11, 1);
+    }
+    EXPECT_LT(with, 5e-4);
+    EXPECT_GT(without, 0.011);
+}
+
+TEST_F(Mapper, ReusedKeyframesHoldStill) {
+    options_.mapping.window = 3;
+    LocalMapper mapper(mappingCamera(), options_);
+    for (int k = 0; k < 7; ++k) mapper.insert(keyframeAt(k, k % 3));
+    Pose off = Pose::Identity();
+    off.translation().x() = 0.005;
+    const auto before = mapper.keyframes();
+    const MapUpdate update = mapper.insert(keyframeAt(7, 1, off));
+    ASSERT_GT(update.reused, 0);
+    for (const auto& [id, pose] : update.poses) EXPECT_GE(id, 5) << "only those of the window move";
+    for (int k = 0; k < 5; ++k)
+        EXPECT_EQ(mapper.keyframes().at(k).T_world_camera.matrix(), before.at(k).T_world_camera.matrix());
+    EXPECT_LT(errorOf(mapper, 7, 1), 5e-4);
+}
+
+TEST_F(Mapper, TheMapHasEveryCurveOnce) {
+    LocalMapper mapper(mappingCamera(), options_);
+    for (int k = 0; k < 6; ++k) mapper.insert(keyframeAt(k, k));
+    const auto curves = room();
+    const EdgeMap map = mapper.fusedMap();
+    ASSERT_EQ(map.size(), curves.size());
+    for (const MapEdge& edge : map) {
+        EXPECT_EQ(edge.views, 6);
+        EXPECT_EQ(edge.verdict, EdgeVerdict::kTrue);
+        ASSERT_EQ(edge.colours.size(), edge.points.size());
+        const auto& curve = curves[edge.colours[0][0]];
+        // Curve 4 runs away from the camera: the depths of samples half a step apart differ most there
+        const double bound = edge.colours[0][0] == 4 ? 1e-3 : 4e-4;
+        for (const auto& p : edge.points) ASSERT_LT(distanceTo(curve, p.cast<double>()), bound);
+    }
+    EXPECT_EQ(mapper.keyframeEdges().size(), 6 * curves.size());
+}
+
+TEST_F(Mapper, RefinedDepthIsNearerToTheTruth) {
+    LocalMapper mapper(mappingCamera(), options_);
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    double before = 0, after = 0;
+    for (int k = 0; k < 6; ++k) {
+        MapKeyframe keyframe = keyframeAt(k, 2 * k);
+        const std::vector<float> truth = keyframe.z;
+        for (std::size_t i = 0; i < keyframe.size(); ++i) {
+            const auto factor = static_cast<float>(1 + 0.004 * normal(random));
+            for (auto* array : {&keyframe.x, &keyframe.y, &keyframe.z}) (*array)[i] *= factor;
+        }
+        const std::vector<float> measured = keyframe.z;
+        const MapUpdate update = mapper.insert(keyframe);
+        if (k < 5) continue;
+        ASSERT_EQ(update.depth_ratio.size(), keyframe.size());
+        ASSERT_EQ(update.source, keyframe.source);
+        for (std::size_t i = 0; i < keyframe.size(); ++i) {
+            before += std::pow(measured[i] / truth[i] - 1, 2);
+            after += std::pow(measured[i] * update.depth_ratio[i] / truth[i] - 1, 2);
+        }
+        EXPECT_LT(std::sqrt(after), 0.8 * std::sqrt(before));
+    }
+}
+
+}  // namespace
+}  // namespace roevo
