@@ -95,20 +95,27 @@ TEST_F(Mapper, AKeyframeThatSeesNothingOfTheMapIsLeftWithAReason) {
 }
 
 TEST_F(Mapper, AKeyframeThatJumpsTooFarIsLeftWithAReason) {
-    // Where it was tracked to is half a metre wrong, and that is said to be certain
-    options_.mapping.prior_weight = 1;
-    LocalMapper mapper(mappingCamera(), options_);
-    for (int k = 0; k < 3; ++k) mapper.insert(keyframeAt(k, k));
-    MapKeyframe sound = keyframeAt(3, 3);
-    ASSERT_TRUE(mapper.insert(sound).reason.empty());
-    MapKeyframe torn = keyframeAt(4, 4);
-    torn.parent = 3;
-    torn.T_parent_camera = placeOnPath(3).inverse() * placeOnPath(4);
-    torn.T_parent_camera.translation().z() += 0.5;
-    torn.parent_information = 1e12 * Matrix6d::Identity();
-    const MapUpdate update = mapper.insert(torn);
-    EXPECT_NE(update.reason.find("left as it was"), std::string::npos) << update.reason;
-    for (int k = 0; k < 3; ++k) EXPECT_LT(errorOf(mapper, k, k), 2e-3);
+    // What is too far goes by the depth: 14 mm are a correction at 2 m and astray at 10 cm
+    Pose off = Pose::Identity();
+    off.translation().z() = 0.014;
+    for (const double depth : {2.0, 0.1}) {
+        LocalMapper mapper(mappingCamera(), options_);
+        for (int k = 0; k < 4; ++k) mapper.insert(keyframeAt(k, k));
+        MapKeyframe drifted = keyframeAt(4, 4, off);
+        drifted.median_depth = depth;
+        const MapUpdate update = mapper.insert(drifted);
+        if (depth > 1) {
+            EXPECT_EQ(update.reason, "");
+            EXPECT_EQ(update.poses.back().first, 4);
+            EXPECT_LT(errorOf(mapper, 4, 4), 4e-4);
+            continue;
+        }
+        EXPECT_NE(update.reason.find("keyframe 4 left as it was: bundle adjustment moved it by 14 mm"),
+                  std::string::npos)
+            << update.reason;
+        EXPECT_EQ(mapper.keyframes().at(4).T_world_camera.matrix(), drifted.T_world_camera.matrix());
+        for (const auto& [id, pose] : update.poses) EXPECT_NE(id, 4);
+    }
 }
 
 TEST_F(Mapper, ComingBackFindsTheOldKeyframes) {
