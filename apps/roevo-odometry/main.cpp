@@ -59,7 +59,8 @@ int run(int argc, char** argv) {
     app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");
     app.add_option("--set", sets, "section.key=value: one option on top of the config; may be repeated")
         ->allow_extra_args(false);
-    app.add_option("--mode", mode, "ct: coarse tracking only; tr: coarse and fine (default)");
+    app.add_option("--mode", mode,
+                   "ct: coarse tracking only; tr: coarse and fine; ba: with local mapping (default)");
     app.add_option(
         "--ground-truth", settings.ground_truth,
         "TUM trajectory to compare with (default: <stem>_groundtruth.txt beside a rawlog, groundtruth.txt "
@@ -67,6 +68,9 @@ int run(int argc, char** argv) {
     app.add_option("--first", settings.first, "Process at most so many frames");
     app.add_option("--skip", settings.skip, "Leave out so many frames at the start");
     app.add_option("--sensor-label", settings.sensor_label, "Rawlogs with several cameras: which one");
+    app.add_flag("--realtime", settings.realtime,
+                 "Frames arrive by the clock and are dropped when tracking is behind; the tracker takes what "
+                 "mapping has ready (results differ from run to run)");
     app.add_flag("--quiet", settings.quiet, "Print errors and warnings only");
     app.add_option("--write-default-config", default_config,
                    "Write all options with their defaults to this file ('-': print) and end");
@@ -80,6 +84,7 @@ int run(int argc, char** argv) {
     if (settings.input.empty()) throw UsageError("--input is required");
     if (settings.output_dir.empty()) throw UsageError("--output is required");
     settings.options = collectOptions(config_file, sets, mode);
+    if (settings.realtime) settings.options.mapping.deterministic = false;
 
     cv::setNumThreads(
         1);  // decoding runs beside tracking already; more threads would blur the times per frame

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
+#include <thread>
 
 #include "evaluation/trajectory_io.h"
 #include "frame_source.h"
@@ -49,15 +50,46 @@ std::size_t expectedFrames(const FrameSource& source, const RunSettings& setting
     return settings.first > 0 ? std::min(left, settings.first) : left;
 }
 
+// Hands frames out at the pace of their stamps, as a camera would.
+class FrameClock {
+  public:
+    // Waits for the frame's time. False when that is past by more than one frame: tracking is behind.
+    bool await(double timestamp) {
+        const auto now = std::chrono::steady_clock::now();
+        if (!started_) {
+            started_ = true;
+            start_ = now;
+            first_ = last_ = timestamp;
+        }
+        const double interval = timestamp - last_;
+        last_ = timestamp;
+        const auto due = start_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                      std::chrono::duration<double>(timestamp - first_));
+        if (now - due > std::chrono::duration<double>(interval) && interval > 0) return false;
+        std::this_thread::sleep_until(due);
+        return true;
+    }
+
+  private:
+    bool started_ = false;
+    std::chrono::steady_clock::time_point start_;
+    double first_ = 0, last_ = 0;  // s
+};
+
 // Feeds every frame to the odometry; the report gets one record for each.
 void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& settings, RunReport& report) {
     Progress progress("tracking", expectedFrames(source, settings), !settings.quiet);
     bool scale_checked = false;
+    FrameClock clock;
     for (SourceFrame frame; source.next(frame);) {
         if (frame.fault.empty() && !scale_checked) {
             if (const std::string fault = depthScaleFault(frame.frame); !fault.empty())
                 throw std::runtime_error(settings.input + ": " + fault);
             scale_checked = true;
+        }
+        if (settings.realtime && frame.fault.empty() && !clock.await(frame.timestamp)) {
+            frame.fault = "dropped: tracking was behind the clock";
+            ++report.dropped;
         }
         const FrameResult result = frame.fault.empty() ? odometry.processFrame(frame.frame) : rejected(frame);
         report.frames.push_back({result, frame.ms_decode});
@@ -90,13 +122,6 @@ std::vector<StampedPose> alignedReference(const RunReport& report,
             pose.timestamp <= report.trajectory.back().timestamp + kDefaultMaxDt)
             aligned.push_back({pose.timestamp, T_world_reference * pose.T_world_camera});
     return aligned;
-}
-
-std::vector<StampedPose> livePoses(const RunReport& report) {
-    std::vector<StampedPose> poses;
-    for (const FrameRecord& f : report.frames)
-        if (f.result.hasPose()) poses.push_back({f.result.timestamp, f.result.T_world_camera});
-    return poses;
 }
 
 std::vector<StampedPose> keyframePoses(const RunReport& report) {
@@ -158,7 +183,7 @@ RunReport runOdometry(const RunSettings& settings) {
     if (failure.empty()) {
         evaluateRun(report, ground_truth);
         writeTumTrajectory((dir / "trajectory.txt").string(), report.trajectory);
-        writeTumTrajectory((dir / "trajectory_live.txt").string(), livePoses(report));
+        writeTumTrajectory((dir / "trajectory_live.txt").string(), odometry.liveTrajectory());
         writeTumTrajectory((dir / "keyframes.txt").string(), keyframePoses(report));
         writeMap(dir, report, map, odometry, alignedReference(report, ground_truth));
     }

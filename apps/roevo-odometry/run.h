@@ -12,6 +12,7 @@ struct RunSettings {
     std::string input, output_dir, ground_truth, sensor_label;
     OdometryOptions options;
     std::size_t first = 0, skip = 0;  ///< process at most `first` frames (0: all) after leaving out `skip`
+    bool realtime = false;            ///< frames arrive by the clock; those that come too early are dropped
     bool quiet = false;
 };
 

@@ -50,13 +50,15 @@ std::string RunReport::failure() const {
 std::string framesCsv(const RunReport& report) {
     std::string csv =
         "timestamp,status,reason,keyframe,edges,points,matched_ratio,inliers,sigma_t_m,sigma_r_deg,"
-        "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total\n";
+        "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total,ms_mapping,ms_waiting,map_correction_m,map_reason\n";
     for (const FrameRecord& f : report.frames) {
         const FrameResult& r = f.result;
         csv += format("%.6f,%s,", r.timestamp, toString(r.status)) + csvField(r.reason) +
-               format(",%d,%d,%d,%.4f,%d,%.6f,%.5f,%.3f,%.3f,%.3f,%.3f,%.3f\n", r.new_keyframe ? 1 : 0,
-                      r.num_edges, r.num_points, r.matched_ratio, r.inliers, r.sigmaTranslation(),
-                      r.sigmaRotationDeg(), f.ms_decode, r.ms.edges, r.ms.coarse, r.ms.fine, r.ms.total);
+               format(",%d,%d,%d,%.4f,%d,%.6f,%.5f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.6f,",
+                      r.new_keyframe ? 1 : 0, r.num_edges, r.num_points, r.matched_ratio, r.inliers,
+                      r.sigmaTranslation(), r.sigmaRotationDeg(), f.ms_decode, r.ms.edges, r.ms.coarse,
+                      r.ms.fine, r.ms.total, r.ms.mapping, r.ms.waiting, r.map_correction) +
+               csvField(r.map_reason) + "\n";
     }
     return csv;
 }

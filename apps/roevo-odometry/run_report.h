@@ -18,11 +18,12 @@ struct FrameRecord {
 struct RunReport {
     std::string input, kind, camera_source, warning, sensor_label;
     PinholeCamera camera;
-    Mode mode = Mode::kTracking;
+    Mode mode = Mode::kBundleAdjustment;
     std::vector<FrameRecord> frames;
     std::vector<StampedPose> trajectory;
     std::vector<KeyframeInfo> keyframes;
     std::size_t map_edges = 0, map_points = 0;
+    std::size_t dropped = 0;  ///< frames that came while tracking was busy (--realtime)
     double wall_seconds = 0;
     std::string ground_truth;              ///< path, empty when there is none
     std::optional<Evaluation> evaluation;  ///< against the ground truth

@@ -2,10 +2,12 @@
 #include <sys/resource.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <opencv2/core/version.hpp>
 
 #include "evaluation/to_json.h"
@@ -45,6 +47,18 @@ std::vector<double> stageTimes(const RunReport& report, const Stage& stage) {
     for (const FrameRecord& f : report.frames)
         if (f.result.hasPose()) times.push_back(stage.time(f));
     return times;
+}
+
+// Times of mapping over the frames with which a keyframe's map took effect, ms.
+std::vector<double> mappingTimes(const RunReport& report) {
+    std::vector<double> times;
+    for (const FrameRecord& f : report.frames)
+        if (f.result.ms.mapping > 0) times.push_back(f.result.ms.mapping);
+    return times;
+}
+
+double sumOf(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 // Reasons of the frames that were not tracked, with how often each occurred.
@@ -88,6 +102,26 @@ Json timingsJson(const RunReport& report) {
     return json;
 }
 
+// What mapping took per keyframe, beside tracking, and how long tracking waited for it.
+Json mappingJson(const RunReport& report) {
+    if (report.mode != Mode::kBundleAdjustment) return nullptr;
+    const auto times = mappingTimes(report);
+    double longest_wait = 0, largest_correction = 0;
+    Json reasons = Json::object();
+    for (const FrameRecord& f : report.frames) {
+        longest_wait = std::max(longest_wait, f.result.ms.waiting);
+        largest_correction = std::max(largest_correction, f.result.map_correction);
+        if (f.result.map_reason.empty()) continue;
+        reasons[f.result.map_reason] = reasons.value(f.result.map_reason, 0) + 1;
+    }
+    return {{"keyframes", times.size()},
+            {"mean_ms", times.empty() ? 0 : sumOf(times) / static_cast<double>(times.size())},
+            {"max_ms", percentile(times, 1)},
+            {"longest_wait_ms", longest_wait},
+            {"largest_correction_m", largest_correction},
+            {"reasons", reasons}};
+}
+
 Json groundTruthJson(const RunReport& report) {
     if (report.ground_truth.empty()) return nullptr;
     Json json = {{"file", report.ground_truth}, {"max_dt_s", kDefaultMaxDt}};
@@ -124,6 +158,8 @@ std::string summaryJson(const RunReport& report) {
     json["camera"] = cameraJson(report);
     json["frames"] = framesJson(report);
     json["timings_ms"] = timingsJson(report);
+    json["mapping"] = mappingJson(report);
+    json["dropped_frames"] = report.dropped;
     json["wall_time_s"] = report.wall_seconds;
     json["memory_peak_mb"] = memoryPeakMb();
     json["path_length_m"] = pathLength(report.trajectory);
@@ -150,6 +186,11 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
     std::printf(
         "time        %.1f ms per frame (median), %.1f ms (95 %%), decoding apart; %.1f s in all, %.0f MB\n",
         percentile(total, 0.5), percentile(total, 0.95), report.wall_seconds, memoryPeakMb());
+    if (const auto times = mappingTimes(report); !times.empty())
+        std::printf("mapping     %.1f ms per keyframe (mean), beside tracking\n",
+                    sumOf(times) / static_cast<double>(times.size()));
+    if (report.dropped > 0)
+        std::printf("dropped     %zu frames came while tracking was busy\n", report.dropped);
     std::printf("path        %.2f m\n", pathLength(report.trajectory));
     std::printf("map         %zu edges, %zu points\n", report.map_edges, report.map_points);
     if (report.evaluation)

@@ -23,15 +23,16 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
 
     EXPECT_EQ(readFile(output() + "/frames.csv").substr(0, 140),
               "timestamp,status,reason,keyframe,edges,points,matched_ratio,inliers,sigma_t_m,sigma_r_deg,"
-              "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total\n100.");
+              "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total,ms_mapping,ms_waiting,"
+              "map_correction_m,map_reason\n100.");
     ASSERT_EQ(rows().size(), 40u);
-    for (const auto& row : rows()) EXPECT_EQ(row.size(), 15u);
+    for (const auto& row : rows()) EXPECT_EQ(row.size(), 19u);
     EXPECT_EQ(status(0), "initialised");
     EXPECT_EQ(readTumTrajectory(output() + "/trajectory.txt").size(), 40u);
     EXPECT_EQ(readTumTrajectory(output() + "/trajectory_live.txt").size(), 40u);
 
     const auto json = summary();
-    EXPECT_EQ(json["mode"], "tr");
+    EXPECT_EQ(json["mode"], "ba");
     EXPECT_EQ(json["frames"]["total"], 40);
     EXPECT_EQ(json["frames"]["ok"], 39);
     EXPECT_EQ(json["camera"]["width"], 320);
@@ -46,12 +47,12 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
 }
 
 TEST_F(OdometryProgram, BothModesRunAndSayWhichTheyAre) {
-    for (const std::string mode : {"ct", "tr"}) {
+    for (const std::string mode : {"ct", "tr", "ba"}) {
         ASSERT_EQ(runFrames(slidingRecording(5), {"--mode", mode}).exit_code, 0);
         EXPECT_EQ(summary()["mode"], mode);
         EXPECT_NE(readFile(output() + "/config_used.ini").find("mode = " + mode), std::string::npos);
     }
-    expectError(run(folder_ / "recording", {"--mode", "ba"}), 2, kName, {"'ba'", "ct, tr"});
+    expectError(run(folder_ / "recording", {"--mode", "dense"}), 2, kName, {"'dense'", "ct, tr, ba"});
 }
 
 TEST_F(OdometryProgram, FirstAndSkipChooseFrames) {

@@ -1,6 +1,7 @@
 #include "roevo/mapping/bundle_adjustment.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,20 @@ constexpr double kStill = 0.005;         ///< px of image motion; smaller steps 
 
 double studentWeight(double squared) {
     return (kStudentNu + 1) / (kStudentNu + squared);
+}
+
+/// Along the edge next to nothing is known, and what there is comes from normals that differ by noise. While
+/// poses move, a little of the known directions' information holds a point: more would hold the poses back.
+/// Where only points are fitted they keep their place along the edge, or they would slide.
+void holdAlongEdge(Eigen::Matrix3d& information, bool firmly) {
+    if (!firmly) {
+        information.diagonal().array() += 1e-6 * information.trace();
+        return;
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions;
+    directions.computeDirect(information);
+    const Eigen::Vector3d least = directions.eigenvectors().col(0);
+    information += (information.trace() * least) * least.transpose();
 }
 
 }  // namespace
@@ -59,27 +74,23 @@ BundleAdjuster::Term BundleAdjuster::linearise(const WindowKeyframe& view, std::
     const double residual = tangentResidual(keyframe, i, q);
     const double squared = residual * residual / (scale_ * scale_);
     const auto trust = static_cast<double>(keyframe.weight[i]);
-    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    if (squared <= options_.chi2) {
-        const double a0 = camera_.fx * nx * inverse, a1 = camera_.fy * ny * inverse;
-        const Eigen::Vector3d a(a0, a1, -(a0 * q.x() + a1 * q.y()) * inverse);
-        const double w = trust * studentWeight(squared) / (scale_ * scale_);
-        A.noalias() += w * a * a.transpose();
-        b += w * residual * a;
-        term.inlier = true;
-    }
+    if (squared > options_.chi2) return term;
+    term.inlier = true;
+    const double a0 = camera_.fx * nx * inverse, a1 = camera_.fy * ny * inverse;
+    const Eigen::Vector3d across = R * Eigen::Vector3d(a0, a1, -(a0 * q.x() + a1 * q.y()) * inverse);
+    const double w = trust * studentWeight(squared) / (scale_ * scale_);
+    term.information.noalias() = (w * across) * across.transpose();
+    term.gradient = (w * residual) * across;
     const double sigma = sensor_.depth_noise * measured * measured;
     const double variance = sigma * sigma + kLeastVariance;
     const double depth_residual = q.z() - measured;
     const double depth_squared = depth_residual * depth_residual / variance;
-    if (term.inlier && depth_squared <= options_.depth_chi2) {
-        const double w = options_.depth_weight * trust * studentWeight(depth_squared) / variance;
-        A(2, 2) += w;
-        b.z() += w * depth_residual;
+    if (depth_squared <= options_.depth_chi2) {
+        const Eigen::Vector3d along = R.col(2);
+        const double v = options_.depth_weight * trust * studentWeight(depth_squared) / variance;
+        term.information.noalias() += (v * along) * along.transpose();
+        term.gradient += (v * depth_residual) * along;
     }
-    term.information = R * A * R.transpose();
-    term.gradient = R * b;
     return term;
 }
 
@@ -141,6 +152,7 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
                  p < static_cast<std::size_t>(edges.begin[edge + 1]); ++p) {
                 const auto first = static_cast<std::size_t>(edges.observation_begin[p]);
                 const auto end = static_cast<std::size_t>(edges.observation_begin[p + 1]);
+                if (end - first < 2) continue;
                 terms.clear();
                 term_slots.clear();
                 Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
@@ -157,8 +169,7 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
                     term_slots.push_back(slot);
                 }
                 if (terms.size() < 2) continue;
-                // Along the edge nothing is known: a little of the known directions' information holds it
-                sum.diagonal().array() += 1e-6 * sum.trace();
+                holdAlongEdge(sum, columns == 0);
                 const Eigen::Matrix3d inverse = sum.inverse();
                 const Eigen::Vector3d step = -inverse * total;  // edge fitting, the inner problem of Eq. (18)
                 edges.points[p] += step;

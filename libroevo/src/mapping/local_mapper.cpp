@@ -9,8 +9,8 @@
 namespace roevo {
 namespace {
 
-constexpr int kRoughIterations = 3;  ///< before edges are judged
-constexpr double kReusedScale = 1;   ///< px of spread that drift may cause at first
+constexpr int kRoughIterations = 3;   ///< before edges are judged
+constexpr double kReusedScale = 0.5;  ///< px of spread that drift may cause at first
 /// Keyframes that see about the same: camera centres nearer than this share of the depth, and turned by less.
 constexpr double kNearDistance = 0.4, kNearDegrees = 30;
 /// A keyframe that bundle adjustment moves by more (share of its depth; degrees) went astray.
@@ -62,7 +62,7 @@ void LocalMapper::buildWindow(int newest, const std::vector<const MapKeyframe*>&
     std::vector<const MapKeyframe*> members = reused;
     std::sort(members.begin(), members.end(),
               [](const MapKeyframe* a, const MapKeyframe* b) { return a->id < b->id; });
-    const std::size_t fixed = std::max<std::size_t>(1, members.size());
+    const std::size_t fixed = members.size() + 1;  // and the oldest of the newest
     const std::vector<const MapKeyframe*> recent = recentOf(newest);
     members.insert(members.end(), recent.rbegin(), recent.rend());
     members.push_back(&keyframes_.at(newest));
@@ -122,9 +122,8 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     graph_.insert(keyframe, recent, camera_, options_.fine.final_radius);
     std::vector<const MapKeyframe*> reused;
     if (options_.mapping.reuse_keyframes) {
-        // What drifted since is found in a wider circle
         reused = nearbyOf(keyframe, recent.size());
-        graph_.insert(keyframe, reused, camera_, options_.fine.search_radius);
+        graph_.insert(keyframe, reused, camera_, options_.fine.final_radius);
     }
 
     MapUpdate update;
