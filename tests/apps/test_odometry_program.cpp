@@ -21,7 +21,8 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
     EXPECT_EQ(std::distance(fs::directory_iterator(output()), fs::directory_iterator()), 8)
         << "and nothing else";
 
-    EXPECT_EQ(readFile(output() + "/frames.csv").substr(0, 140),
+    const std::string csv = readFile(output() + "/frames.csv");
+    EXPECT_EQ(csv.substr(0, csv.find('\n') + 5),
               "timestamp,status,reason,keyframe,edges,points,matched_ratio,inliers,sigma_t_m,sigma_r_deg,"
               "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total,ms_mapping,ms_waiting,"
               "map_correction_m,map_reason\n100.");

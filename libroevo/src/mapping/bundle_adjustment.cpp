@@ -20,6 +20,7 @@ constexpr double kFarOff = 100;          ///< px, for a point that cannot be pro
 constexpr double kLookShare = 0.7;       ///< a keyframe looks at an edge when so much of it is in its image
 constexpr double kSeeShare = 0.3;        ///< and sees it when so much of that is observed
 constexpr double kFrameEvidence = 3;     ///< keyframes that all frames since a keyframe count as
+constexpr std::size_t kScaleStep = 3;    ///< every so manieth point is enough for a median
 constexpr double kStill = 0.005;         ///< px of image motion; smaller steps end the refinement
 
 double studentWeight(double squared) {
@@ -100,7 +101,7 @@ double BundleAdjuster::estimateScale(const std::vector<WindowKeyframe>& window, 
         const auto edge = static_cast<std::size_t>(e);
         if (edges.verdicts[edge] != EdgeVerdict::kTrue) continue;
         for (auto p = static_cast<std::size_t>(edges.begin[edge]);
-             p < static_cast<std::size_t>(edges.begin[edge + 1]); ++p) {
+             p < static_cast<std::size_t>(edges.begin[edge + 1]); p += kScaleStep) {
             const auto first = static_cast<std::size_t>(edges.observation_begin[p]);
             const auto end = static_cast<std::size_t>(edges.observation_begin[p + 1]);
             if (end - first < 2) continue;
