@@ -1,6 +1,7 @@
 #include "roevo/mapping/edge_fusion.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace roevo {
@@ -9,7 +10,7 @@ namespace {
 constexpr std::size_t kMinRun = 4;  ///< points of the shortest run that is stitched
 constexpr std::int32_t kApart = -1;
 /// Farther from the reference than this, a point shows something else.
-constexpr double kReachPixels = 8, kReachSigmas = 8;
+constexpr double kReachPixels = 12.5, kReachSigmas = 8;
 
 }  // namespace
 
@@ -120,10 +121,18 @@ std::size_t EdgeFuser::nearest(const Eigen::Vector3d& p, std::size_t from, bool 
     return best;
 }
 
-bool EdgeFuser::isNear(const Eigen::Vector3d& p, const Eigen::Vector3d& reference, double depth) const {
-    const double across = kReachPixels * depth / focal_length_;
-    const double along = kReachSigmas * depth_noise_ * depth * depth;
-    return (p - reference).squaredNorm() < across * across + along * along;
+bool EdgeFuser::isNear(const Eigen::Vector3d& p, const Eigen::Vector3d& reference,
+                       const Eigen::Vector3d& centre) const {
+    // Depth is noisy along the viewing ray only
+    const Eigen::Vector3d ray = p - centre;
+    const double depth = ray.norm();
+    if (!(depth > 0)) return false;
+    const Eigen::Vector3d apart = reference - p;
+    const double along = apart.dot(ray) / depth;
+    const double across_squared = apart.squaredNorm() - along * along;
+    const double most_across = kReachPixels * depth / focal_length_;
+    const double most_along = kReachSigmas * depth_noise_ * depth * depth + most_across;
+    return across_squared < most_across * most_across && std::abs(along) < most_along;
 }
 
 std::int32_t EdgeFuser::fit(const Eigen::Vector3d& p, std::size_t near) const {
@@ -167,8 +176,16 @@ void EdgeFuser::merge(const std::vector<WindowKeyframe>& window, const Member& m
     bool search_all = true;
     for (std::size_t i = 0; i < count; ++i) {
         near = nearest(points_[i], near, search_all);
-        search_all = !isNear(points_[i], chain_[near].position, static_cast<double>(keyframe.z[first + i]));
-        if (!search_all) assigned_[i] = fit(points_[i], near);
+        search_all = !isNear(points_[i], chain_[near].position, view.T_world_camera.translation());
+        if (search_all) continue;
+        assigned_[i] = fit(points_[i], near);
+        if (assigned_[i] != kApart || !atEnd(near)) continue;
+        // Past an end of the reference: a closed edge goes on at its other end
+        const std::size_t other = nearest(points_[i], near == 0 ? chain_.size() - 1 : 0, false);
+        if (atEnd(other) || !isNear(points_[i], chain_[other].position, view.T_world_camera.translation()))
+            continue;
+        assigned_[i] = fit(points_[i], other);
+        if (assigned_[i] != kApart) near = other;
     }
     for (std::size_t i = 0; i < count; ++i) {
         if (assigned_[i] >= 0) observe(static_cast<std::size_t>(assigned_[i]), observation(i));

@@ -67,7 +67,9 @@ class EdgeFuser {
     void merge(const std::vector<WindowKeyframe>& window, const Member& member);
     bool stitch(const Member& member, std::size_t from, std::size_t to);
     std::int32_t fit(const Eigen::Vector3d& p, std::size_t near) const;
-    bool isNear(const Eigen::Vector3d& p, const Eigen::Vector3d& reference, double depth) const;
+    bool isNear(const Eigen::Vector3d& p, const Eigen::Vector3d& reference,
+                const Eigen::Vector3d& centre) const;
+    bool atEnd(std::size_t node) const { return node == 0 || node + 1 == chain_.size(); }
     std::size_t nearest(const Eigen::Vector3d& p, std::size_t from, bool search_all) const;
 
     double focal_length_, depth_noise_;
