@@ -139,7 +139,6 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
     Eigen::VectorXd gradient(columns);
     std::vector<Term> terms;
     std::vector<std::size_t> term_slots;
-    // Pose blocks before they are carried over by G: sums of M, M [P]x^T ... per pair of slots
     for (int iteration = 0; iteration < iterations; ++iteration) {
         // Wide at first where old and new keyframes may have drifted apart
         scale_ = std::max(estimateScale(window, edges), first_scale / (1 << std::min(iteration, 10)));
@@ -317,6 +316,7 @@ void BundleAdjuster::judge(const std::vector<WindowKeyframe>& window, FusedEdges
             std::nth_element(spreads.begin(), middle, spreads.end());
             if (*middle > options_.max_spread * scale_) {
                 verdict = EdgeVerdict::kSpread;
+                continue;
             }
         }
         // The keyframe in which an edge was found first proves nothing

@@ -92,6 +92,7 @@ bool LocalMapper::acceptable(const WindowKeyframe& view, int inliers, std::strin
 
 void LocalMapper::addPriors() {
     priors_.clear();
+    if (options_.mapping.prior_weight <= 0) return;
     for (std::size_t to = 0; to < window_.size(); ++to) {
         const MapKeyframe& keyframe = *window_[to].keyframe;
         for (std::size_t from = 0; from < to; ++from) {
@@ -135,7 +136,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     std::vector<const MapKeyframe*> members;
     for (const WindowKeyframe& view : window_) members.push_back(view.keyframe);
     fuser_.fuse(window_, graph_.clusters(members), fused_);
-    const int rough = std::min(kRoughIterations, options_.mapping.max_iterations);
+    const int rough = std::min(kRoughIterations, options_.mapping.max_iterations / 2);
     adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kReusedScale);
     adjuster_.judge(window_, fused_);
     update.refinement = adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
@@ -143,7 +144,8 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
         WindowKeyframe& view = window_[slot];
         const int inliers = slot < update.refinement.inliers.size() ? update.refinement.inliers[slot] : 0;
         if (view.fixed) continue;
-        if (!acceptable(view, inliers, update.reason)) {
+        if (std::string fault; !acceptable(view, inliers, fault)) {
+            update.reason += (update.reason.empty() ? "" : "; ") + fault;
             view.T_world_camera = view.keyframe->T_world_camera;
             continue;
         }
