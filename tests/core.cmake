@@ -18,16 +18,22 @@ roevo_test(test_core_mapping
   LIBS roevo Ceres::ceres)
 # One ctest entry per suite, since the cases of a suite share a rendered sequence.
 add_executable(test_core_odometry core/test_odometry_accuracy.cpp core/test_odometry_status.cpp
-               core/test_odometry_covariance.cpp)
+               core/test_odometry_covariance.cpp core/test_odometry_semi_dense.cpp)
 target_link_libraries(test_core_odometry PRIVATE roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-foreach(suite OdometryAccuracy OdometryStatus OdometryCovariance)
+foreach(suite OdometryAccuracy OdometryStatus OdometryCovariance OdometrySemiDense)
   add_test(NAME ${suite} COMMAND test_core_odometry --gtest_filter=${suite}.*)
+  set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
+endforeach()
+add_executable(test_core_mapped_runs core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp)
+target_link_libraries(test_core_mapped_runs PRIVATE roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
+foreach(suite OdometryMapping MappingBadInput)
+  add_test(NAME ${suite} COMMAND test_core_mapped_runs --gtest_filter=${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
 roevo_test(test_core_sequences
   SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp
   LIBS roevo_simulator roevo_evaluation roevo_datasets)
-foreach(program camera edges tracking mapping odometry sequences)
+foreach(program camera edges tracking mapping odometry mapped_runs sequences)
   target_include_directories(test_core_${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_include_directories(test_core_${program} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 endforeach()
