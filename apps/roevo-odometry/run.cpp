@@ -136,12 +136,14 @@ void writeMap(const fs::path& dir, const RunReport& report, const EdgeMap& map, 
     content.map = map;
     // The other modes do not tell which edges are the same
     if (report.mode == Mode::kBundleAdjustment) content.keyframe_edges = odometry.keyframeEdges();
+    content.semi_dense = odometry.semiDense();
     content.trajectory = report.trajectory;
     content.keyframes = report.keyframes;
     content.camera = report.camera.undistorted();
     content.reference = std::move(reference);
     saveScene((dir / "map.3Dscene").string(), *buildScene(content));
     savePly((dir / "map.ply").string(), map);
+    savePointsPly((dir / "map_semi_dense.ply").string(), content.semi_dense);
 }
 
 }  // namespace

@@ -72,11 +72,10 @@ void addCorners(const CRenderizable& object, const mrpt::poses::CPose3D& parent,
 }
 
 // Lifts a colour towards a minimum brightness, keeping its hue.
-void brighten(float& r, float& g, float& b) {
-    constexpr float kMinBrightness = 0.55f;
+void brighten(float minimum, float& r, float& g, float& b) {
     const float brightness = std::max({r, g, b});
-    if (brightness >= kMinBrightness) return;
-    const float lift = kMinBrightness - brightness;
+    if (brightness >= minimum) return;
+    const float lift = minimum - brightness;
     r += lift, g += lift, b += lift;
 }
 
@@ -143,10 +142,12 @@ void preparePoints(COpenGLScene& scene, float factor) {
         points->enableVariablePointSize(false);
         points->setPointSize(points->getPointSize() * factor);
         auto* coloured = dynamic_cast<CPointCloudColoured*>(&object);
+        // A surface is seen by its colours, a line on the dark background by its brightness
+        const float brightness = object.getName() == SceneNames::kSemiDense ? 0.2f : 0.55f;
         for (std::size_t i = 0; coloured && i < coloured->size(); ++i) {
             float r, g, b;
             coloured->getPointColor_fast(i, r, g, b);
-            brighten(r, g, b);
+            brighten(brightness, r, g, b);
             coloured->setPointColor_fast(i, r, g, b);
         }
     });

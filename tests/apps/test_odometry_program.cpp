@@ -15,10 +15,11 @@ using test::slidingRecording;
 TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
     const auto result = runFrames(slidingRecording(40));
     ASSERT_EQ(result.exit_code, 0) << result.all();
-    for (const char* name : {"trajectory.txt", "trajectory_live.txt", "keyframes.txt", "frames.csv",
-                             "map.3Dscene", "map.ply", "summary.json", "config_used.ini"})
+    for (const char* name :
+         {"trajectory.txt", "trajectory_live.txt", "keyframes.txt", "frames.csv", "map.3Dscene", "map.ply",
+          "map_semi_dense.ply", "summary.json", "config_used.ini"})
         EXPECT_GT(fs::file_size(output() + "/" + name), 0u) << name;
-    EXPECT_EQ(std::distance(fs::directory_iterator(output()), fs::directory_iterator()), 8)
+    EXPECT_EQ(std::distance(fs::directory_iterator(output()), fs::directory_iterator()), 9)
         << "and nothing else";
 
     const std::string csv = readFile(output() + "/frames.csv");

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "evaluation/trajectory_io.h"
+#include "odometry_fixture.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "support/run_program.h"
 
@@ -177,6 +178,49 @@ TEST_F(RenderProgram, FailuresAreOneLine) {
     expectError(test::runProgram(kName, {"--scene", folder_ / "room.3Dscene", "--output", folder_ / "x.txt"}),
                 2, kName, {".png"});
     EXPECT_FALSE(fs::exists(png));
+}
+
+TEST_F(RenderProgram, AForeignSceneIsShownAsItIsButHasNoLayers) {
+    const auto scene = buildScene({});
+    scene->removeObject(scene->getByName(SceneNames::kEdges));
+    saveScene(folder_ / "room.3Dscene", *scene);
+    for (const std::string layer : {"edges", "covisibility", "semi-dense", "pseudo-edges", "all"})
+        expectError(render({"--layer", layer}), 1, kName, {"no layer '" + layer + "'", "it has none"});
+}
+
+// From the recording to the picture.
+class RenderOdometry : public test::OdometryProgram {
+  protected:
+    static constexpr const char* kRender = "roevo-render";
+    test::ProgramResult render(const std::string& layer) const {
+        return test::runProgram(kRender, {"--scene", output() + "/map.3Dscene", "--output",
+                                          folder_ / "map.png", "--size", "200x150", "--layer", layer});
+    }
+    std::string plyHead() const {
+        const std::string ply = test::readFile(output() + "/map_semi_dense.ply");
+        return ply.substr(0, ply.find("end_header"));
+    }
+};
+
+TEST_F(RenderOdometry, TheSurfaceIsALayerUnlessItIsSwitchedOff) {
+    ASSERT_EQ(runFrames(test::slidingRecording(15)).exit_code, 0);
+    for (const std::string layer : {"edges", "covisibility", "semi-dense", "all"}) {
+        const auto result = render(layer);
+        EXPECT_EQ(result.exit_code, 0) << result.all();
+        EXPECT_NE(result.out.find("layer " + layer), std::string::npos) << result.out;
+    }
+    EXPECT_EQ(plyHead().find("element vertex 0\n"), std::string::npos);
+
+    ASSERT_EQ(run(folder_ / "recording", {"--set", "mapping.semi_dense_points=0"}).exit_code, 0);
+    expectError(render("semi-dense"), 1, kRender, {"no layer 'semi-dense'", "edges, covisibility"});
+    EXPECT_NE(plyHead().find("element vertex 0\n"), std::string::npos);
+
+    // Without mapping nobody knows which edges are the same
+    ASSERT_EQ(run(folder_ / "recording", {"--mode", "tr"}).exit_code, 0);
+    EXPECT_EQ(render("semi-dense").exit_code, 0);
+    expectError(render("covisibility"), 1, kRender, {"no layer 'covisibility'", "edges, semi-dense"});
+    expectError(run(folder_ / "recording", {"--set", "mapping.semi_dense_points=-1"}), 2, "roevo-odometry",
+                {"mapping.semi_dense_points", "0 to 50000"});
 }
 
 }  // namespace

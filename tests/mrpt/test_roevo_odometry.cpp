@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "mrpt/synthetic_scan.h"
 #include "mrpt/test_helpers.h"
+#include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_mrpt/roevo_odometry.h"
@@ -139,6 +141,42 @@ TEST_F(RoevoOdometryTest, TheMapLeavesOutPseudoEdgesTheSimpleMapDoesNot) {
     }
     EXPECT_EQ(in_simple_map, of_keyframes);
     EXPECT_GT(of_keyframes, kept + pseudo);
+}
+
+TEST_F(RoevoOdometryTest, TheSemiDenseMapIsTheSurfaceInTheRobotsWorld) {
+    EXPECT_TRUE(odometry_.getSemiDenseMap()->empty());
+    const CPose3D mounted(0.3, -0.1, 0.8, 0.4, 0.2, -0.1), start(1, 2, 0, 0.7, 0, 0);
+    scan_->sensorPose = mounted;
+    odometry_.initialize(start);
+    odometry_.processObservation(*scan_);
+    const auto map = odometry_.getSemiDenseMap();
+    const auto points = odometry_.odometry()->semiDense();
+    ASSERT_GT(map->size(), 1000u);
+    ASSERT_EQ(map->size(), points.size());
+    EXPECT_TRUE(odometry_.getScene()->getByName(SceneNames::kSemiDense));
+
+    // Every point is a pixel with its depth and its colour
+    const RgbdFrame frame = toRgbdFrame(*scan_);
+    const PinholeCamera camera = odometry_.odometry()->camera();
+    const Pose T_optical_world = (toEigen(start) * toEigen(mounted) * sensorFromOptical()).inverse();
+    for (std::size_t i = 0; i < map->size(); i += 20) {
+        float x, y, z, r, g, b;
+        map->getPointRGB(i, x, y, z, r, g, b);
+        const Eigen::Vector3d seen = T_optical_world * Eigen::Vector3d(x, y, z);
+        Eigen::Vector2d pixel = camera.project(seen);
+        if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
+        const int u = static_cast<int>(std::lround(pixel.x())), v = static_cast<int>(std::lround(pixel.y()));
+        EXPECT_NEAR(frame.depth.at<float>(v, u), seen.z(), 5e-4) << u << ' ' << v;
+        EXPECT_EQ(points[i].colour, (Rgb{static_cast<std::uint8_t>(std::lround(255 * r)),
+                                         static_cast<std::uint8_t>(std::lround(255 * g)),
+                                         static_cast<std::uint8_t>(std::lround(255 * b))}));
+    }
+
+    odometry_.options.odometry.mapping.semi_dense_points = 0;
+    odometry_.initialize(start);
+    odometry_.processObservation(*scan_);
+    EXPECT_TRUE(odometry_.getSemiDenseMap()->empty());
+    EXPECT_FALSE(odometry_.getScene()->getByName(SceneNames::kSemiDense));
 }
 
 TEST_F(RoevoOdometryTest, SensoryFramesAndStartPosesOfMrpt) {

@@ -278,7 +278,29 @@ TEST(SceneBuilder, PlyHoldsEveryPointExactly) {
     EXPECT_EQ(in.peek(), EOF);
 }
 
+TEST(SceneBuilder, PlyOfPointsHoldsPositionAndColour) {
+    const test::TemporaryFolder folder;
+    const std::vector<ColouredPoint> points = {{{1, 2, 3}, {4, 5, 6}}, {{-1, 0.5f, 2}, {7, 8, 255}}};
+    savePointsPly(folder / "points.ply", points);
+    std::ifstream in(folder / "points.ply", std::ios::binary);
+    std::string line, head;
+    while (std::getline(in, line) && line != "end_header")
+        if (line.rfind("comment", 0) != 0) head += line + '\n';
+    EXPECT_EQ(head,
+              "ply\nformat binary_little_endian 1.0\nelement vertex 2\n"
+              "property float x\nproperty float y\nproperty float z\n"
+              "property uchar red\nproperty uchar green\nproperty uchar blue\n");
+    for (const ColouredPoint& point : points) {
+        for (int axis = 0; axis < 3; axis++) EXPECT_EQ(take<float>(in), point.position[axis]);
+        for (const std::uint8_t channel : point.colour) EXPECT_EQ(take<std::uint8_t>(in), channel);
+    }
+    ASSERT_TRUE(in);
+    EXPECT_EQ(in.peek(), EOF);
+}
+
 TEST(SceneBuilder, UnwritableOutputIsNamed) {
+    EXPECT_NE(errorOf([] { savePointsPly("/nowhere/points.ply", {}); }).find("/nowhere/points.ply"),
+              std::string::npos);
     EXPECT_NE(errorOf([] { savePly("/nowhere/map.ply", {}); }).find("/nowhere/map.ply"), std::string::npos);
     EXPECT_NE(
         errorOf([] { saveScene("/nowhere/map.3Dscene", *buildScene({})); }).find("/nowhere/map.3Dscene"),

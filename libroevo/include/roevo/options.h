@@ -80,7 +80,7 @@ struct LossOptions {
     int max_predicted = 10;  ///< frames bridged by constant velocity
 };
 
-/// Local mapping, in mode ba.
+/// Local mapping, in mode ba (except where said).
 struct MappingOptions {
     int window = 10;               ///< newest keyframes that are refined together
     int max_points = 2500;         ///< edge points kept of a keyframe
@@ -98,6 +98,8 @@ struct MappingOptions {
     bool deterministic = true;     ///< the tracker waits for the map; else it takes what is ready
     int latency = 4;               ///< frames after which the mapping of a keyframe takes effect
     bool refine_depth = true;      ///< the tracker uses the fused depth of its keyframe
+    /// Surface points kept of a keyframe, next to its edges (0: none); in all modes. 10 bytes each.
+    int semi_dense_points = 2500;
 };
 
 struct OdometryOptions {

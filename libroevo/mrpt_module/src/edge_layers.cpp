@@ -16,7 +16,8 @@ constexpr float kSpacing = 0.005f;  // m between the points of a drawn edge
 // Points of an edge are neighbours in an image, so that a gap is filled unless it is much larger than those
 // of the edge are (far away they are wide): then nothing is known between.
 constexpr float kFilled = 0.05f, kNeverFilled = 0.25f, kUsualGaps = 3;  // m, m, times the median
-constexpr float kFaintest = 0.35f;  // opacity of an edge with confidence 0
+constexpr float kFaintest = 0.35f;     // opacity of an edge with confidence 0
+constexpr float kSurfacePoint = 1.5f;  // times the size of an edge's: they are farther apart
 constexpr Rgb kSpreadColour{240, 140, 30}, kVanishingColour{225, 60, 200}, kSingleColour{205, 205, 205};
 
 float medianGap(const std::vector<Eigen::Vector3f>& points) {
@@ -40,10 +41,10 @@ Rgb between(const Rgb& a, const Rgb& b, float share) {
 /// A layer being filled: a cloud of the scene's frame.
 class Layer {
   public:
-    Layer(const char* name, const SceneContent& content)
+    Layer(const char* name, const SceneContent& content, float larger = 1)
         : cloud_(Cloud::Create()), T_scene_world_(content.T_scene_world.cast<float>()) {
         cloud_->setName(name);
-        cloud_->setPointSize(content.point_size);
+        cloud_->setPointSize(larger * content.point_size);
     }
 
     void add(const Eigen::Vector3f& in_world, const Rgb& colour, float opacity = 1) {
@@ -131,7 +132,7 @@ void insertCovisibility(compat::Scene& scene, const SceneContent& content) {
 }
 
 void insertSemiDense(compat::Scene& scene, const SceneContent& content) {
-    Layer layer(SceneNames::kSemiDense, content);
+    Layer layer(SceneNames::kSemiDense, content, kSurfacePoint);
     for (const ColouredPoint& point : content.semi_dense) layer.add(point.position, point.colour);
     if (!layer.empty()) layer.insertInto(scene, false);
 }

@@ -9,15 +9,16 @@
 namespace roevo {
 namespace {
 
-constexpr char kHeader[] =
+constexpr char kEdgeComments[] =
     "comment organized edges: the points of all edges, world frame, metres\n"
     "comment confidence, views and verdict are those of the edge that a point belongs to\n"
     "comment confidence: 0 to 1; views: keyframes that see the edge\n"
     "comment verdict: 0 unconfirmed, 1 true, 2 pseudo (spread), 3 pseudo (vanishing)\n";
-constexpr char kProperties[] =
+constexpr char kPointComments[] = "comment surface points next to edges, world frame, metres\n";
+constexpr char kPointProperties[] =
     "property float x\nproperty float y\nproperty float z\n"
-    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-    "property float confidence\nproperty int views\nproperty uchar verdict\n";
+    "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+constexpr char kEdgeProperties[] = "property float confidence\nproperty int views\nproperty uchar verdict\n";
 
 /// The bytes of one vertex, least significant first on any machine.
 class Vertex {
@@ -42,18 +43,27 @@ class Vertex {
     std::size_t used_ = 0;
 };
 
-bool writePly(const std::string& file, const EdgeMap& map) {
+void writeHeader(std::ostream& out, const std::string& comments, std::size_t count,
+                 const std::string& properties) {
+    out << "ply\nformat binary_little_endian 1.0\n"
+        << comments << "element vertex " << count << '\n'
+        << properties << "end_header\n";
+}
+
+void putPoint(Vertex& vertex, const Eigen::Vector3f& position, const Rgb& colour) {
+    for (int axis = 0; axis < 3; axis++) vertex.put(position[axis]);
+    for (const std::uint8_t channel : colour) vertex.put(channel);
+}
+
+bool writeEdges(const std::string& file, const EdgeMap& map) {
     std::size_t count = 0;
     for (const MapEdge& edge : map) count += edge.points.size();
     std::ofstream out(file, std::ios::binary);
-    out << "ply\nformat binary_little_endian 1.0\n"
-        << kHeader << "element vertex " << count << '\n'
-        << kProperties << "end_header\n";
+    writeHeader(out, kEdgeComments, count, std::string(kPointProperties) + kEdgeProperties);
     Vertex vertex;
     for (const MapEdge& edge : map)
         for (std::size_t i = 0; i < edge.points.size(); i++) {
-            for (int axis = 0; axis < 3; axis++) vertex.put(edge.points[i][axis]);
-            for (const std::uint8_t channel : edge.colours.at(i)) vertex.put(channel);
+            putPoint(vertex, edge.points[i], edge.colours.at(i));
             vertex.put(edge.confidence);
             vertex.put(static_cast<std::int32_t>(edge.views));
             vertex.put(static_cast<std::uint8_t>(edge.verdict));
@@ -63,10 +73,26 @@ bool writePly(const std::string& file, const EdgeMap& map) {
     return !out.fail();
 }
 
+bool writePoints(const std::string& file, const std::vector<ColouredPoint>& points) {
+    std::ofstream out(file, std::ios::binary);
+    writeHeader(out, kPointComments, points.size(), kPointProperties);
+    Vertex vertex;
+    for (const ColouredPoint& point : points) {
+        putPoint(vertex, point.position, point.colour);
+        vertex.writeTo(out);
+    }
+    out.close();
+    return !out.fail();
+}
+
 }  // namespace
 
 void savePly(const std::string& file, const EdgeMap& map) {
-    writeWholeFile(file, [&](const std::string& temporary) { return writePly(temporary, map); });
+    writeWholeFile(file, [&](const std::string& temporary) { return writeEdges(temporary, map); });
+}
+
+void savePointsPly(const std::string& file, const std::vector<ColouredPoint>& points) {
+    writeWholeFile(file, [&](const std::string& temporary) { return writePoints(temporary, points); });
 }
 
 }  // namespace roevo

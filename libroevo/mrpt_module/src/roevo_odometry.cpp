@@ -15,13 +15,13 @@ namespace {
 using mrpt::maps::CColouredPointsMap;
 using mrpt::obs::CObservation3DRangeScan;
 
+void append(CColouredPointsMap& out, const Eigen::Vector3f& p, const Rgb& c) {
+    out.insertPointRGB(p.x(), p.y(), p.z(), c[0] / 255.f, c[1] / 255.f, c[2] / 255.f);
+}
+
 void appendEdge(CColouredPointsMap& out, const MapEdge& edge, const Pose& T_out_world) {
     const Eigen::Isometry3f T = T_out_world.cast<float>();
-    for (std::size_t i = 0; i < edge.points.size(); i++) {
-        const Eigen::Vector3f p = T * edge.points[i];
-        const auto& c = edge.colours.at(i);
-        out.insertPointRGB(p.x(), p.y(), p.z(), c[0] / 255.f, c[1] / 255.f, c[2] / 255.f);
-    }
+    for (std::size_t i = 0; i < edge.points.size(); i++) append(out, T * edge.points[i], edge.colours.at(i));
 }
 
 }  // namespace
@@ -162,6 +162,15 @@ CColouredPointsMap::Ptr CRoevoOdometry::getMap() const {
     return out;
 }
 
+CColouredPointsMap::Ptr CRoevoOdometry::getSemiDenseMap() const {
+    auto out = CColouredPointsMap::Create();
+    if (!odometry_) return out;
+    const auto points = odometry_->semiDense();
+    out->reserve(points.size());
+    for (const ColouredPoint& point : points) append(*out, point.position, point.colour);
+    return out;
+}
+
 compat::Scene::Ptr CRoevoOdometry::getScene() const {
     SceneContent content;
     content.T_scene_world = Pose::Identity();  // the robot's world has z up already
@@ -170,6 +179,7 @@ compat::Scene::Ptr CRoevoOdometry::getScene() const {
         // The other modes do not tell which edges are the same
         if (odometry_->options().mode == Mode::kBundleAdjustment)
             content.keyframe_edges = odometry_->keyframeEdges();
+        content.semi_dense = odometry_->semiDense();
         content.trajectory = odometry_->trajectory();
         content.keyframes = odometry_->keyframes();
         content.camera = odometry_->camera();

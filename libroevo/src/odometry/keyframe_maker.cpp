@@ -3,7 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roevo/tracking/se3.h"
+
 namespace roevo {
+
+bool keyframeIsDue(const Keyframe& keyframe, const FrameResult& result, const KeyframeOptions& options) {
+    const Pose T_keyframe_current = keyframe.T_world_camera.inverse() * result.T_world_camera;
+    return result.matched_ratio < options.min_matched_ratio ||
+           rotationAngle(T_keyframe_current) / kDegree > options.max_rotation_deg ||
+           T_keyframe_current.translation().norm() > options.max_translation * keyframe.median_depth;
+}
 
 std::string makeKeyframe(const FrameData& data, int id, const PinholeCamera& camera,
                          const OdometryOptions& options, Keyframe& keyframe) {

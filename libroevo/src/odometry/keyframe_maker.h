@@ -4,10 +4,14 @@
 #include "frame_data.h"
 #include "roevo/edge_map.h"
 #include "roevo/mapping/local_mapper.h"
+#include "roevo/odometry.h"
 #include "roevo/options.h"
 #include "roevo/tracking/keyframe.h"
 
 namespace roevo {
+
+/// Whether the frame sees so much less than the keyframe, or from so far away, that it had better become one.
+bool keyframeIsDue(const Keyframe& keyframe, const FrameResult& result, const KeyframeOptions& options);
 
 /// Makes a keyframe of a frame with a pose. Returns an empty string, or in words why it cannot be one (then
 /// `keyframe` is not to be used).

@@ -15,6 +15,7 @@
 #include "roevo/tracking/fine_tracker.h"
 #include "roevo/tracking/motion_model.h"
 #include "roevo/tracking/se3.h"
+#include "semi_dense_store.h"
 #include "stopwatch.h"
 
 namespace roevo {
@@ -28,7 +29,8 @@ struct Odometry::Impl {
           coarse(opts.coarse),
           fine(opts.fine, opts.edges, opts.sensor),
           T_world_camera(start),
-          motion(opts.motion, opts.sensor, raw.height) {
+          motion(opts.motion, opts.sensor, raw.height),
+          semi_dense(raw, opts) {
         if (opts.mode == Mode::kBundleAdjustment) map = std::make_unique<MapLink>(ideal, opts);
     }
 
@@ -50,6 +52,7 @@ struct Odometry::Impl {
     long frame_index = 0;
     Pose T_world_camera;  // last pose, measured or predicted
     MotionModel motion;
+    SemiDenseStore semi_dense;
     Brightness brightness;
     double last_timestamp = -std::numeric_limits<double>::infinity();
     int lost_frames = 0;
@@ -65,7 +68,6 @@ struct Odometry::Impl {
     bool trackFrom(const std::vector<Pose>& guesses, const PosePrior& prior, const RgbdFrame& frame,
                    FrameResult& result);
     void bridgeLoss(const RgbdFrame& frame, FrameResult& result);
-    bool wantsKeyframe(const FrameResult& result) const;
     void setCovariance(const Matrix6d& relative, const Pose& T_current_keyframe, FrameResult& result);
 };
 
@@ -78,6 +80,7 @@ std::string Odometry::Impl::startKeyframe(const FrameData& data) {
     brightness = Brightness();
     history.addKeyframe({id, keyframe->timestamp, keyframe->T_world_camera},
                         last && data.may_be_keyframe ? last->id : -1);
+    semi_dense.add(keyframe->edges.image, data);
     EdgeMap own_edges = mapEdgesOf(*keyframe, data.images, camera);
     if (map) {
         MapJob job;
@@ -143,15 +146,6 @@ void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_curre
     now.relative_covariance = to_world * relative * to_world.transpose();
     result.covariance =
         from_keyframe * keyframe->covariance * from_keyframe.transpose() + now.relative_covariance;
-}
-
-bool Odometry::Impl::wantsKeyframe(const FrameResult& result) const {
-    const Pose T_keyframe_current = keyframe->T_world_camera.inverse() * result.T_world_camera;
-    const double degrees = rotationAngle(T_keyframe_current) / kDegree;
-    return result.matched_ratio < options.keyframe.min_matched_ratio ||
-           degrees > options.keyframe.max_rotation_deg ||
-           T_keyframe_current.translation().norm() >
-               options.keyframe.max_translation * keyframe->median_depth;
 }
 
 bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
@@ -264,7 +258,7 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
         result.status = FrameStatus::kOk;
         lost_frames = 0;
         const bool by_search = !result.reason.empty();
-        if (wantsKeyframe(result)) renewKeyframe(result);
+        if (keyframeIsDue(*keyframe, result, options.keyframe)) renewKeyframe(result);
         T_world_camera = result.T_world_camera;
         if (by_search) {
             motion.anchor(frame.timestamp, T_world_camera);
@@ -379,6 +373,9 @@ EdgeMap Odometry::map() const {
 }
 EdgeMap Odometry::keyframeEdges() const {
     return impl_->map ? impl_->map->finished().keyframeEdges() : impl_->edge_map;
+}
+std::vector<ColouredPoint> Odometry::semiDense() const {
+    return impl_->semi_dense.inWorld(impl_->finalPoses().keyframes());
 }
 double Odometry::readoutTime() const {
     return impl_->motion.secondsPerRow() * impl_->camera.height;

@@ -82,7 +82,12 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// The edges as coloured points in the world, without pseudo-edges; in mode ba fused over all keyframes.
     mrpt::maps::CColouredPointsMap::Ptr getMap() const;
 
-    /// Edges, trajectory and keyframes, in mode ba also pseudo-edges and the co-visibility, see buildScene().
+    /// The surface next to the edges of all keyframes as coloured points in the world; empty when the option
+    /// mapping.semi_dense_points is 0.
+    mrpt::maps::CColouredPointsMap::Ptr getSemiDenseMap() const;
+
+    /// Edges, surface, trajectory and keyframes, in mode ba also pseudo-edges and the co-visibility, see
+    /// buildScene().
     compat::Scene::Ptr getScene() const;
 
     /// Time spent per stage.

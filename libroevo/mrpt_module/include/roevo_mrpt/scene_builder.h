@@ -59,4 +59,7 @@ void saveScene(const std::string& file, const compat::Scene& scene);
 /// @throws std::runtime_error
 void savePly(const std::string& file, const EdgeMap& map);
 
+/// Writes coloured points in the same way: x y z (float), red green blue (uchar). @throws std::runtime_error
+void savePointsPly(const std::string& file, const std::vector<ColouredPoint>& points);
+
 }  // namespace roevo

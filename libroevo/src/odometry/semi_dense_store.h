@@ -1,0 +1,75 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <future>
+#include <vector>
+
+#include "frame_data.h"
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/edge_map.h"
+#include "roevo/odometry.h"
+#include "roevo/options.h"
+
+namespace roevo {
+
+/// Coloured points of one camera, 10 bytes each: coordinates in steps of 1/32767 of the largest.
+class PackedPoints {
+  public:
+    PackedPoints() = default;
+    explicit PackedPoints(const std::vector<ColouredPoint>& points);
+
+    std::size_t size() const { return points_.size(); }
+    ColouredPoint at(std::size_t i) const;
+
+  private:
+    struct Packed {
+        std::array<std::int16_t, 3> position;
+        Rgb colour;
+    };
+    float step_ = 0;  ///< m
+    std::vector<Packed> points_;
+};
+
+/// The surface next to the edges of every keyframe, kept in the keyframes' own frames so that it follows
+/// their poses. It is sampled beside tracking, in threads of its own; what comes out does not depend on them.
+class SemiDenseStore {
+  public:
+    SemiDenseStore(const PinholeCamera& camera, const OdometryOptions& options)
+        : camera_(camera),
+          sensor_(options.sensor),
+          depth_jump_(options.edges.depth_jump),
+          max_points_(options.mapping.semi_dense_points) {}
+
+    SemiDenseStore(const SemiDenseStore&) = delete;  // the threads point to it
+    SemiDenseStore& operator=(const SemiDenseStore&) = delete;
+
+    /// Adds the next keyframe. Waits only when several of them are being sampled already.
+    /// @param edges  of the keyframe, ideal px
+    void add(const OrganizedEdges& edges, const FrameData& data);
+
+    /// All points in the world, one keyframe after the other, waiting for those that are being sampled.
+    /// @param keyframes  all that were added, in that order, at the poses that are wanted
+    std::vector<ColouredPoint> inWorld(const std::vector<KeyframeInfo>& keyframes);
+
+  private:
+    /// What sampling needs, in memory that nobody else writes to, and what comes of it.
+    struct Job {
+        OrganizedEdges centres;  ///< around which pixels are taken
+        RgbdFrame frame;
+        RowMotion rows;
+        PackedPoints points;
+    };
+    Job sample(Job job) const;
+    void collect(std::size_t most_sampling);
+
+    PinholeCamera camera_;
+    SensorOptions sensor_;
+    double depth_jump_;
+    int max_points_;
+    std::vector<PackedPoints> keyframes_;
+    std::vector<Job> spare_;                 // their images are written into again
+    std::deque<std::future<Job>> sampling_;  // of the newest keyframes, in order; last: waits for the threads
+};
+
+}  // namespace roevo
