@@ -130,19 +130,17 @@ std::vector<StampedPose> keyframePoses(const RunReport& report) {
     return poses;
 }
 
-void writeMap(const fs::path& dir, const RunReport& report, const EdgeMap& map, const Odometry& odometry,
+// @param content  with the map and the surface already in it
+void writeMap(const fs::path& dir, const RunReport& report, const Odometry& odometry, SceneContent content,
               std::vector<StampedPose> reference) {
-    SceneContent content;
-    content.map = map;
     // The other modes do not tell which edges are the same
     if (report.mode == Mode::kBundleAdjustment) content.keyframe_edges = odometry.keyframeEdges();
-    content.semi_dense = odometry.semiDense();
     content.trajectory = report.trajectory;
     content.keyframes = report.keyframes;
     content.camera = report.camera.undistorted();
     content.reference = std::move(reference);
     saveScene((dir / "map.3Dscene").string(), *buildScene(content));
-    savePly((dir / "map.ply").string(), map);
+    savePly((dir / "map.ply").string(), content.map);
     savePointsPly((dir / "map_semi_dense.ply").string(), content.semi_dense);
 }
 
@@ -176,9 +174,12 @@ RunReport runOdometry(const RunSettings& settings) {
 
     report.trajectory = odometry.trajectory();
     report.keyframes = odometry.keyframes();
-    const EdgeMap map = odometry.map();
-    report.map_edges = map.size();
-    for (const MapEdge& edge : map) report.map_points += edge.points.size();
+    SceneContent content;
+    content.map = odometry.map();
+    content.semi_dense = odometry.semiDense();
+    report.semi_dense_points = content.semi_dense.size();
+    report.map_edges = content.map.size();
+    for (const MapEdge& edge : content.map) report.map_points += edge.points.size();
 
     const fs::path dir = settings.output_dir;
     const std::string failure = report.failure();
@@ -187,7 +188,7 @@ RunReport runOdometry(const RunSettings& settings) {
         writeTumTrajectory((dir / "trajectory.txt").string(), report.trajectory);
         writeTumTrajectory((dir / "trajectory_live.txt").string(), odometry.liveTrajectory());
         writeTumTrajectory((dir / "keyframes.txt").string(), keyframePoses(report));
-        writeMap(dir, report, map, odometry, alignedReference(report, ground_truth));
+        writeMap(dir, report, odometry, std::move(content), alignedReference(report, ground_truth));
     }
     saveConfigFile((dir / "config_used.ini").string(), odometry.options());
     writeTextAtomically((dir / "frames.csv").string(), framesCsv(report));

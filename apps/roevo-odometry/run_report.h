@@ -22,7 +22,7 @@ struct RunReport {
     std::vector<FrameRecord> frames;
     std::vector<StampedPose> trajectory;
     std::vector<KeyframeInfo> keyframes;
-    std::size_t map_edges = 0, map_points = 0;
+    std::size_t map_edges = 0, map_points = 0, semi_dense_points = 0;
     std::size_t dropped = 0;  ///< frames that came while tracking was busy (--realtime)
     double wall_seconds = 0;
     std::string ground_truth;              ///< path, empty when there is none

@@ -163,7 +163,9 @@ std::string summaryJson(const RunReport& report) {
     json["wall_time_s"] = report.wall_seconds;
     json["memory_peak_mb"] = memoryPeakMb();
     json["path_length_m"] = pathLength(report.trajectory);
-    json["map"] = {{"edges", report.map_edges}, {"points", report.map_points}};
+    json["map"] = {{"edges", report.map_edges},
+                   {"points", report.map_points},
+                   {"semi_dense_points", report.semi_dense_points}};
     json["ground_truth"] = groundTruthJson(report);
     // File names and messages may hold bytes that are not UTF-8.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -192,7 +194,8 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
     if (report.dropped > 0)
         std::printf("dropped     %zu frames came while tracking was busy\n", report.dropped);
     std::printf("path        %.2f m\n", pathLength(report.trajectory));
-    std::printf("map         %zu edges, %zu points\n", report.map_edges, report.map_points);
+    std::printf("map         %zu edges, %zu points; %zu points of the surface next to them\n",
+                report.map_edges, report.map_points, report.semi_dense_points);
     if (report.evaluation)
         printErrors(*report.evaluation);
     else
