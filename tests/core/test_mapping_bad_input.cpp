@@ -228,6 +228,17 @@ TEST_F(MappingBadInput, WithoutDepthUntilTheEndAllPosesAreThere) {
     expectSound();
 }
 
+TEST_F(MappingBadInput, ARunMayEndOrBeReplacedWhileTheMapperWorks) {
+    OdometryOptions options = manyKeyframes();
+    options.mapping.latency = 100;
+    Odometry odometry(room().camera, options, room().start());
+    for (int run = 0; run < 3; ++run) {
+        odometry = Odometry(room().camera, options, room().start());
+        for (std::size_t i = 0; i < 12; ++i) odometry.processFrame(room().frames[i]);
+    }
+    EXPECT_EQ(odometry.trajectory().size(), 12U);
+}
+
 /// Another place, that tracking cannot have come to.
 const Sequence& elsewhere() {
     static const Sequence sequence = [] {
