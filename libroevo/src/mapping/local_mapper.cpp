@@ -133,7 +133,10 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     update.reused = static_cast<int>(reused.size());
     buildWindow(id, reused);
     addPriors();
-    if (window_.size() < 2) return update;
+    if (window_.size() < 2) {
+        compact(keyframe);
+        return update;
+    }
     std::vector<const MapKeyframe*> members;
     for (const WindowKeyframe& view : window_) members.push_back(view.keyframe);
     fuser_.fuse(window_, graph_.clusters(members), fused_);
@@ -156,6 +159,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     }
     keepVerdicts();
     describeNewest(update);
+    compact(keyframe);
     return update;
 }
 

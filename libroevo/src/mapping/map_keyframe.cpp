@@ -65,6 +65,15 @@ void computeSlopes(MapKeyframe& keyframe, int span) {
     }
 }
 
+void compact(MapKeyframe& keyframe) {
+    for (auto* array : {&keyframe.image.gradient_x, &keyframe.image.gradient_y, &keyframe.image.strength}) {
+        array->clear();
+        array->shrink_to_fit();
+    }
+    keyframe.source.clear();
+    keyframe.source.shrink_to_fit();
+}
+
 MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,
                           const PinholeCamera& camera, int max_points) {
     MapKeyframe out;

@@ -1,8 +1,10 @@
 #include "window_equations.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "roevo/tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -12,15 +14,14 @@ constexpr double kStudentNu = 5;         ///< degrees of freedom of the t-distri
 constexpr double kLeastVariance = 1e-6;  ///< m^2 of depth: a millimetre, whatever the sensor
 constexpr double kNearest = 0.05;        ///< m; nearer points cannot be projected
 constexpr std::size_t kScaleStep = 3;    ///< every so manieth point is enough for a median
+/// Points that make the Hessian; there are more than it needs. All make the gradient, so that nothing but the
+/// step to the optimum is approximate.
+constexpr std::size_t kHessianPoints = 1500;
 constexpr std::int32_t kAnySlot = -1;
 /// Of a point along its edge, as a share of what is known across: normals and slopes differ by noise, and
 /// points that follow them slide. 1 and 0.001 are about as good.
 constexpr double kHold = 0.1;
 constexpr double kWeakHold = 1e-6;  ///< of a point in directions in which nothing is known
-
-double studentWeight(double squared) {
-    return (kStudentNu + 1) / (kStudentNu + squared);
-}
 
 }  // namespace
 
@@ -69,7 +70,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     gradient.resize(num_rows_);
     blocks_.resize(slots * slots);
     gradients_.resize(slots);
-    couplings_.resize(slots);
+    shares_.resize(slots);
     scales_.resize(slots);
 }
 
@@ -121,106 +122,117 @@ double WindowEquations::spread(std::int32_t slot, double least_scale) {
     return std::max(std::clamp(1.4826 * static_cast<double>(*middle), kMinScale, kMaxScale), least_scale);
 }
 
-bool WindowEquations::linearise(const Sight& sight, const Residual& residual, const Eigen::Matrix3d& R,
-                                Term& term) const {
-    const double spread = scales_[static_cast<std::size_t>(sight.slot)];
-    const double squared = residual.across * residual.across / (spread * spread);
-    if (squared > options_.chi2) return false;
-    const double z = residual.inverse_z;
-    const double root = std::sqrt(sight.weight * studentWeight(squared)) / spread;
-    term.slot = sight.slot;
-    term.across_residual = root * residual.across;
-    term.across.noalias() = R * Eigen::Vector3d(root * z * sight.across_a, root * z * sight.across_b,
-                                                -root * z * (residual.across + sight.across_c));
-    const double depth_squared = residual.depth * residual.depth * sight.depth_information;
-    if (!(depth_squared <= options_.depth_chi2)) {
-        term.depth.setZero();
-        term.depth_residual = 0;
-        return true;
-    }
-    const double depth_root = std::sqrt(options_.depth_weight * sight.weight * sight.depth_information *
-                                        studentWeight(depth_squared));
-    const double slope = sight.slope * z;
-    const double along = (sight.along_a * residual.x + sight.along_b * residual.y) * z;
-    term.depth_residual = depth_root * residual.depth;
-    term.depth.noalias() =
-        R * Eigen::Vector3d(-depth_root * slope * sight.along_a, -depth_root * slope * sight.along_b,
-                            depth_root * (1 + slope * along));
-    return true;
-}
-
 void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vector<Eigen::Vector3d>& points) {
     for (auto& entry : blocks_) entry.setZero();
     for (auto& entry : gradients_) entry.setZero();
-    for (auto& entry : couplings_) entry.setZero();
     inliers.assign(window.size(), 0);
+    const std::size_t stride = 1 + points_.size() / kHessianPoints;
     for (std::size_t p = 0; p < points_.size(); ++p) {
-        terms_.clear();
+        int count = 0;
+        touched_.clear();
+        direction_.setZero();
         for (auto k = static_cast<std::size_t>(begin_[p]); k < static_cast<std::size_t>(begin_[p + 1]); ++k) {
             if (residuals_[k].inverse_z < 0) continue;
             const auto slot = static_cast<std::size_t>(sights_[k].slot);
-            Term term;
-            if (!linearise(sights_[k], residuals_[k], window[slot].T_world_camera.linear(), term)) continue;
+            if (!addSight(sights_[k], residuals_[k], window[slot].T_world_camera.linear())) continue;
             ++inliers[slot];
-            terms_.push_back(term);
+            ++count;
         }
-        if (terms_.size() >= 2) addPoint(points[static_cast<std::size_t>(points_[p])]);
+        if (count >= 2) addPoint(points[static_cast<std::size_t>(points_[p])], p % stride == 0);
+        for (const std::int32_t slot : touched_) shares_[static_cast<std::size_t>(slot)].used = false;
     }
     for (std::size_t a = 0; a < rows_.size(); ++a) {
         if (rows_[a] < 0) continue;
         gradient.segment<6>(rows_[a]) = gradients_[a];
         for (std::size_t c = a; c < rows_.size(); ++c) {
-            if (rows_[c] >= 0) hessian.block<6, 6>(rows_[a], rows_[c]) = block(a, c);
+            if (rows_[c] < 0) continue;
+            hessian.block<6, 6>(rows_[a], rows_[c]) =
+                static_cast<double>(stride) *
+                block(static_cast<std::int32_t>(a), static_cast<std::int32_t>(c));
         }
     }
 }
 
-void WindowEquations::addPoint(Eigen::Vector3d& point) {
+bool WindowEquations::addSight(const Sight& sight, const Residual& residual, const Eigen::Matrix3d& R) {
+    const double spread = scales_[static_cast<std::size_t>(sight.slot)];
+    const double variance = spread * spread, squared = residual.across * residual.across;
+    if (squared > options_.chi2 * variance) return false;
+    Share& share = shares_[static_cast<std::size_t>(sight.slot)];
+    if (!share.used) {
+        share.used = true;
+        share.information.setZero();
+        share.pull.setZero();
+        touched_.push_back(sight.slot);
+    }
+    // Weights of the t-distribution, (nu + 1) / (nu + r^2 / sigma^2)
+    const double z = residual.inverse_z;
+    const double weight = sight.weight * (kStudentNu + 1) / (kStudentNu * variance + squared);
+    const Eigen::Vector3d across =
+        R * Eigen::Vector3d(z * sight.across_a, z * sight.across_b, -z * (residual.across + sight.across_c));
+    const Eigen::Vector3d weighted = weight * across;
+    share.information.noalias() += weighted * across.transpose();
+    share.pull += residual.across * weighted;
+    const double depth_squared = residual.depth * residual.depth * sight.depth_information;
+    if (!(depth_squared <= options_.depth_chi2)) return true;
+    const double slope = sight.slope * z;
+    const double along = (sight.along_a * residual.x + sight.along_b * residual.y) * z;
+    const Eigen::Vector3d depth =
+        R * Eigen::Vector3d(-slope * sight.along_a, -slope * sight.along_b, 1 + slope * along);
+    const double depth_weight = options_.depth_weight * sight.weight * sight.depth_information *
+                                (kStudentNu + 1) / (kStudentNu + depth_squared);
+    const Eigen::Vector3d weighted_depth = depth_weight * depth;
+    share.information.noalias() += weighted_depth * depth.transpose();
+    share.pull += residual.depth * weighted_depth;
+    direction_ += weighted.cross(depth);
+    return true;
+}
+
+void WindowEquations::addPoint(Eigen::Vector3d& point, bool to_hessian) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d pull = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
-    for (const Term& term : terms_) {
-        information.noalias() += term.across * term.across.transpose();
-        information.noalias() += term.depth * term.depth.transpose();
-        pull += term.across_residual * term.across + term.depth_residual * term.depth;
-        direction += term.across.cross(term.depth);
+    Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+    for (const std::int32_t slot : touched_) {
+        information += shares_[static_cast<std::size_t>(slot)].information;
+        pull += shares_[static_cast<std::size_t>(slot)].pull;
     }
-    const double trace = information.trace(), length = direction.norm();
+    const double trace = information.trace(), length = direction_.squaredNorm();
     information.diagonal().array() += kWeakHold * trace;
-    if (length > 0)
-        information.noalias() += (kHold * trace / (length * length) * direction) * direction.transpose();
-    const Eigen::LLT<Eigen::Matrix3d> root(information);
-    const Eigen::Vector3d step = -root.solve(pull);
-    // The camera turns about the world's origin: the Jacobian of a pose is [I; [P]x] times the point's
+    if (length > 0) information.noalias() += (kHold * trace / length * direction_) * direction_.transpose();
+    const Eigen::Matrix3d inverse = information.inverse();
+    const Eigen::Vector3d step = -inverse * pull;
     point += step;
-    touched_.clear();
-    for (const Term& term : terms_) {
-        const auto slot = static_cast<std::size_t>(term.slot);
-        if (rows_[slot] < 0) continue;
-        Vector6 across, depth;
-        across << term.across, point.cross(term.across);
-        depth << term.depth, point.cross(term.depth);
-        gradients_[slot] -= (term.across_residual + term.across.dot(step)) * across +
-                            (term.depth_residual + term.depth.dot(step)) * depth;
-        auto& own = block(slot, slot);
-        own.noalias() += across * across.transpose();
-        own.noalias() += depth * depth.transpose();
-        if (!options_.joint_refinement) continue;
-        if (std::find(touched_.begin(), touched_.end(), term.slot) == touched_.end())
-            touched_.push_back(term.slot);
-        const Eigen::Vector3d k_across = root.matrixL().solve(term.across);
-        const Eigen::Vector3d k_depth = root.matrixL().solve(term.depth);
-        couplings_[slot].noalias() += across * k_across.transpose();
-        couplings_[slot].noalias() += depth * k_depth.transpose();
+    for (const std::int32_t slot : touched_) {
+        const auto s = static_cast<std::size_t>(slot);
+        if (rows_[s] < 0) continue;
+        const Eigen::Vector3d b = shares_[s].pull + shares_[s].information * step;
+        gradients_[s].head<3>() -= b;
+        gradients_[s].tail<3>() -= point.cross(b);
     }
+    if (to_hessian) addToHessian(point, inverse);
+}
+
+void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse) {
     std::sort(touched_.begin(), touched_.end());
+    const Eigen::Matrix3d P = skew(point);
+    for (const std::int32_t slot : touched_) {
+        if (rows_[static_cast<std::size_t>(slot)] < 0) continue;
+        Share& share = shares_[static_cast<std::size_t>(slot)];
+        share.coupling.topRows<3>() = share.information;
+        share.coupling.bottomRows<3>().noalias() = P * share.information;
+        Block& own = block(slot, slot);
+        own.leftCols<3>() += share.coupling;
+        own.rightCols<3>().noalias() -= share.coupling * P;
+    }
+    if (!options_.joint_refinement) return;
     for (std::size_t a = 0; a < touched_.size(); ++a) {
-        const Coupling& first = couplings_[static_cast<std::size_t>(touched_[a])];
+        if (rows_[static_cast<std::size_t>(touched_[a])] < 0) continue;
+        const Eigen::Matrix<double, 6, 3> through =
+            shares_[static_cast<std::size_t>(touched_[a])].coupling * inverse;
         for (std::size_t c = a; c < touched_.size(); ++c) {
-            block(static_cast<std::size_t>(touched_[a]), static_cast<std::size_t>(touched_[c])).noalias() -=
-                first * couplings_[static_cast<std::size_t>(touched_[c])].transpose();
+            if (rows_[static_cast<std::size_t>(touched_[c])] < 0) continue;
+            block(touched_[a], touched_[c]).noalias() -=
+                through * shares_[static_cast<std::size_t>(touched_[c])].coupling.transpose();
         }
     }
-    for (const std::int32_t slot : touched_) couplings_[static_cast<std::size_t>(slot)].setZero();
 }
 
 }  // namespace roevo

@@ -51,22 +51,26 @@ class WindowEquations {
         double x, y, inverse_z;  ///< of the fused point, camera frame
         double across, depth;    ///< px, m
     };
-    /// What one observation adds: rows of its Jacobian with respect to the point, times the root of its
-    /// weight.
-    struct Term {
-        Eigen::Vector3d across, depth;
-        double across_residual, depth_residual;
-        std::int32_t slot;
+    /// What a keyframe's observations of one point add up to, in the world's axes. The pose's part follows,
+    /// because moving the camera is moving the point the other way: with G = [I; [P]x], P the point,
+    /// H_pose = G A G^T, H_pose,point = -G A, g_pose = -G b.
+    struct Share {
+        Eigen::Matrix3d information;  ///< A
+        Eigen::Vector3d pull;         ///< b
+        Eigen::Matrix<double, 6, 3> coupling;
+        bool used = false;
     };
     using Vector6 = Eigen::Matrix<double, 6, 1>;
-    using Coupling = Eigen::Matrix<double, 6, 3>;
+    using Block = Eigen::Matrix<double, 6, 6>;
 
     void spreads(double least_scale);
     double spread(std::int32_t slot, double least_scale);
-    bool linearise(const Sight& sight, const Residual& residual, const Eigen::Matrix3d& R, Term& term) const;
-    void addPoint(Eigen::Vector3d& point);
-    Eigen::Matrix<double, 6, 6>& block(std::size_t row_slot, std::size_t column_slot) {
-        return blocks_[row_slot * rows_.size() + column_slot];
+    bool addSight(const Sight& sight, const Residual& residual, const Eigen::Matrix3d& R);
+    void addPoint(Eigen::Vector3d& point, bool to_hessian);
+    void addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse);
+    Block& block(std::int32_t row_slot, std::int32_t column_slot) {
+        return blocks_[static_cast<std::size_t>(row_slot) * rows_.size() +
+                       static_cast<std::size_t>(column_slot)];
     }
 
     MappingOptions options_;
@@ -79,11 +83,12 @@ class WindowEquations {
     std::vector<float> scratch_;
     std::vector<int> rows_;
     int num_rows_ = 0;
-    std::vector<Term> terms_;
-    std::vector<Eigen::Matrix<double, 6, 6>, Eigen::aligned_allocator<Eigen::Matrix<double, 6, 6>>> blocks_;
+    std::vector<Block, Eigen::aligned_allocator<Block>> blocks_;
     std::vector<Vector6, Eigen::aligned_allocator<Vector6>> gradients_;
-    std::vector<Coupling, Eigen::aligned_allocator<Coupling>> couplings_;  ///< of each keyframe
-    std::vector<std::int32_t> touched_;                                    ///< keyframes that see a point
+    // Of the point that is being added
+    std::vector<Share, Eigen::aligned_allocator<Share>> shares_;  ///< of each keyframe
+    std::vector<std::int32_t> touched_;                           ///< keyframes that have a share
+    Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();         ///< of the edge, not normalised
 };
 
 }  // namespace roevo

@@ -22,7 +22,7 @@ struct MapKeyframe {
     std::vector<float> weight;   ///< w_s(depth), Eq. (20)
     std::vector<float>
         slope;  ///< change of depth along the edge, in the direction (-normal_y, normal_x), m/px
-    std::vector<std::int32_t> source;  ///< index of each point in the tracker's keyframe
+    std::vector<std::int32_t> source;  ///< index of each point in the tracker's keyframe; empty once compact
     std::vector<Rgb> colours;          ///< of each point
     std::vector<float> found;  ///< of each edge: share of the frames after it that found it; < 0: not known
     double median_depth = 0;   ///< m
@@ -35,6 +35,10 @@ struct MapKeyframe {
 
 /// Fills slope: a line through the depths of the points up to `span` places before and after.
 void computeSlopes(MapKeyframe& keyframe, int span);
+
+/// Drops what only a new keyframe needs: image gradients and the points' indices in the tracker's keyframe.
+/// Maps keep keyframes for ever.
+void compact(MapKeyframe& keyframe);
 
 /// @param colours  one per point of the keyframe's edges
 /// @param max_points  points are thinned evenly along the edges until there are no more than these
