@@ -5,6 +5,7 @@
 
 #include "core/support/mapping_world.h"
 #include "roevo/mapping/bundle_adjustment.h"
+#include "roevo/mapping/pseudo_edges.h"
 
 namespace roevo {
 namespace {
@@ -33,6 +34,16 @@ class BundleAdjustment : public ::testing::Test {
     BundleAdjuster adjuster() const { return {mapping_, sensor_, mappingCamera()}; }
     RefinementResult refine(int iterations, const std::vector<RelativePrior>& priors = {}) {
         return adjuster().refine(window_, edges_, priors, iterations);
+    }
+    /// As the mapper goes about it, keyframe after keyframe: associations from drifted poses are displaced
+    /// along the edges, and where an edge is bent, only those at better poses tell the truth.
+    RefinementResult fuseAndRefine(int times, int iterations) {
+        RefinementResult result;
+        for (int k = 0; k < times; ++k) {
+            edges_ = fuse(window_, clustersByCurve(made_));
+            result = refine(iterations);
+        }
+        return result;
     }
     /// Single iterations do not stop at the image motion that is too small to matter.
     double refineToTheEnd(int iterations) {
@@ -76,22 +87,25 @@ TEST_F(BundleAdjustment, DriftedPosesConvergeToTheTruth) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
         drift(seed);
         ASSERT_GT(positionError(window_), 1e-3);
-        refine(20);
+        fuseAndRefine(2, 10);
         EXPECT_LT(positionError(window_), 2e-4) << seed;
         EXPECT_LT(rotationError(window_), 1e-4) << seed;
     }
 }
 
 TEST_F(BundleAdjustment, JointNeedsFewerIterationsThanAlternating) {
+    int joint = 0, alternating = 0;
     for (unsigned seed = 1; seed <= 5; ++seed) {
         mapping_.joint_refinement = true;
         drift(seed);
-        const int joint = iterationsTo(5e-4, 8);
-        EXPECT_LE(joint, 4) << seed;
+        const int needed = iterationsTo(5e-4, 8);
+        EXPECT_LE(needed, 4) << seed;
+        joint += needed;
         mapping_.joint_refinement = false;
         drift(seed);
-        EXPECT_GT(iterationsTo(5e-4, 4 * joint), 4 * joint) << seed;
+        alternating += iterationsTo(5e-4, 40);
     }
+    EXPECT_GT(alternating, 4 * joint);
 }
 
 TEST_F(BundleAdjustment, AlternatingConvergesFromASmallDrift) {
@@ -111,15 +125,14 @@ TEST_F(BundleAdjustment, AWindowThatDriftedAsAWholeComesBack) {
         for (auto& view : window_) {
             if (!view.fixed) view.T_world_camera.translation() += Eigen::Vector3d(metres, metres / 2, 0);
         }
-        edges_ = fuse(window_, clustersByCurve(made_));
-        refine(20);
+        fuseAndRefine(2, 10);
         EXPECT_LT(positionError(window_), 2e-4) << metres;
     }
 }
 
-// Fails: those that drifted agree among themselves before they are back, the spread shrinks with them, and
-// the observations of the fixed keyframe are then outliers for ever (372 of 1397 left with seed 1).
-TEST_F(BundleAdjustment, DISABLED_AlternatingHoldsOnToTheFixedKeyframe) {
+// Those that drifted agree among themselves before they are back: with one spread for all, the observations
+// of the fixed keyframe would be outliers for ever.
+TEST_F(BundleAdjustment, AlternatingHoldsOnToTheFixedKeyframe) {
     mapping_.joint_refinement = false;
     for (unsigned seed = 1; seed <= 5; ++seed) {
         drift(seed);
@@ -142,7 +155,7 @@ TEST_F(BundleAdjustment, FixedKeyframesNeverMove) {
     window_[3].fixed = true;
     window_[3].T_world_camera = truth_[3].T_world_camera;
     const auto before = window_;
-    refine(8);
+    fuseAndRefine(2, 4);
     for (const std::size_t s : {0U, 3U})
         EXPECT_EQ(window_[s].T_world_camera.matrix(), before[s].T_world_camera.matrix()) << s;
     EXPECT_LT(positionError(window_), 2e-4);
@@ -197,7 +210,7 @@ TEST_F(BundleAdjustment, AKeyframeWithoutObservationsStaysAndStaysFinite) {
     look(std::move(made));
     drift();
     const auto before = window_;
-    const RefinementResult result = refine(8);
+    const RefinementResult result = fuseAndRefine(2, 4);
     for (const std::size_t s : {2U, 5U}) {
         EXPECT_LT((window_[s].T_world_camera.matrix() - before[s].T_world_camera.matrix()).norm(), 1e-12);
     }
@@ -212,7 +225,7 @@ TEST_F(BundleAdjustment, NothingToRefine) {
     std::vector<WindowKeyframe> none;
     FusedEdges no_edges;
     EXPECT_EQ(adjuster().refine(none, no_edges, {}, 5).iterations, 0);
-    adjuster().judge(none, no_edges);
+    PseudoEdgeJudge(mapping_, sensor_, mappingCamera()).judge(none, no_edges, 1);
     // One keyframe alone, fixed or not
     for (const bool fixed : {true, false}) {
         std::vector<WindowKeyframe> one{truth_[1]};
@@ -275,7 +288,8 @@ TEST_F(BundleAdjustment, APriorPlacesAKeyframeThatSeesNothing) {
 struct CeresObservation {
     PinholeCamera camera;
     Eigen::Vector2d measured, normal;
-    double across, along, depth;  // factors of the two residuals; measured depth
+    double across, along, depth,
+        slope;  // factors of the two residuals; measured depth, its change along the edge
 
     template <class T>
     bool operator()(const T* pose, const T* point, T* residual) const {
@@ -284,7 +298,20 @@ struct CeresObservation {
         for (int k = 0; k < 3; ++k) q[k] += pose[3 + k];
         const T u = camera.fx * q[0] / q[2] + camera.cx, v = camera.fy * q[1] / q[2] + camera.cy;
         residual[0] = across * (normal.x() * (u - measured.x()) + normal.y() * (v - measured.y()));
-        residual[1] = along * (q[2] - depth);
+        const T further = normal.x() * (v - measured.y()) - normal.y() * (u - measured.x());
+        residual[1] = along * (q[2] - depth - slope * further);
+        return true;
+    }
+};
+
+/// Keeps a point where it is along its edge: lines are compared, on which its place is free.
+struct CeresHold {
+    Eigen::Vector3d point, direction;
+
+    template <class T>
+    bool operator()(const T* at, T* residual) const {
+        residual[0] = T(0);
+        for (int k = 0; k < 3; ++k) residual[0] += 1e6 * direction[k] * (at[k] - point[k]);
         return true;
     }
 };
@@ -310,6 +337,13 @@ std::vector<Eigen::Vector3d> solveWithCeres(const std::vector<WindowKeyframe>& w
         const auto first = static_cast<std::size_t>(edges.observation_begin[p]);
         const auto end = static_cast<std::size_t>(edges.observation_begin[p + 1]);
         if (end - first < 2) continue;
+        const auto edge_end = std::upper_bound(edges.begin.begin(), edges.begin.end(), static_cast<int>(p));
+        const auto low = std::max(p, static_cast<std::size_t>(*(edge_end - 1)) + 1) - 1;
+        const auto high = std::min(p + 1, static_cast<std::size_t>(*edge_end) - 1);
+        const Eigen::Vector3d chord = edges.points[high] - edges.points[low];
+        problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CeresHold, 1, 3>(
+                                     new CeresHold{edges.points[p], chord.normalized()}),
+                                 nullptr, points[p].data());
         for (std::size_t k = first; k < end; ++k) {
             const auto slot = static_cast<std::size_t>(edges.observations[k].slot);
             const auto i = static_cast<std::size_t>(edges.observations[k].point);
@@ -325,7 +359,8 @@ std::vector<Eigen::Vector3d> solveWithCeres(const std::vector<WindowKeyframe>& w
                                          {keyframe.image.normal_x[i], keyframe.image.normal_y[i]},
                                          trust / scale,
                                          trust * std::sqrt(mapping.depth_weight) / sigma,
-                                         depth}),
+                                         depth,
+                                         keyframe.slope[i]}),
                 nullptr, poses[slot].data(), points[p].data());
         }
     }

@@ -3,6 +3,7 @@
 
 #include "core/support/mapping_world.h"
 #include "roevo/mapping/bundle_adjustment.h"
+#include "roevo/mapping/pseudo_edges.h"
 
 namespace roevo {
 namespace {
@@ -43,8 +44,8 @@ class PseudoEdges : public ::testing::Test {
         disturb(window_, random, drift, drift);
         edges_ = fuse(window_, clustersByCurve(made_));
         BundleAdjuster adjuster(mapping_, SensorOptions(), mappingCamera());
-        adjuster.refine(window_, edges_, {}, 3);
-        adjuster.judge(window_, edges_);
+        const double scale = adjuster.refine(window_, edges_, {}, 3).scale;
+        PseudoEdgeJudge(mapping_, SensorOptions(), mappingCamera()).judge(window_, edges_, scale);
         EdgeVerdict verdict = EdgeVerdict::kUnconfirmed;
         for (std::size_t e = 0; e < edges_.verdicts.size(); ++e) {
             if (edges_.clusters[e] == kJudged) {
@@ -117,7 +118,7 @@ TEST_F(PseudoEdges, FewLooksDoNotCondemn) {
     }
     window_ = windowOf(made_);
     edges_ = fuse(window_, clustersByCurve(made_));
-    BundleAdjuster(mapping_, SensorOptions(), mappingCamera()).judge(window_, edges_);
+    PseudoEdgeJudge(mapping_, SensorOptions(), mappingCamera()).judge(window_, edges_, 0.3);
     const auto at =
         std::find(edges_.clusters.begin(), edges_.clusters.end(), kJudged) - edges_.clusters.begin();
     EXPECT_EQ(edges_.verdicts[static_cast<std::size_t>(at)], EdgeVerdict::kTrue);

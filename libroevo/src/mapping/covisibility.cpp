@@ -55,6 +55,7 @@ void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<con
             }
         }
     }
+    links.shrink_to_fit();
 }
 
 void CovisibilityGraph::remove(int keyframe) {

@@ -23,7 +23,8 @@ LocalMapper::LocalMapper(const PinholeCamera& camera, const OdometryOptions& opt
       options_(options),
       graph_(options.fine, 3),
       fuser_(camera.fx, options.sensor.depth_noise),
-      adjuster_(options.mapping, options.sensor, camera) {}
+      adjuster_(options.mapping, options.sensor, camera),
+      judge_(options.mapping, options.sensor, camera) {}
 
 std::vector<const MapKeyframe*> LocalMapper::recentOf(int id) const {
     std::vector<const MapKeyframe*> recent;
@@ -132,13 +133,17 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     update.reused = static_cast<int>(reused.size());
     buildWindow(id, reused);
     addPriors();
-    if (window_.size() < 2) return update;
+    if (window_.size() < 2) {
+        compact(keyframe);
+        return update;
+    }
     std::vector<const MapKeyframe*> members;
     for (const WindowKeyframe& view : window_) members.push_back(view.keyframe);
     fuser_.fuse(window_, graph_.clusters(members), fused_);
     const int rough = std::min(kRoughIterations, options_.mapping.max_iterations / 2);
-    adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kReusedScale);
-    adjuster_.judge(window_, fused_);
+    const RefinementResult first =
+        adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kReusedScale);
+    judge_.judge(window_, fused_, first.scale);
     update.refinement = adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
     for (std::size_t slot = 0; slot < window_.size(); ++slot) {
         WindowKeyframe& view = window_[slot];
@@ -154,6 +159,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     }
     keepVerdicts();
     describeNewest(update);
+    compact(keyframe);
     return update;
 }
 

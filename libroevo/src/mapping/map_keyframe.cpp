@@ -5,6 +5,25 @@
 #include "roevo/tracking/kernels.h"
 
 namespace roevo {
+namespace {
+
+constexpr int kSlopeSpan = 4;         ///< points to each side: depth is noisy
+constexpr float kLeastSpread = 1.0f;  ///< px^2 times points^2; less and a slope cannot be told
+
+/// Keyframes are kept for ever: arrays that grow by doubling would waste half of it.
+void reserve(MapKeyframe& keyframe, std::size_t points) {
+    OrganizedEdges& image = keyframe.image;
+    for (auto* array :
+         {&image.x, &image.y, &image.gradient_x, &image.gradient_y, &image.normal_x, &image.normal_y,
+          &image.strength, &keyframe.x, &keyframe.y, &keyframe.z, &keyframe.weight}) {
+        array->reserve(points + kernels::paddedSize(1));
+    }
+    image.edge_of.reserve(points);
+    keyframe.source.reserve(points);
+    keyframe.colours.reserve(points);
+}
+
+}  // namespace
 
 const char* toString(EdgeVerdict verdict) {
     switch (verdict) {
@@ -20,6 +39,41 @@ const char* toString(EdgeVerdict verdict) {
     return "unknown";
 }
 
+void computeSlopes(MapKeyframe& keyframe, int span) {
+    const OrganizedEdges& image = keyframe.image;
+    keyframe.slope.assign(keyframe.size(), 0);
+    for (std::size_t e = 0; e + 1 < image.begin.size(); ++e) {
+        for (int i = image.begin[e]; i < image.begin[e + 1]; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            const int first = std::max(image.begin[e], i - span),
+                      last = std::min(image.begin[e + 1] - 1, i + span);
+            float sum = 0, sum_s = 0, sum_z = 0, sum_ss = 0, sum_sz = 0;
+            for (int j = first; j <= last; ++j) {
+                const auto other = static_cast<std::size_t>(j);
+                const float s = image.normal_x[at] * (image.y[other] - image.y[at]) -
+                                image.normal_y[at] * (image.x[other] - image.x[at]);
+                const float z = keyframe.z[other] - keyframe.z[at];
+                sum += 1;
+                sum_s += s;
+                sum_z += z;
+                sum_ss += s * s;
+                sum_sz += s * z;
+            }
+            const float spread = sum * sum_ss - sum_s * sum_s;
+            if (spread > kLeastSpread) keyframe.slope[at] = (sum * sum_sz - sum_s * sum_z) / spread;
+        }
+    }
+}
+
+void compact(MapKeyframe& keyframe) {
+    for (auto* array : {&keyframe.image.gradient_x, &keyframe.image.gradient_y, &keyframe.image.strength}) {
+        array->clear();
+        array->shrink_to_fit();
+    }
+    keyframe.source.clear();
+    keyframe.source.shrink_to_fit();
+}
+
 MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,
                           const PinholeCamera& camera, int max_points) {
     MapKeyframe out;
@@ -31,6 +85,7 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
     const std::size_t limit = static_cast<std::size_t>(std::max(1, max_points));
     const std::size_t stride = std::max<std::size_t>(1, (edges.size() + limit - 1) / limit);
     out.image.clear();
+    reserve(out, edges.size() / stride + static_cast<std::size_t>(edges.image.numEdges()));
     for (std::size_t e = 0; e + 1 < edges.image.begin.size(); ++e) {
         const auto first = static_cast<std::size_t>(edges.image.begin[e]);
         const auto end = static_cast<std::size_t>(edges.image.begin[e + 1]);
@@ -51,6 +106,7 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
         }
         out.image.finishEdge();
     }
+    computeSlopes(out, kSlopeSpan);
     out.found.assign(static_cast<std::size_t>(out.image.numEdges()), -1);
     const std::size_t padded = kernels::paddedSize(out.size());
     out.x.resize(padded, 0);

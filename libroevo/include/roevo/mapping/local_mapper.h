@@ -7,6 +7,7 @@
 #include "roevo/mapping/bundle_adjustment.h"
 #include "roevo/mapping/covisibility.h"
 #include "roevo/mapping/edge_fusion.h"
+#include "roevo/mapping/pseudo_edges.h"
 
 namespace roevo {
 
@@ -55,6 +56,7 @@ class LocalMapper {
     CovisibilityGraph graph_;
     EdgeFuser fuser_;
     BundleAdjuster adjuster_;
+    PseudoEdgeJudge judge_;
     std::map<int, MapKeyframe> keyframes_;
     std::map<int, std::vector<EdgeVerdict>> verdicts_;  ///< of each keyframe's edges
     std::vector<WindowKeyframe> window_;

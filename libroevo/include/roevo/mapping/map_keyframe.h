@@ -20,7 +20,9 @@ struct MapKeyframe {
     OrganizedEdges image;        ///< where the points would be seen at the reference row's time, ideal px
     std::vector<float> x, y, z;  ///< camera frame, m; padded for the kernels
     std::vector<float> weight;   ///< w_s(depth), Eq. (20)
-    std::vector<std::int32_t> source;  ///< index of each point in the tracker's keyframe
+    std::vector<float>
+        slope;  ///< change of depth along the edge, in the direction (-normal_y, normal_x), m/px
+    std::vector<std::int32_t> source;  ///< index of each point in the tracker's keyframe; empty once compact
     std::vector<Rgb> colours;          ///< of each point
     std::vector<float> found;  ///< of each edge: share of the frames after it that found it; < 0: not known
     double median_depth = 0;   ///< m
@@ -30,6 +32,13 @@ struct MapKeyframe {
         return {static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
     }
 };
+
+/// Fills slope: a line through the depths of the points up to `span` places before and after.
+void computeSlopes(MapKeyframe& keyframe, int span);
+
+/// Drops what only a new keyframe needs: image gradients and the points' indices in the tracker's keyframe.
+/// Maps keep keyframes for ever.
+void compact(MapKeyframe& keyframe);
 
 /// @param colours  one per point of the keyframe's edges
 /// @param max_points  points are thinned evenly along the edges until there are no more than these

@@ -1,0 +1,238 @@
+#include "window_equations.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "roevo/tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+constexpr double kMinScale = 0.1, kMaxScale = 2.0;  ///< px
+constexpr double kStudentNu = 5;         ///< degrees of freedom of the t-distribution that residuals follow
+constexpr double kLeastVariance = 1e-6;  ///< m^2 of depth: a millimetre, whatever the sensor
+constexpr double kNearest = 0.05;        ///< m; nearer points cannot be projected
+constexpr std::size_t kScaleStep = 3;    ///< every so manieth point is enough for a median
+/// Points that make the Hessian; there are more than it needs. All make the gradient, so that nothing but the
+/// step to the optimum is approximate.
+constexpr std::size_t kHessianPoints = 1500;
+constexpr std::int32_t kAnySlot = -1;
+/// Of a point along its edge, as a share of what is known across: normals and slopes differ by noise, and
+/// points that follow them slide. 1 and 0.001 are about as good.
+constexpr double kHold = 0.1;
+constexpr double kWeakHold = 1e-6;  ///< of a point in directions in which nothing is known
+
+}  // namespace
+
+void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const FusedEdges& edges) {
+    points_.clear();
+    begin_.assign(1, 0);
+    sights_.clear();
+    for (int e = 0; e < edges.numEdges(); ++e) {
+        const auto edge = static_cast<std::size_t>(e);
+        if (edges.verdicts[edge] != EdgeVerdict::kTrue) continue;
+        for (std::int32_t p = edges.begin[edge]; p < edges.begin[edge + 1]; ++p) {
+            const auto first = static_cast<std::size_t>(edges.observation_begin[static_cast<std::size_t>(p)]);
+            const auto end =
+                static_cast<std::size_t>(edges.observation_begin[static_cast<std::size_t>(p) + 1]);
+            if (end - first < 2) continue;
+            for (std::size_t k = first; k < end; ++k) {
+                const std::int32_t slot = edges.observations[k].slot;
+                const MapKeyframe& keyframe = *window[static_cast<std::size_t>(slot)].keyframe;
+                const auto i = static_cast<std::size_t>(edges.observations[k].point);
+                const auto nx = static_cast<double>(keyframe.image.normal_x[i]);
+                const auto ny = static_cast<double>(keyframe.image.normal_y[i]);
+                const double x = static_cast<double>(keyframe.image.x[i]) - camera_.cx;
+                const double y = static_cast<double>(keyframe.image.y[i]) - camera_.cy;
+                const auto trust = static_cast<double>(keyframe.weight[i]);
+                const auto depth = static_cast<double>(keyframe.z[i]);
+                const double sigma = sensor_.depth_noise * depth * depth;
+                sights_.push_back({camera_.fx * nx, camera_.fy * ny, nx * x + ny * y, -camera_.fx * ny,
+                                   camera_.fy * nx, nx * y - ny * x, depth,
+                                   static_cast<double>(keyframe.slope[i]), trust,
+                                   1 / (sigma * sigma + kLeastVariance), slot});
+            }
+            points_.push_back(p);
+            begin_.push_back(static_cast<std::int32_t>(sights_.size()));
+        }
+    }
+    residuals_.resize(sights_.size());
+    const std::size_t slots = window.size();
+    rows_.assign(slots, -1);
+    num_rows_ = 0;
+    for (std::size_t s = 0; s < slots; ++s) {
+        if (window[s].fixed) continue;
+        rows_[s] = num_rows_;
+        num_rows_ += 6;
+    }
+    hessian.resize(num_rows_, num_rows_);
+    gradient.resize(num_rows_);
+    blocks_.resize(slots * slots);
+    gradients_.resize(slots);
+    shares_.resize(slots);
+    scales_.resize(slots);
+}
+
+void WindowEquations::evaluate(const std::vector<WindowKeyframe>& window,
+                               const std::vector<Eigen::Vector3d>& points, double least_scale) {
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+        const Eigen::Vector3d& point = points[static_cast<std::size_t>(points_[p])];
+        for (auto k = static_cast<std::size_t>(begin_[p]); k < static_cast<std::size_t>(begin_[p + 1]); ++k) {
+            const Sight& sight = sights_[k];
+            const Pose& T = window[static_cast<std::size_t>(sight.slot)].T_world_camera;
+            const Eigen::Vector3d q = T.linear().transpose() * (point - T.translation());
+            Residual& out = residuals_[k];
+            if (!(q.z() > kNearest)) {
+                out.inverse_z = -1;
+                continue;
+            }
+            const double inverse = 1 / q.z();
+            const double along = (sight.along_a * q.x() + sight.along_b * q.y()) * inverse - sight.along_c;
+            out = {q.x(), q.y(), inverse,
+                   (sight.across_a * q.x() + sight.across_b * q.y()) * inverse - sight.across_c,
+                   q.z() - sight.depth - sight.slope * along};
+        }
+    }
+    spreads(least_scale);
+}
+
+void WindowEquations::spreads(double least_scale) {
+    // Registered alone, a keyframe is judged by its own spread: keyframes that drifted together agree among
+    // themselves long before they are back, and would else shut out those that did not
+    if (!options_.joint_refinement) {
+        for (std::size_t s = 0; s < scales_.size(); ++s)
+            scales_[s] = spread(static_cast<std::int32_t>(s), least_scale);
+    }
+    scale = spread(kAnySlot, least_scale);
+    if (options_.joint_refinement) std::fill(scales_.begin(), scales_.end(), scale);
+}
+
+double WindowEquations::spread(std::int32_t slot, double least_scale) {
+    scratch_.clear();
+    for (std::size_t p = 0; p < points_.size(); p += kScaleStep) {
+        for (auto k = static_cast<std::size_t>(begin_[p]); k < static_cast<std::size_t>(begin_[p + 1]); ++k) {
+            if (residuals_[k].inverse_z < 0 || (slot != kAnySlot && sights_[k].slot != slot)) continue;
+            scratch_.push_back(static_cast<float>(std::abs(residuals_[k].across)));
+        }
+    }
+    if (scratch_.empty()) return kMaxScale;
+    const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
+    std::nth_element(scratch_.begin(), middle, scratch_.end());
+    return std::max(std::clamp(1.4826 * static_cast<double>(*middle), kMinScale, kMaxScale), least_scale);
+}
+
+void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vector<Eigen::Vector3d>& points) {
+    for (auto& entry : blocks_) entry.setZero();
+    for (auto& entry : gradients_) entry.setZero();
+    inliers.assign(window.size(), 0);
+    const std::size_t stride = 1 + points_.size() / kHessianPoints;
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+        int count = 0;
+        touched_.clear();
+        direction_.setZero();
+        for (auto k = static_cast<std::size_t>(begin_[p]); k < static_cast<std::size_t>(begin_[p + 1]); ++k) {
+            if (residuals_[k].inverse_z < 0) continue;
+            const auto slot = static_cast<std::size_t>(sights_[k].slot);
+            if (!addSight(sights_[k], residuals_[k], window[slot].T_world_camera.linear())) continue;
+            ++inliers[slot];
+            ++count;
+        }
+        if (count >= 2) addPoint(points[static_cast<std::size_t>(points_[p])], p % stride == 0);
+        for (const std::int32_t slot : touched_) shares_[static_cast<std::size_t>(slot)].used = false;
+    }
+    for (std::size_t a = 0; a < rows_.size(); ++a) {
+        if (rows_[a] < 0) continue;
+        gradient.segment<6>(rows_[a]) = gradients_[a];
+        for (std::size_t c = a; c < rows_.size(); ++c) {
+            if (rows_[c] < 0) continue;
+            hessian.block<6, 6>(rows_[a], rows_[c]) =
+                static_cast<double>(stride) *
+                block(static_cast<std::int32_t>(a), static_cast<std::int32_t>(c));
+        }
+    }
+}
+
+bool WindowEquations::addSight(const Sight& sight, const Residual& residual, const Eigen::Matrix3d& R) {
+    const double spread = scales_[static_cast<std::size_t>(sight.slot)];
+    const double variance = spread * spread, squared = residual.across * residual.across;
+    if (squared > options_.chi2 * variance) return false;
+    Share& share = shares_[static_cast<std::size_t>(sight.slot)];
+    if (!share.used) {
+        share.used = true;
+        share.information.setZero();
+        share.pull.setZero();
+        touched_.push_back(sight.slot);
+    }
+    // Weights of the t-distribution, (nu + 1) / (nu + r^2 / sigma^2)
+    const double z = residual.inverse_z;
+    const double weight = sight.weight * (kStudentNu + 1) / (kStudentNu * variance + squared);
+    const Eigen::Vector3d across =
+        R * Eigen::Vector3d(z * sight.across_a, z * sight.across_b, -z * (residual.across + sight.across_c));
+    const Eigen::Vector3d weighted = weight * across;
+    share.information.noalias() += weighted * across.transpose();
+    share.pull += residual.across * weighted;
+    const double depth_squared = residual.depth * residual.depth * sight.depth_information;
+    if (!(depth_squared <= options_.depth_chi2)) return true;
+    const double slope = sight.slope * z;
+    const double along = (sight.along_a * residual.x + sight.along_b * residual.y) * z;
+    const Eigen::Vector3d depth =
+        R * Eigen::Vector3d(-slope * sight.along_a, -slope * sight.along_b, 1 + slope * along);
+    const double depth_weight = options_.depth_weight * sight.weight * sight.depth_information *
+                                (kStudentNu + 1) / (kStudentNu + depth_squared);
+    const Eigen::Vector3d weighted_depth = depth_weight * depth;
+    share.information.noalias() += weighted_depth * depth.transpose();
+    share.pull += residual.depth * weighted_depth;
+    direction_ += weighted.cross(depth);
+    return true;
+}
+
+void WindowEquations::addPoint(Eigen::Vector3d& point, bool to_hessian) {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+    for (const std::int32_t slot : touched_) {
+        information += shares_[static_cast<std::size_t>(slot)].information;
+        pull += shares_[static_cast<std::size_t>(slot)].pull;
+    }
+    const double trace = information.trace(), length = direction_.squaredNorm();
+    information.diagonal().array() += kWeakHold * trace;
+    if (length > 0) information.noalias() += (kHold * trace / length * direction_) * direction_.transpose();
+    const Eigen::Matrix3d inverse = information.inverse();
+    const Eigen::Vector3d step = -inverse * pull;
+    point += step;
+    for (const std::int32_t slot : touched_) {
+        const auto s = static_cast<std::size_t>(slot);
+        if (rows_[s] < 0) continue;
+        const Eigen::Vector3d b = shares_[s].pull + shares_[s].information * step;
+        gradients_[s].head<3>() -= b;
+        gradients_[s].tail<3>() -= point.cross(b);
+    }
+    if (to_hessian) addToHessian(point, inverse);
+}
+
+void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse) {
+    std::sort(touched_.begin(), touched_.end());
+    const Eigen::Matrix3d P = skew(point);
+    for (const std::int32_t slot : touched_) {
+        if (rows_[static_cast<std::size_t>(slot)] < 0) continue;
+        Share& share = shares_[static_cast<std::size_t>(slot)];
+        share.coupling.topRows<3>() = share.information;
+        share.coupling.bottomRows<3>().noalias() = P * share.information;
+        Block& own = block(slot, slot);
+        own.leftCols<3>() += share.coupling;
+        own.rightCols<3>().noalias() -= share.coupling * P;
+    }
+    if (!options_.joint_refinement) return;
+    for (std::size_t a = 0; a < touched_.size(); ++a) {
+        if (rows_[static_cast<std::size_t>(touched_[a])] < 0) continue;
+        const Eigen::Matrix<double, 6, 3> through =
+            shares_[static_cast<std::size_t>(touched_[a])].coupling * inverse;
+        for (std::size_t c = a; c < touched_.size(); ++c) {
+            if (rows_[static_cast<std::size_t>(touched_[c])] < 0) continue;
+            block(touched_[a], touched_[c]).noalias() -=
+                through * shares_[static_cast<std::size_t>(touched_[c])].coupling.transpose();
+        }
+    }
+}
+
+}  // namespace roevo

@@ -1,0 +1,94 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "roevo/mapping/bundle_adjustment.h"
+
+namespace roevo {
+
+/// The least-squares problem of a window: what its keyframes observe of the fused points, as residuals and as
+/// normal equations of the poses with the points eliminated.
+///
+/// A keyframe sees the line of an edge, not a point on it: a fused point that lies further along the edge
+/// than the observation is compared with the tangent there, in the image (Eq. (7)) and in depth. Neither
+/// residual changes when the point moves along the edge, so points are held in that direction.
+class WindowEquations {
+  public:
+    WindowEquations(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera)
+        : options_(mapping), sensor_(sensor), camera_(camera) {}
+
+    /// Takes the observations of all points of true edges that have at least two.
+    void gather(const std::vector<WindowKeyframe>& window, const FusedEdges& edges);
+
+    /// Residuals at these poses and points, and their robust spread in each keyframe.
+    /// @param least_scale  px; no spread is taken for smaller
+    void evaluate(const std::vector<WindowKeyframe>& window, const std::vector<Eigen::Vector3d>& points,
+                  double least_scale);
+
+    /// Moves the points to where they fit best (edge fitting, the inner problem of Eq. (18)) and builds the
+    /// normal equations of the poses that are not fixed. Perturbations are (t, phi): x <- exp(phi) x + t of
+    /// the camera's body in the world.
+    void build(const std::vector<WindowKeyframe>& window, std::vector<Eigen::Vector3d>& points);
+
+    /// First row of a keyframe in the normal equations, -1: fixed.
+    int row(std::size_t slot) const { return rows_[slot]; }
+    int numRows() const { return num_rows_; }
+
+    Eigen::MatrixXd hessian;  ///< upper triangle
+    Eigen::VectorXd gradient;
+    std::vector<int> inliers;  ///< of each keyframe
+    double scale = 0;          ///< robust spread of the point-to-tangent residuals of all keyframes, px
+
+  private:
+    /// An observation: residual = (a X + b Y) / Z - c across the edge, and the same along it.
+    struct Sight {
+        double across_a, across_b, across_c, along_a, along_b, along_c;
+        double depth, slope;               ///< m; m per px along the edge
+        double weight, depth_information;  ///< 1/m^2
+        std::int32_t slot;
+    };
+    struct Residual {
+        double x, y, inverse_z;  ///< of the fused point, camera frame
+        double across, depth;    ///< px, m
+    };
+    /// What a keyframe's observations of one point add up to, in the world's axes. The pose's part follows,
+    /// because moving the camera is moving the point the other way: with G = [I; [P]x], P the point,
+    /// H_pose = G A G^T, H_pose,point = -G A, g_pose = -G b.
+    struct Share {
+        Eigen::Matrix3d information;  ///< A
+        Eigen::Vector3d pull;         ///< b
+        Eigen::Matrix<double, 6, 3> coupling;
+        bool used = false;
+    };
+    using Vector6 = Eigen::Matrix<double, 6, 1>;
+    using Block = Eigen::Matrix<double, 6, 6>;
+
+    void spreads(double least_scale);
+    double spread(std::int32_t slot, double least_scale);
+    bool addSight(const Sight& sight, const Residual& residual, const Eigen::Matrix3d& R);
+    void addPoint(Eigen::Vector3d& point, bool to_hessian);
+    void addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse);
+    Block& block(std::int32_t row_slot, std::int32_t column_slot) {
+        return blocks_[static_cast<std::size_t>(row_slot) * rows_.size() +
+                       static_cast<std::size_t>(column_slot)];
+    }
+
+    MappingOptions options_;
+    SensorOptions sensor_;
+    PinholeCamera camera_;
+    std::vector<std::int32_t> points_, begin_;  ///< points that take part; first sight of each
+    std::vector<Sight> sights_;
+    std::vector<Residual> residuals_;
+    std::vector<double> scales_;  ///< of each keyframe, px
+    std::vector<float> scratch_;
+    std::vector<int> rows_;
+    int num_rows_ = 0;
+    std::vector<Block, Eigen::aligned_allocator<Block>> blocks_;
+    std::vector<Vector6, Eigen::aligned_allocator<Vector6>> gradients_;
+    // Of the point that is being added
+    std::vector<Share, Eigen::aligned_allocator<Share>> shares_;  ///< of each keyframe
+    std::vector<std::int32_t> touched_;                           ///< keyframes that have a share
+    Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();         ///< of the edge, not normalised
+};
+
+}  // namespace roevo
