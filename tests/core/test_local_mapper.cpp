@@ -161,6 +161,31 @@ TEST_F(Mapper, ReusedKeyframesHoldStill) {
     EXPECT_LT(errorOf(mapper, 7, 1), 5e-4);
 }
 
+TEST_F(Mapper, ATrackThatBeganAnewIsNotRelatedToTheOldOne) {
+    // Re-anchored 40 mm off at a place that looks the same: nothing pulls one track to the other
+    LocalMapper mapper(mappingCamera(), options_);
+    for (int k = 0; k < 4; ++k) mapper.insert(keyframeAt(k, k));
+    const auto before = mapper.keyframes();
+    Pose off = Pose::Identity();
+    off.translation().x() = 0.04;
+    for (int k = 4; k < 9; ++k) {
+        MapKeyframe keyframe = keyframeAt(k, k % 4);
+        keyframe.T_world_camera = off * keyframe.T_world_camera;
+        keyframe.begins_track = k == 4;
+        const MapUpdate update = mapper.insert(keyframe);
+        EXPECT_EQ(update.reason, "");
+        for (const auto& [id, pose] : update.poses)
+            EXPECT_GT(id, 4) << "the first of the track holds the gauge";
+    }
+    for (int k = 0; k < 4; ++k)
+        EXPECT_EQ(mapper.keyframes().at(k).T_world_camera.matrix(), before.at(k).T_world_camera.matrix());
+    for (int k = 4; k < 9; ++k) {
+        const Pose& found = mapper.keyframes().at(k).T_world_camera;
+        EXPECT_LT((found.translation() - (off * placeOnPath(k % 4)).translation()).norm(), 4e-4) << k;
+    }
+    for (const MapEdge& edge : mapper.fusedMap()) EXPECT_LE(edge.views, 5);
+}
+
 TEST_F(Mapper, TheMapHasEveryCurveOnce) {
     LocalMapper mapper(mappingCamera(), options_);
     for (int k = 0; k < 6; ++k) mapper.insert(keyframeAt(k, k));

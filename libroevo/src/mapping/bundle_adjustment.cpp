@@ -14,18 +14,18 @@ namespace {
 constexpr double kStill = 0.005;  ///< px of image motion; smaller steps end the refinement
 
 /// Adds the error of T_world_to against T_world_from * T_from_to, as a perturbation in the world's axes.
-void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& window, int row, int col,
-              Eigen::MatrixXd& hessian, Eigen::VectorXd& gradient) {
+void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& window,
+              const Eigen::Vector3d& origin, int row, int col, Eigen::MatrixXd& hessian,
+              Eigen::VectorXd& gradient) {
     const auto from = static_cast<std::size_t>(prior.from), to = static_cast<std::size_t>(prior.to);
     const Pose expected = window[from].T_world_camera * prior.T_from_to;
     const Eigen::Matrix3d turned = window[to].T_world_camera.linear() * expected.linear().transpose();
     const Eigen::AngleAxisd angle(turned);
-    // Perturbations are world-left, xi = (t, phi) with x <- exp(phi) x + t; the camera's centre moves by
-    // t + phi x centre
+    // The camera's centre moves by t + phi x (centre - origin)
     Vector6d error;
     error << window[to].T_world_camera.translation() - expected.translation(), angle.angle() * angle.axis();
     Matrix6d to_centre = Matrix6d::Identity();
-    to_centre.topRightCorner<3, 3>() = -skew(window[to].T_world_camera.translation());
+    to_centre.topRightCorner<3, 3>() = -skew(window[to].T_world_camera.translation() - origin);
     const Matrix6d own = to_centre.transpose() * prior.information * to_centre;
     const Vector6d pull = to_centre.transpose() * prior.information * error;
     if (col >= 0) {
@@ -66,7 +66,7 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
         hessian /= kCorrelatedPoints;
         gradient /= kCorrelatedPoints;
         for (const RelativePrior& prior : priors) {
-            addPrior(prior, window, equations.row(static_cast<std::size_t>(prior.from)),
+            addPrior(prior, window, equations.origin(), equations.row(static_cast<std::size_t>(prior.from)),
                      equations.row(static_cast<std::size_t>(prior.to)), hessian, gradient);
         }
         hessian.diagonal().array() += 1e-6;
@@ -89,7 +89,10 @@ double BundleAdjuster::move(std::vector<WindowKeyframe>& window, const Eigen::Ve
         if (row < 0) continue;
         const Vector6d xi = step.segment<6>(row);
         const Pose before = window[s].T_world_camera;
-        window[s].T_world_camera = poseIncrement(xi) * before;
+        Pose T_origin_camera = before;
+        T_origin_camera.translation() -= equations_->origin();
+        window[s].T_world_camera = poseIncrement(xi) * T_origin_camera;
+        window[s].T_world_camera.translation() += equations_->origin();
         orthonormalise(window[s].T_world_camera);
         const double moved = (window[s].T_world_camera.translation() - before.translation()).norm() /
                                  std::max(0.1, window[s].keyframe->median_depth) +

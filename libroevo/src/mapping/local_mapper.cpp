@@ -30,6 +30,7 @@ std::vector<const MapKeyframe*> LocalMapper::recentOf(int id) const {
     std::vector<const MapKeyframe*> recent;
     for (auto it = keyframes_.rbegin(); it != keyframes_.rend(); ++it) {
         if (it->first >= id) continue;
+        if (it->first < track_begin_) break;
         if (static_cast<int>(recent.size()) >= options_.mapping.window - 1) break;
         recent.push_back(&it->second);
     }
@@ -38,9 +39,10 @@ std::vector<const MapKeyframe*> LocalMapper::recentOf(int id) const {
 
 std::vector<const MapKeyframe*> LocalMapper::nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const {
     std::vector<std::pair<double, const MapKeyframe*>> found;
+    const auto begin = keyframes_.lower_bound(track_begin_);
     auto last = keyframes_.find(keyframe.id);
-    for (std::size_t i = 0; i < recent && last != keyframes_.begin(); ++i) --last;
-    for (auto it = keyframes_.begin(); it != last; ++it) {
+    for (std::size_t i = 0; i < recent && last != begin; ++i) --last;
+    for (auto it = begin; it != last; ++it) {
         const Pose T = it->second.T_world_camera.inverse() * keyframe.T_world_camera;
         const double distance = T.translation().norm() / std::max(0.1, keyframe.median_depth);
         const double degrees = rotationAngle(T) / kDegree;
@@ -119,6 +121,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     if (const auto parent = keyframes_.find(inserted.parent); parent != keyframes_.end()) {
         inserted.T_world_camera = parent->second.T_world_camera * inserted.T_parent_camera;
     }
+    if (inserted.begins_track) track_begin_ = id;
     MapKeyframe& keyframe = keyframes_.emplace(id, std::move(inserted)).first->second;
     const std::vector<const MapKeyframe*> recent = recentOf(id);
     graph_.insert(keyframe, recent, camera_, options_.fine.final_radius);

@@ -6,11 +6,15 @@
 namespace roevo {
 namespace {
 
-constexpr double kNearest = 0.05;     ///< m; nearer points cannot be projected
-constexpr double kFarOff = 100;       ///< px, for a point that cannot be projected
-constexpr double kLookShare = 0.7;    ///< a keyframe looks at an edge when so much of it is in its image
-constexpr double kSeeShare = 0.3;     ///< and sees it when so much of that is observed
-constexpr double kFrameEvidence = 3;  ///< keyframes that all frames since a keyframe count as
+constexpr double kNearest = 0.05;   ///< m; nearer points cannot be projected
+constexpr double kFarOff = 100;     ///< px, for a point that cannot be projected
+constexpr double kLookShare = 0.7;  ///< a keyframe looks at an edge when so much of it is in its image
+constexpr double kSeeShare = 0.3;   ///< and sees it when so much of that is observed
+/// An edge is in an image when so much of it has an edge point within so many pixels and about its direction.
+constexpr double kImageShare = 0.5;
+constexpr float kLookRadius = 3, kLookSine = 0.35F;
+constexpr std::size_t kTangentSpan = 3;  ///< points to each side that a tangent is taken between
+constexpr double kFrameEvidence = 3;     ///< keyframes that all frames since a keyframe count as
 
 double tangentResidual(const PinholeCamera& camera, const MapKeyframe& keyframe, std::size_t i,
                        const Eigen::Vector3d& in_camera) {
@@ -39,24 +43,28 @@ double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, cons
     return std::sqrt(sum / static_cast<double>(end - first - 1));
 }
 
-std::pair<int, int> PseudoEdgeJudge::countLooks(const std::vector<WindowKeyframe>& window,
-                                                const FusedEdges& edges, std::size_t edge) const {
+bool PseudoEdgeJudge::project(const WindowKeyframe& view, const Eigen::Vector3d& point,
+                              Eigen::Vector2f& pixel) const {
     constexpr double kMargin = 5;
+    const Eigen::Vector3d q =
+        view.T_world_camera.linear().transpose() * (point - view.T_world_camera.translation());
+    if (!(q.z() > sensor_.min_depth)) return false;
+    const Eigen::Vector2d at = camera_.project(q);
+    pixel = at.cast<float>();
+    return at.x() >= kMargin && at.y() >= kMargin && at.x() <= camera_.width - 1 - kMargin &&
+           at.y() <= camera_.height - 1 - kMargin;
+}
+
+PseudoEdgeJudge::Looks PseudoEdgeJudge::countLooks(const std::vector<WindowKeyframe>& window,
+                                                   const FusedEdges& edges, std::size_t edge) const {
     const auto first = static_cast<std::size_t>(edges.begin[edge]);
     const auto end = static_cast<std::size_t>(edges.begin[edge + 1]);
-    int looked = 0, seen = 0;
+    Looks looks;
+    Eigen::Vector2f pixel;
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
-        const WindowKeyframe& view = window[slot];
         int inside = 0, observed = 0;
         for (std::size_t p = first; p < end; ++p) {
-            const Eigen::Vector3d q = view.T_world_camera.linear().transpose() *
-                                      (edges.points[p] - view.T_world_camera.translation());
-            if (!(q.z() > sensor_.min_depth)) continue;
-            const Eigen::Vector2d pixel = camera_.project(q);
-            if (pixel.x() < kMargin || pixel.y() < kMargin || pixel.x() > camera_.width - 1 - kMargin ||
-                pixel.y() > camera_.height - 1 - kMargin) {
-                continue;
-            }
+            if (!project(window[slot], edges.points[p], pixel)) continue;
             ++inside;
             const auto from = edges.observations.begin() + edges.observation_begin[p];
             const auto to = edges.observations.begin() + edges.observation_begin[p + 1];
@@ -68,14 +76,39 @@ std::pair<int, int> PseudoEdgeJudge::countLooks(const std::vector<WindowKeyframe
                             : 0;
         }
         if (inside < kLookShare * static_cast<double>(end - first)) continue;
-        ++looked;
-        seen += observed >= kSeeShare * inside ? 1 : 0;
+        ++looks.looked;
+        if (observed >= kSeeShare * inside) {
+            ++looks.seen;
+        } else {
+            looks.missed.push_back(static_cast<int>(slot));
+        }
     }
-    return {looked, seen};
+    return looks;
 }
 
-void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdges& edges,
-                            double scale) const {
+bool PseudoEdgeJudge::isInImage(const WindowKeyframe& view, const FusedEdges& edges, std::size_t edge,
+                                const EdgeGrid& grid) const {
+    const OrganizedEdges& image = view.keyframe->image;
+    const auto first = static_cast<std::size_t>(edges.begin[edge]);
+    const auto end = static_cast<std::size_t>(edges.begin[edge + 1]);
+    int inside = 0, found = 0;
+    Eigen::Vector2f pixel, before, after;
+    for (std::size_t p = first; p < end; ++p) {
+        if (!project(view, edges.points[p], pixel)) continue;
+        ++inside;
+        project(view, edges.points[std::max(first + kTangentSpan, p) - kTangentSpan], before);
+        project(view, edges.points[std::min(end - 1, p + kTangentSpan)], after);
+        const Eigen::Vector2f tangent = (after - before).normalized();
+        const int nearest = grid.nearest(pixel.x(), pixel.y(), kLookRadius, [&](std::size_t i) {
+            return std::abs(tangent.x() * image.normal_x[i] + tangent.y() * image.normal_y[i]) < kLookSine;
+        });
+        found += nearest >= 0 ? 1 : 0;
+    }
+    return found >= kImageShare * inside;
+}
+
+void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdges& edges, double scale) {
+    suspects_.clear();
     std::vector<double> spreads;
     for (int e = 0; e < edges.numEdges(); ++e) {
         const auto edge = static_cast<std::size_t>(e);
@@ -95,14 +128,33 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
                 continue;
             }
         }
-        // The keyframe in which an edge was found first proves nothing
-        const auto [looked, seen] = countLooks(window, edges, edge);
+        const Looks looks = countLooks(window, edges, edge);
         const double found = foundShare(window, edges, edge);
-        const double frames = found < 0 ? 0 : kFrameEvidence;
-        const double evidence = looked - 1 + frames;
-        if (evidence < options_.min_looks - 1) continue;
-        if (seen - 1 + frames * found < options_.min_seen * evidence) verdict = EdgeVerdict::kVanishing;
+        if (isVanishing(looks, found)) suspects_.push_back({edge, looks, found});
     }
+    // Associations miss edges that are in pieces: before an edge is called vanishing, the images themselves
+    for (std::size_t slot = 0; slot < window.size(); ++slot) {
+        const WindowKeyframe& view = window[slot];
+        bool built = false;
+        for (Suspect& suspect : suspects_) {
+            const auto& missed = suspect.looks.missed;
+            if (std::find(missed.begin(), missed.end(), static_cast<int>(slot)) == missed.end()) continue;
+            if (!built) grid_.build(view.keyframe->image, camera_.width, camera_.height);
+            built = true;
+            suspect.looks.seen += isInImage(view, edges, suspect.edge, grid_) ? 1 : 0;
+        }
+    }
+    for (const Suspect& suspect : suspects_) {
+        if (isVanishing(suspect.looks, suspect.found)) edges.verdicts[suspect.edge] = EdgeVerdict::kVanishing;
+    }
+}
+
+bool PseudoEdgeJudge::isVanishing(const Looks& looks, double found) const {
+    const double frames = found < 0 ? 0 : kFrameEvidence;
+    // The keyframe in which an edge was found first proves nothing
+    const double evidence = looks.looked - 1 + frames;
+    if (evidence < options_.min_looks - 1) return false;
+    return looks.seen - 1 + frames * found < options_.min_seen * evidence;
 }
 
 double PseudoEdgeJudge::foundShare(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,

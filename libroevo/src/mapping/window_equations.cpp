@@ -59,6 +59,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     }
     residuals_.resize(sights_.size());
     const std::size_t slots = window.size();
+    origin_ = slots == 0 ? Eigen::Vector3d::Zero() : Eigen::Vector3d(window[0].T_world_camera.translation());
     rows_.assign(slots, -1);
     num_rows_ = 0;
     for (std::size_t s = 0; s < slots; ++s) {
@@ -205,14 +206,14 @@ void WindowEquations::addPoint(Eigen::Vector3d& point, bool to_hessian) {
         if (rows_[s] < 0) continue;
         const Eigen::Vector3d b = shares_[s].pull + shares_[s].information * step;
         gradients_[s].head<3>() -= b;
-        gradients_[s].tail<3>() -= point.cross(b);
+        gradients_[s].tail<3>() -= (point - origin_).cross(b);
     }
     if (to_hessian) addToHessian(point, inverse);
 }
 
 void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse) {
     std::sort(touched_.begin(), touched_.end());
-    const Eigen::Matrix3d P = skew(point);
+    const Eigen::Matrix3d P = skew(point - origin_);
     for (const std::int32_t slot : touched_) {
         if (rows_[static_cast<std::size_t>(slot)] < 0) continue;
         Share& share = shares_[static_cast<std::size_t>(slot)];

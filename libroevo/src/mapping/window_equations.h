@@ -26,10 +26,12 @@ class WindowEquations {
                   double least_scale);
 
     /// Moves the points to where they fit best (edge fitting, the inner problem of Eq. (18)) and builds the
-    /// normal equations of the poses that are not fixed. Perturbations are (t, phi): x <- exp(phi) x + t of
-    /// the camera's body in the world.
+    /// normal equations of the poses that are not fixed. Perturbations are (t, phi) of the camera in the
+    /// world's axes, turned about origin(): x <- exp(phi) (x - origin) + origin + t.
     void build(const std::vector<WindowKeyframe>& window, std::vector<Eigen::Vector3d>& points);
 
+    /// A place of the window: far from the world's origin, turns about that would drown translations.
+    const Eigen::Vector3d& origin() const { return origin_; }
     /// First row of a keyframe in the normal equations, -1: fixed.
     int row(std::size_t slot) const { return rows_[slot]; }
     int numRows() const { return num_rows_; }
@@ -78,6 +80,7 @@ class WindowEquations {
     PinholeCamera camera_;
     std::vector<std::int32_t> points_, begin_;  ///< points that take part; first sight of each
     std::vector<Sight> sights_;
+    Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
     std::vector<Residual> residuals_;
     std::vector<double> scales_;  ///< of each keyframe, px
     std::vector<float> scratch_;

@@ -86,6 +86,7 @@ std::string Odometry::Impl::startKeyframe(const FrameData& data) {
         MapJob job;
         job.keyframe = toMapKeyframe(*keyframe, coloursOf(own_edges), ideal, options.mapping.max_points);
         job.keyframe.parent = history.parentOf(id);
+        job.keyframe.begins_track = job.keyframe.parent < 0;
         job.keyframe.T_parent_camera = history.parentToKeyframe(id);
         if (job.keyframe.parent >= 0) job.keyframe.parent_information = data.relative_covariance.inverse();
         if (last) {

@@ -58,6 +58,7 @@ class LocalMapper {
     BundleAdjuster adjuster_;
     PseudoEdgeJudge judge_;
     std::map<int, MapKeyframe> keyframes_;
+    int track_begin_ = 0;                               ///< first keyframe of the present track
     std::map<int, std::vector<EdgeVerdict>> verdicts_;  ///< of each keyframe's edges
     std::vector<WindowKeyframe> window_;
     std::vector<RelativePrior> priors_;

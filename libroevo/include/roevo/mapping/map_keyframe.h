@@ -15,6 +15,9 @@ struct MapKeyframe {
     Pose T_world_camera = Pose::Identity();
     int parent = -1;  ///< keyframe that it was tracked from, -1: none (the first, or re-anchored)
     Pose T_parent_camera = Pose::Identity();  ///< as tracked
+    /// The first, or re-anchored after a loss: where it is relative to older ones is a guess, so that the map
+    /// relates it and those that follow to none of them.
+    bool begins_track = false;
     Matrix6d parent_information =
         Matrix6d::Zero();        ///< of T_parent_camera: perturbation (t, phi) in the world's axes
     OrganizedEdges image;        ///< where the points would be seen at the reference row's time, ideal px

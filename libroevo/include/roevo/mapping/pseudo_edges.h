@@ -1,8 +1,8 @@
 #pragma once
-#include <utility>
 #include <vector>
 
 #include "roevo/camera/pinhole_camera.h"
+#include "roevo/edges/edge_grid.h"
 #include "roevo/mapping/edge_fusion.h"
 #include "roevo/options.h"
 
@@ -18,19 +18,38 @@ class PseudoEdgeJudge {
     /// eigenvalue, which the depth noise of the sensor dominates, across the edge in the images), and by
     /// keyframes and frames that look at its place and do not see it.
     /// @param scale  robust spread of point-to-tangent residuals, px
-    void judge(const std::vector<WindowKeyframe>& window, FusedEdges& edges, double scale) const;
+    void judge(const std::vector<WindowKeyframe>& window, FusedEdges& edges, double scale);
 
   private:
     double spreadOf(const std::vector<WindowKeyframe>& window, const FusedEdges& edges, std::size_t p) const;
-    /// Keyframes that look at the place of an edge, and those of them that see it.
-    std::pair<int, int> countLooks(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
-                                   std::size_t edge) const;
+    /// Keyframes that look at the place of an edge, those of them that observe it, and those that do not.
+    struct Looks {
+        int looked = 0, seen = 0;
+        std::vector<int> missed;
+    };
+    struct Suspect {
+        std::size_t edge = 0;
+        Looks looks;
+        double found = 0;
+    };
+
+    Looks countLooks(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
+                     std::size_t edge) const;
+    /// Whether a keyframe's image has an edge in the place of a fused one, associated or not.
+    bool isInImage(const WindowKeyframe& view, const FusedEdges& edges, std::size_t edge,
+                   const EdgeGrid& grid) const;
+    bool isVanishing(const Looks& looks, double found) const;
+    /// Whether a point is in a keyframe's image, and where.
+    bool project(const WindowKeyframe& view, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const;
+    /// Share of the frames after a keyframe that found an edge, mean over its keyframes; < 0: not known.
     double foundShare(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
                       std::size_t edge) const;
 
     MappingOptions options_;
     SensorOptions sensor_;
     PinholeCamera camera_;
+    std::vector<Suspect> suspects_;
+    EdgeGrid grid_;
 };
 
 }  // namespace roevo
