@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "datasets/association.h"
+#include "datasets/sensor_data.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/camera/rgbd_frame.h"
 
@@ -19,13 +20,15 @@ struct DatasetEntry {
 /// What a format's loader finds out about a folder.
 struct DatasetDescription {
     std::string folder;
-    std::string format;  ///< "tum"
+    std::string format;  ///< "tum", "icl", "eth3d", "7scenes" or "plain"
     PinholeCamera camera;
     std::string camera_source;  ///< in words: where the intrinsics come from
     double depth_scale = 0;     ///< PNG units per metre
     std::vector<DatasetEntry> frames;
     AssociationReport association;
-    std::string ground_truth;  ///< path of a TUM trajectory, empty when there is none
+    GroundTruth ground_truth;    ///< of the colour camera, optical axes; empty when there is none
+    std::vector<ImuSample> imu;  ///< ascending in time; empty when the dataset has none
+    std::string imu_source;      ///< in words: file, what was left out of it
 };
 
 struct DatasetOptions {
@@ -44,7 +47,13 @@ class DatasetReader {
     const PinholeCamera& camera() const { return description_.camera; }
     double depthScale() const { return description_.depth_scale; }  ///< PNG units per metre
     float depthUnit() const;                                        ///< metres per PNG unit
-    const std::string& groundTruthPath() const { return description_.ground_truth; }
+    const GroundTruth& groundTruth() const { return description_.ground_truth; }
+    const std::vector<ImuSample>& imu() const { return description_.imu; }
+
+    /// The dataset's own trajectory file when it can be copied as it is (GroundTruth::copyable), else "".
+    std::string groundTruthPath() const {
+        return groundTruth().copyable ? groundTruth().file : std::string();
+    }
 
     std::size_t size() const { return description_.frames.size(); }
     const DatasetEntry& entry(std::size_t i) const { return description_.frames.at(i); }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "datasets/camera_file.h"
+#include "datasets/sensor_files.h"
 #include "datasets/text_list.h"
 #include "roevo_mrpt/time_conversions.h"
 
@@ -141,7 +142,8 @@ DatasetDescription loadTum(const std::string& folder_name, const DatasetOptions&
     out.camera = camera.camera;
     out.depth_scale = camera.depth_scale;
     out.camera_source = camera.source;
-    if (fs::exists(folder / "groundtruth.txt")) out.ground_truth = (folder / "groundtruth.txt").string();
+    out.ground_truth = readGroundTruth((folder / "groundtruth.txt").string());
+    readAccelerometer((folder / "accelerometer.txt").string(), out);
     return out;
 }
 
