@@ -73,6 +73,8 @@ class RawlogSource : public FrameSource {
     bool next(SourceFrame& frame) override {
         if (!scan_) return false;
         frame.timestamp = fromMrptTime(scan_->timestamp);
+        frame.mounted = isMountedOnRobot(*scan_);
+        frame.camera_on_robot = cameraOnRobot(*scan_);
         decodeInto(frame, [&] {
             RgbdFrame decoded = toRgbdFrame(*scan_);
             if (colourCameraOf(*scan_) != camera_)

@@ -1,20 +1,24 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/camera/rgbd_frame.h"
+#include "roevo/types.h"
 
 namespace roevo {
 
 /// One frame of an input, decoded, or the reason why it could not be.
 struct SourceFrame {
-    double timestamp = 0;  ///< s
-    RgbdFrame frame;       ///< empty images when there is a fault
-    std::string fault;     ///< empty when decoding went well
-    double ms_decode = 0;  ///< reading and decoding
-    double progress = 0;   ///< share of the input that has been read, 0 to 1
+    double timestamp = 0;                 ///< s
+    RgbdFrame frame;                      ///< empty images when there is a fault
+    std::string fault;                    ///< empty when decoding went well
+    double ms_decode = 0;                 ///< reading and decoding
+    double progress = 0;                  ///< share of the input that has been read, 0 to 1
+    std::optional<Pose> camera_on_robot;  ///< T_robot_camera, for inputs that tell
+    bool mounted = false;                 ///< the sensor sits elsewhere than on the robot's origin
 };
 
 /// Frames of a rawlog or of a dataset folder, one after the other.

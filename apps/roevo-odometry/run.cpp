@@ -9,6 +9,7 @@
 #include "evaluation/trajectory_io.h"
 #include "frame_source.h"
 #include "roevo_mrpt/config_file.h"
+#include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "support/atomic_file.h"
 #include "support/progress.h"
@@ -93,6 +94,10 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
         }
         const FrameResult result = frame.fault.empty() ? odometry.processFrame(frame.frame) : rejected(frame);
         report.frames.push_back({result, frame.ms_decode});
+        if (frame.camera_on_robot && result.hasPose()) {
+            report.camera_on_robot.push_back({frame.timestamp, *frame.camera_on_robot});
+            report.mounted = report.mounted || frame.mounted;
+        }
         const std::size_t done = report.frames.size();
         const double of_first =
             settings.first > 0 ? static_cast<double>(done) / static_cast<double>(settings.first) : 0;
@@ -185,6 +190,12 @@ RunReport runOdometry(const RunSettings& settings) {
         writeTumTrajectory((dir / "trajectory.txt").string(), report.trajectory);
         writeTumTrajectory((dir / "trajectory_live.txt").string(), odometry.liveTrajectory());
         writeTumTrajectory((dir / "keyframes.txt").string(), keyframePoses(report));
+        const fs::path robot_file = dir / "trajectory_robot.txt";
+        if (report.mounted)
+            writeTumTrajectory(robot_file.string(),
+                               robotTrajectory(report.trajectory, report.camera_on_robot));
+        else
+            fs::remove(robot_file);  // of an earlier run into this folder
         writeMap(dir, report, map, odometry, alignedReference(report, ground_truth));
     }
     saveConfigFile((dir / "config_used.ini").string(), odometry.options());

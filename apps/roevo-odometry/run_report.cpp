@@ -36,15 +36,23 @@ std::size_t RunReport::count(FrameStatus status) const {
 std::string RunReport::failure() const {
     const std::size_t initialised = count(FrameStatus::kInitialised);
     if (count(FrameStatus::kOk) > 0 || (initialised > 0 && frames.size() == initialised)) return {};
-    std::map<std::string, std::size_t> reasons;
+    std::map<std::string, std::vector<const FrameRecord*>> reasons;
     for (const FrameRecord& f : frames)
-        if (f.result.status != FrameStatus::kInitialised) ++reasons[f.result.reason];
+        if (f.result.status != FrameStatus::kInitialised)
+            reasons[reasonWithoutFile(f.result.reason)].push_back(&f);
     if (reasons.empty()) return "the input has no frame";
-    const auto commonest = std::max_element(reasons.begin(), reasons.end(),
-                                            [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto commonest = std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) {
+        return a.second.size() < b.second.size();
+    });
     return format("none of the %zu frames could be tracked; %zu of them: ", frames.size(),
-                  commonest->second) +
-           commonest->first;
+                  commonest->second.size()) +
+           commonest->second.front()->result.reason;
+}
+
+std::string reasonWithoutFile(const std::string& reason) {
+    const std::size_t colon = reason.rfind(": ");
+    const bool names_file = colon != std::string::npos && reason.find('/', colon) != std::string::npos;
+    return names_file ? reason.substr(0, colon) : reason;
 }
 
 std::string framesCsv(const RunReport& report) {

@@ -1,5 +1,4 @@
 #include <mrpt/system/os.h>
-#include <sys/resource.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -12,6 +11,7 @@
 
 #include "evaluation/to_json.h"
 #include "run_report.h"
+#include "support/memory_peak.h"
 #include "support/program.h"
 
 namespace roevo {
@@ -21,12 +21,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr FrameStatus kStatuses[] = {FrameStatus::kOk, FrameStatus::kInitialised, FrameStatus::kPredicted,
                                      FrameStatus::kLost, FrameStatus::kRejected};
-
-double memoryPeakMb() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux: kilobytes
-}
 
 struct Stage {
     const char* name;
@@ -66,7 +60,7 @@ std::map<std::string, std::size_t> reasonsOf(const RunReport& report) {
     std::map<std::string, std::size_t> reasons;
     for (const FrameRecord& f : report.frames)
         if (f.result.status != FrameStatus::kOk && !f.result.reason.empty())
-            ++reasons[std::string(toString(f.result.status)) + ": " + f.result.reason];
+            ++reasons[std::string(toString(f.result.status)) + ": " + reasonWithoutFile(f.result.reason)];
     return reasons;
 }
 
