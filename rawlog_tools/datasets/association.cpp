@@ -36,7 +36,9 @@ std::string AssociationReport::toText() const {
                   "time difference %.1f ms, "
                   "largest gap %.3f s",
                   matched, dropped_colour, dropped_depth, duplicates, 1e3 * largest_difference, largest_gap);
-    return text;
+    std::string line = text;
+    if (out_of_order > 0) line += ", " + std::to_string(out_of_order) + " list entries were out of order";
+    return line;
 }
 
 }  // namespace roevo
