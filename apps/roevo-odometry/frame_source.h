@@ -3,7 +3,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "datasets/sensor_data.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/camera/rgbd_frame.h"
 #include "roevo/types.h"
@@ -33,10 +35,11 @@ class FrameSource {
     virtual bool skip() = 0;
 
     virtual const PinholeCamera& camera() const = 0;
-    virtual std::string kind() const = 0;             ///< "rawlog", "tum", …
-    virtual std::string cameraSource() const = 0;     ///< where the intrinsics come from, in words
-    virtual std::string groundTruthPath() const = 0;  ///< found beside the input, or empty
-    virtual std::size_t size() const = 0;             ///< number of frames, 0 when unknown
+    virtual std::string kind() const = 0;                ///< "rawlog", "tum", …
+    virtual std::string cameraSource() const = 0;        ///< where the intrinsics come from, in words
+    virtual GroundTruth groundTruth() const = 0;         ///< found beside the input, or empty
+    virtual std::vector<std::string> notes() const = 0;  ///< what was assumed or converted, a line each
+    virtual std::size_t size() const = 0;                ///< number of frames, 0 when unknown
     virtual std::string warning() const = 0;  ///< once read: damage, things left out; one line or empty
 };
 

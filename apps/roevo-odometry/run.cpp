@@ -107,10 +107,19 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
     progress.finish();
 }
 
-void evaluateRun(RunReport& report, const std::vector<StampedPose>& ground_truth) {
-    if (ground_truth.empty()) return;
+// One that was asked for must be good; of one that was only found, GroundTruth::note tells what is wrong.
+GroundTruth groundTruthFor(const RunSettings& settings, const FrameSource& source) {
+    if (settings.ground_truth.empty()) return source.groundTruth();
+    return {readTumTrajectory(settings.ground_truth), settings.ground_truth, {}, true};
+}
+
+void evaluateRun(RunReport& report, const GroundTruth& ground_truth) {
+    if (ground_truth.poses.empty()) {
+        report.evaluation_fault = ground_truth.note;
+        return;
+    }
     try {
-        report.evaluation = evaluate(ground_truth, report.trajectory);
+        report.evaluation = evaluate(ground_truth.poses, report.trajectory);
     } catch (const std::exception& e) {
         report.evaluation_fault = e.what();
     }
@@ -162,13 +171,14 @@ RunReport runOdometry(const RunSettings& settings) {
     report.camera = source->camera();
     report.camera_source = source->cameraSource();
     report.mode = settings.options.mode;
-    report.ground_truth = settings.ground_truth.empty() ? source->groundTruthPath() : settings.ground_truth;
-    const auto ground_truth =
-        report.ground_truth.empty() ? std::vector<StampedPose>() : readTumTrajectory(report.ground_truth);
-    if (!settings.quiet)
+    const GroundTruth ground_truth = groundTruthFor(settings, *source);
+    report.ground_truth = ground_truth.file;
+    if (!settings.quiet) {
         std::printf("input       %s (%s), %d x %d, intrinsics from %s\n", report.input.c_str(),
                     report.kind.c_str(), report.camera.width, report.camera.height,
                     report.camera_source.c_str());
+        for (const std::string& note : source->notes()) std::printf("note        %s\n", note.c_str());
+    }
     std::fflush(stdout);
 
     Odometry odometry(source->camera(), settings.options);
@@ -196,7 +206,7 @@ RunReport runOdometry(const RunSettings& settings) {
                                robotTrajectory(report.trajectory, report.camera_on_robot));
         else
             fs::remove(robot_file);  // of an earlier run into this folder
-        writeMap(dir, report, map, odometry, alignedReference(report, ground_truth));
+        writeMap(dir, report, map, odometry, alignedReference(report, ground_truth.poses));
     }
     saveConfigFile((dir / "config_used.ini").string(), odometry.options());
     writeTextAtomically((dir / "frames.csv").string(), framesCsv(report));

@@ -27,7 +27,7 @@ struct RunReport {
     std::size_t map_edges = 0, map_points = 0;
     std::size_t dropped = 0;  ///< frames that came while tracking was busy (--realtime)
     double wall_seconds = 0;
-    std::string ground_truth;              ///< path, empty when there is none
+    std::string ground_truth;              ///< file or folder, empty when there is none
     std::optional<Evaluation> evaluation;  ///< against the ground truth
     std::string evaluation_fault;          ///< why there is none although there is a ground truth
 
