@@ -147,6 +147,11 @@ std::string RawlogWriter::imagesDirectory(const std::string& rawlog_path) {
     return (path.parent_path() / (path.stem().string() + "_Images")).string();
 }
 
+std::string RawlogWriter::groundTruthFile(const std::string& rawlog_path) {
+    const fs::path path(rawlog_path);
+    return (path.parent_path() / (path.stem().string() + "_groundtruth.txt")).string();
+}
+
 RawlogWriter::RawlogWriter(const std::string& path, const PinholeCamera& camera,
                            const RawlogWriterOptions& options)
     : impl_(std::make_unique<Impl>()) {

@@ -69,6 +69,9 @@ class RawlogWriter {
     /// Where the external images of a rawlog belong: <dir>/<stem>_Images.
     static std::string imagesDirectory(const std::string& rawlog_path);
 
+    /// Where the ground truth of a rawlog belongs: <dir>/<stem>_groundtruth.txt.
+    static std::string groundTruthFile(const std::string& rawlog_path);
+
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
