@@ -16,6 +16,10 @@ namespace {
 
 constexpr double kDriftPeriod = 7;  // seconds
 
+bool hasIntrinsics(const SimulationOptions& options) {
+    return options.intrinsics != std::array<double, 4>{};
+}
+
 PinholeCamera makeCamera(const SimulationOptions& options) {
     PinholeCamera camera;
     const double sx = options.width / 640., sy = options.height / 480.;
@@ -23,6 +27,10 @@ PinholeCamera makeCamera(const SimulationOptions& options) {
     camera.fx = camera.fy = 525 * sx;
     camera.cx = (319.5 + 0.5) * sx - 0.5;
     camera.cy = (239.5 + 0.5) * sy - 0.5;
+    if (const auto& given = options.intrinsics; hasIntrinsics(options)) {
+        camera.fx = given[0], camera.fy = given[1];
+        camera.cx = given[2], camera.cy = given[3];
+    }
     camera.distortion = options.distortion;
     return camera;
 }
@@ -88,6 +96,12 @@ std::string SimulationOptions::check() const {
             return complain(range.name, cv::format("%g", range.value), range.allowed);
     for (const double k : distortion)
         if (outside(k, -1.5, 1.5)) return complain("distortion", cv::format("%g", k), "-1.5..1.5");
+    if (hasIntrinsics(*this))
+        if (const std::string fault = makeCamera(*this).check(); !fault.empty())
+            return "intrinsics: " + fault;
+    if (depth_sensor)
+        if (const std::string fault = depth_sensor->camera.check(); !fault.empty())
+            return "depth_sensor: " + fault;
     return {};
 }
 
@@ -115,18 +129,32 @@ struct Simulator::Impl {
           scene(makeScene(o.scene)),
           camera(makeCamera(o)),
           path(o.path == PathKind::kWalk ? scene.walk_loop : scene.handheld_loop, o.path, o.speed, o.seed),
-          renderer(scene, camera,
-                   o.threads > 0 ? o.threads
-                                 : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))) {}
+          renderer(scene, camera, numThreads(o)) {
+        if (o.depth_sensor)
+            depth_renderer = std::make_unique<Renderer>(scene, o.depth_sensor->camera, numThreads(o));
+    }
 
-    Rendering renderAt(double seconds) const {
-        const double readout = options.rolling_shutter, height = camera.height;
-        return renderer.render(
+    static int numThreads(const SimulationOptions& o) {
+        return o.threads > 0 ? o.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    }
+
+    /// @param T_path_eye  where the seeing camera sits on the one that travels
+    Rendering render(const Renderer& eye, double height, double seconds, const Pose& T_path_eye) const {
+        const double readout = options.rolling_shutter;
+        return eye.render(
             [&](double row) {
                 const double moment = seconds + readout * ((row + 0.5) / height - 0.5);
-                return Instant{path.pose(moment), moment};
+                return Instant{path.pose(moment) * T_path_eye, moment};
             },
             readout > 0);
+    }
+    Rendering renderAt(double seconds) const {
+        return render(renderer, camera.height, seconds, Pose::Identity());
+    }
+    cv::Mat depthAt(double seconds, const cv::Mat& depth_of_colour) const {
+        if (!depth_renderer) return depth_of_colour;
+        const DepthSensor& sensor = *options.depth_sensor;
+        return render(*depth_renderer, sensor.camera.height, seconds, sensor.T_colour_depth).depth;
     }
 
     SimulationOptions options;
@@ -134,6 +162,7 @@ struct Simulator::Impl {
     PinholeCamera camera;
     CameraPath path;
     Renderer renderer;
+    std::unique_ptr<Renderer> depth_renderer;  ///< of the depth sensor, if there is one
 };
 
 namespace {
@@ -194,13 +223,14 @@ SimulatedFrame Simulator::frame(int index) const {
     if (options.image_noise > 0) addImageNoise(levels, options.image_noise, key);
     levels.convertTo(frame.colour, CV_8UC3);
     cv::cvtColor(frame.colour, frame.grey, cv::COLOR_BGR2GRAY);
-    frame.depth = rendering.depth;
+    frame.depth = impl_->depthAt(seconds, rendering.depth);
     frame.objects = rendering.objects;
     frame.shadow_border = borderOf(rendering.moving_shadow, rendering.objects);
     const bool ideal = options.depth_noise <= 0 && !options.holes;
     frame.depth_noisy =
         ideal ? frame.depth
-              : measureDepth(frame.depth, impl_->camera, {options.depth_noise, options.holes}, key);
+              : measureDepth(frame.depth, options.depth_sensor ? options.depth_sensor->camera : impl_->camera,
+                             {options.depth_noise, options.holes}, key);
     return frame;
 }
 
