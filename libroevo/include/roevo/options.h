@@ -133,7 +133,7 @@ struct OptionField {
 std::vector<OptionField> optionFields(OdometryOptions& options);
 
 /// Sets one option by "section.key". Returns an empty string or one line of error (an unknown key names the
-/// closest known one).
+/// closest known one, or ones).
 std::string setOption(OdometryOptions& options, const std::string& name, const std::string& text);
 
 /// Empty when all options are in range, else the first fault in one line.
