@@ -1,5 +1,6 @@
 #include "datasets/dataset_reader.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -63,13 +64,18 @@ double likelyDepthScale(double median_units) {
                              [&](double a, double b) { return off(a) < off(b); });
 }
 
+/// With the rights that opening a file has (access() looks at the real user's).
+bool isPermitted(const std::string& path, int rights) {
+    return faccessat(AT_FDCWD, path.c_str(), rights, AT_EACCESS) == 0;
+}
+
 /// A folder one level down that would have been right: people often give the parent.
 std::string betterFolder(const std::string& folder) {
     std::string better;
     for (const auto& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
         std::error_code unreadable;
         const std::string path = entry.path().string();
-        if (!entry.is_directory(unreadable) || access(path.c_str(), R_OK | X_OK) != 0) continue;
+        if (!entry.is_directory(unreadable) || !isPermitted(path, R_OK | X_OK)) continue;
         for (const Format& format : kFormats)
             if (format.recognises(path) && (better.empty() || path < better)) better = path;
     }
@@ -94,7 +100,7 @@ void DatasetReader::checkFiles() const {
         for (const std::string* file : {&frame.image, &frame.depth}) {
             std::error_code fault;
             const bool there = fs::is_regular_file(*file, fault);
-            if (there && access(file->c_str(), R_OK) == 0) continue;
+            if (there && isPermitted(*file, R_OK)) continue;
             const bool forbidden = there || fault == std::errc::permission_denied;
             if (missing++ == 0) first_missing = *file + (forbidden ? " (no permission to read it)" : "");
         }
@@ -196,7 +202,7 @@ DatasetReader openDataset(const std::string& folder, const DatasetOptions& optio
         throw std::runtime_error("dataset folder not found: " + folder);
     }
     if (!fs::is_directory(folder)) throw std::runtime_error("not a folder: " + folder);
-    if (access(folder.c_str(), R_OK | X_OK) != 0)
+    if (!isPermitted(folder, R_OK | X_OK))
         throw std::runtime_error("cannot read folder " + folder + ": " + std::strerror(errno));
     std::string names, needs;
     for (const Format& format : kFormats) {

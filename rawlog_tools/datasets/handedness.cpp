@@ -11,11 +11,13 @@ namespace roevo {
 namespace {
 
 constexpr std::size_t kMaxPairs = 8;
+constexpr int kMinPairs = 3;
 constexpr double kMaxTurn = 25 * kDegree, kMaxMove = 0.6;  // rad and m: frames must still overlap
 constexpr double kLookDistance = 2;                        // m, where motions are compared
 constexpr double kMinDifference = 0.005;                   // m, between the two motions there
 constexpr double kCut = 0.1;                               // relative error that counts as a miss
-constexpr double kClearRatio = 0.7;  // of the errors of the better and the worse version
+constexpr double kClearRatio = 0.9;  // of the errors of the better and the worse version
+constexpr double kClearSpread = 1;   // of the gain from pair to pair, in units of its mean
 constexpr int kColumns = 80;         // points per row
 
 Pose mirrored(const Pose& pose) {
@@ -63,7 +65,7 @@ std::vector<Pair> tellingPairs(const std::vector<PosedFrame>& frames) {
     std::vector<Pair> best;
     for (std::size_t i = 0; i < frames.size(); i++) {
         Pair of_frame;
-        for (const std::size_t step : {1, 3, 10, 20, 40}) {
+        for (const std::size_t step : {1, 2, 4, 8, 16, 32}) {
             if (i + step >= frames.size()) break;
             const Pose motion = frames[i + step].T_world_camera.inverse() * frames[i].T_world_camera;
             if (Eigen::AngleAxisd(motion.linear()).angle() > kMaxTurn ||
@@ -115,6 +117,7 @@ void mirrorY(std::vector<StampedPose>& poses) {
 HandednessResult compareHandedness(const DatasetDescription& dataset) {
     HandednessResult result;
     int count = 0;
+    double squares = 0;
     for (const Pair& pair : tellingPairs(posedFrames(dataset))) {
         cv::Mat from, to;
         try {
@@ -124,16 +127,22 @@ HandednessResult compareHandedness(const DatasetDescription& dataset) {
         } catch (const std::runtime_error&) {
             continue;  // reported when the frame is read
         }
-        result.error_as_is += predictionError(from, to, dataset.camera, pair.T_to_from);
-        result.error_mirrored += predictionError(from, to, dataset.camera, mirrored(pair.T_to_from));
+        const double as_is = predictionError(from, to, dataset.camera, pair.T_to_from);
+        const double mirror = predictionError(from, to, dataset.camera, mirrored(pair.T_to_from));
+        result.error_as_is += as_is;
+        result.error_mirrored += mirror;
+        squares += (as_is - mirror) * (as_is - mirror);
         count++;
     }
     if (count == 0) return result;
     result.error_as_is /= count;
     result.error_mirrored /= count;
+    const double gain = std::abs(result.error_as_is - result.error_mirrored);
+    const double spread = std::sqrt(std::max(0.0, squares / count - gain * gain));
     const double better = std::min(result.error_as_is, result.error_mirrored);
     const double worse = std::max(result.error_as_is, result.error_mirrored);
-    result.decided = better < kClearRatio * worse;
+    // Noise and borders of objects miss in both versions; what tells is that one misses less in every pair
+    result.decided = count >= kMinPairs && better < kClearRatio * worse && gain > kClearSpread * spread;
     if (result.decided) result.mirrored = result.error_mirrored < result.error_as_is;
     return result;
 }

@@ -139,7 +139,7 @@ TEST(Tum, WrongFoldersAndLists) {
     EXPECT_CONTAINS(errorOf([&] { openDataset(parent.string()); }),
                     "did you mean " + (parent / "child").string());
     EXPECT_CONTAINS(errorOf([&] { openDataset((parent / "child").string()); }), "has no depth.txt");
-    EXPECT_CONTAINS(openError(folder, {"oni", 0.02}), "unknown dataset format 'oni' (known: auto, tum)");
+    EXPECT_CONTAINS(openError(folder, {"oni", 0.02}), "unknown dataset format 'oni' (known: auto, 7scenes, eth3d, icl, tum, plain)");
     EXPECT_CONTAINS(openError(folder, {"tum", 0.001}), "closest pair 0.004 s apart");
     folder.write("rgb.txt", "# nothing\n");
     EXPECT_CONTAINS(openError(folder), "0 colour, 3 depth images");
