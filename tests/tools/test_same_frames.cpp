@@ -21,6 +21,7 @@ const std::vector<std::string> kCamera = {"--size", "160x120", "--intrinsics", "
 
 simulator::SimulationOptions options() {
     simulator::SimulationOptions o;
+    o.scene = "shadows";
     o.width = 160, o.height = 120;
     o.intrinsics = {120.25, 121.5, 79.75, 60.125};
     o.frames = kFrames;
@@ -30,9 +31,9 @@ simulator::SimulationOptions options() {
 }
 
 void simulate(const std::string& layout, const std::string& output) {
-    std::vector<std::string> arguments = {"--scene",  "livingroom", "--frames", std::to_string(kFrames),
-                                          "--noise",  "kinect",     "--speed",  "2",
-                                          "--layout", layout,       "--output", output};
+    std::vector<std::string> arguments = {"--scene",  "shadows", "--frames", std::to_string(kFrames),
+                                          "--noise",  "kinect",  "--speed",  "2",
+                                          "--layout", layout,    "--output", output};
     arguments.insert(arguments.end(), kCamera.begin(), kCamera.end());
     const auto result = test::runProgram("rawlog-simulate", arguments);
     ASSERT_EQ(result.exit_code, 0) << result.all();

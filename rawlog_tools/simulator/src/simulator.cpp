@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <thread>
@@ -138,23 +139,24 @@ struct Simulator::Impl {
         return o.threads > 0 ? o.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     }
 
-    /// @param T_path_eye  where the seeing camera sits on the one that travels
-    Rendering render(const Renderer& eye, double height, double seconds, const Pose& T_path_eye) const {
-        const double readout = options.rolling_shutter;
-        return eye.render(
-            [&](double row) {
-                const double moment = seconds + readout * ((row + 0.5) / height - 0.5);
-                return Instant{path.pose(moment) * T_path_eye, moment};
-            },
-            readout > 0);
+    /// When a row is seen, and from where. @param T_path_eye  where the camera sits on the one that travels
+    std::function<Instant(double)> instants(double seconds, double height, const Pose& T_path_eye) const {
+        return [this, seconds, height, T_path_eye](double row) {
+            const double moment = seconds + options.rolling_shutter * ((row + 0.5) / height - 0.5);
+            return Instant{path.pose(moment) * T_path_eye, moment};
+        };
     }
     Rendering renderAt(double seconds) const {
-        return render(renderer, camera.height, seconds, Pose::Identity());
+        return renderer.render(instants(seconds, camera.height, Pose::Identity()),
+                               options.rolling_shutter > 0);
     }
     cv::Mat depthAt(double seconds, const cv::Mat& depth_of_colour) const {
         if (!depth_renderer) return depth_of_colour;
         const DepthSensor& sensor = *options.depth_sensor;
-        return render(*depth_renderer, sensor.camera.height, seconds, sensor.T_colour_depth).depth;
+        return depth_renderer
+            ->renderDepth(instants(seconds, sensor.camera.height, sensor.T_colour_depth),
+                          options.rolling_shutter > 0)
+            .depth;
     }
 
     SimulationOptions options;
