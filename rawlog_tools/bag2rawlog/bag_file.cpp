@@ -5,6 +5,7 @@
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -79,6 +80,12 @@ void BagFile::listTopics() {
         }
         topics_.push_back(topic);
     }
+}
+
+const BagTopic* BagFile::find(const std::string& topic) const {
+    const auto found = std::find_if(topics_.begin(), topics_.end(),
+                                    [&](const BagTopic& candidate) { return candidate.name == topic; });
+    return found == topics_.end() ? nullptr : &*found;
 }
 
 std::vector<rosbag::MessageInstance> BagFile::messages(const std::string& topic) const {

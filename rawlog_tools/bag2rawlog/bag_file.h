@@ -28,6 +28,7 @@ class BagFile {
 
     const std::string& path() const { return path_; }
     const std::vector<BagTopic>& topics() const { return topics_; }  ///< in order of name
+    const BagTopic* find(const std::string& topic) const;            ///< null when the bag has no such topic
 
     /// All messages of a topic, in the order of their recording; they are read from the file when they are
     /// looked into, and refer to this object.

@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <stdexcept>
 
 #include "bag2rawlog/convert.h"
@@ -11,16 +12,10 @@ std::string sizeText(const PinholeCamera& camera) {
     return std::to_string(camera.width) + "x" + std::to_string(camera.height);
 }
 
-BagTopic topicOf(const BagFile& bag, const std::string& name) {
-    for (const BagTopic& topic : bag.topics())
-        if (topic.name == name) return topic;
-    throw std::logic_error("no topic " + name);
-}
-
 }  // namespace
 
 BagCameras readCameras(const BagFile& bag, const BagTopicNames& topics) {
-    const BagTopic colour = topicOf(bag, topics.colour), depth = topicOf(bag, topics.depth);
+    const BagTopic &colour = *bag.find(topics.colour), &depth = *bag.find(topics.depth);
     BagCameras out;
     const auto use = [&](const std::string& info, const std::string& images, const char* what) {
         BagCamera found = readCamera(bag, info, images);
@@ -56,8 +51,12 @@ BagCameras readCameras(const BagFile& bag, const BagTopicNames& topics) {
     if (!out.aligned) {
         char text[128];
         std::snprintf(text, sizeof text, "%.1f mm", 1e3 * out.T_depth_colour.translation().norm());
-        out.notes.push_back(std::string("depth is not aligned to colour; both cameras are written, ") + text +
-                            " apart" + (same_frame ? "" : " by /tf_static"));
+        out.notes.push_back(
+            std::string("depth is not aligned to colour; both cameras are written, ") + text + " apart" +
+            (same_frame ? ": same frame, other intrinsics (should its pixels be those of colour all "
+                          "the same: --depth-info-topic " +
+                              topics.colour_info + ")"
+                        : " by /tf_static"));
     } else {
         out.notes.emplace_back("depth is aligned to colour");
     }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <stdexcept>
 
 #include "bag2rawlog/ros_image.h"
@@ -75,12 +74,7 @@ std::vector<double> timesOf(const std::vector<Stamped>& stamps) {
 
 std::string noPairText(const BagTopicNames& topics, const std::vector<double>& colour,
                        const std::vector<double>& depth, double max_difference) {
-    double closest = std::numeric_limits<double>::infinity();
-    for (const double time : colour) {
-        const auto next = std::lower_bound(depth.begin(), depth.end(), time);
-        if (next != depth.end()) closest = std::min(closest, *next - time);
-        if (next != depth.begin()) closest = std::min(closest, time - *(next - 1));
-    }
+    const double closest = smallestDifference(colour, depth);
     char text[160];
     std::snprintf(text, sizeof text, " within %g s (%zu colour, %zu depth images, closest pair %.3g s apart)",
                   max_difference, colour.size(), depth.size(), closest);

@@ -21,6 +21,7 @@ struct BagCameras {
 
 /// Reads intrinsics from camera_info and, where depth is not in the colour camera's frame, the extrinsics
 /// from /tf_static.
+/// @param topics  of this bag, as chooseTopics() gives them
 /// @throws std::runtime_error with one line that names the topic or the frames in question.
 BagCameras readCameras(const BagFile& bag, const BagTopicNames& topics);
 

@@ -18,19 +18,13 @@ Topics select(const Topics& topics, const std::function<bool(const BagTopic&)>& 
     return out;
 }
 
-const BagTopic* find(const Topics& topics, const std::string& name) {
-    const auto found =
-        std::find_if(topics.begin(), topics.end(), [&](const BagTopic& t) { return t.name == name; });
-    return found == topics.end() ? nullptr : &*found;
-}
-
 bool contains(const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
 }
 
 /// A topic that the user named.
 const BagTopic& named(const BagFile& bag, const std::string& name, const char* type) {
-    const BagTopic* topic = find(bag.topics(), name);
+    const BagTopic* topic = bag.find(name);
     if (topic == nullptr)
         throw std::runtime_error(bag.path() + " has no topic " + name + "; it has " + toText(bag.topics()));
     if (topic->type == "sensor_msgs/CompressedImage")
@@ -84,8 +78,7 @@ std::string chooseDepth(const BagFile& bag, const BagTopic& colour) {
 
 /// The camera_info that belongs to images: beside them by name, or else the only one in their frame.
 std::string infoOf(const BagFile& bag, const BagTopic& images) {
-    const BagTopic* beside =
-        find(bag.topics(), images.name.substr(0, images.name.rfind('/') + 1) + "camera_info");
+    const BagTopic* beside = bag.find(images.name.substr(0, images.name.rfind('/') + 1) + "camera_info");
     if (beside != nullptr && beside->isCameraInfo() && beside->messages > 0) return beside->name;
     const Topics same_frame = select(bag.topics(), [&](const BagTopic& t) {
         return t.isCameraInfo() && !t.frame_id.empty() && t.frame_id == images.frame_id;

@@ -29,6 +29,16 @@ std::vector<StampMatch> associateStamps(const std::vector<double>& first, const 
     return matches;
 }
 
+double smallestDifference(const std::vector<double>& a, const std::vector<double>& b) {
+    double smallest = INFINITY;
+    for (const double t : a) {
+        const auto next = std::lower_bound(b.begin(), b.end(), t);
+        if (next != b.end()) smallest = std::min(smallest, *next - t);
+        if (next != b.begin()) smallest = std::min(smallest, t - *(next - 1));
+    }
+    return smallest;
+}
+
 std::string AssociationReport::toText() const {
     char text[256];
     std::snprintf(text, sizeof text,

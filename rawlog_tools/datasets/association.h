@@ -28,4 +28,8 @@ struct AssociationReport {
 std::vector<StampMatch> associateStamps(const std::vector<double>& first, const std::vector<double>& second,
                                         double max_difference);
 
+/// Smallest difference between any two stamps of two ascending lists, infinite when one is empty: for the
+/// message when nothing matches.
+double smallestDifference(const std::vector<double>& first, const std::vector<double>& second);
+
 }  // namespace roevo

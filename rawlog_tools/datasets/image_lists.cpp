@@ -20,17 +20,6 @@ std::vector<double> stamps(const std::vector<ListEntry>& list) {
     return out;
 }
 
-/// Smallest difference between any two stamps of the lists, for the message when nothing matches.
-double smallestDifference(const std::vector<double>& a, const std::vector<double>& b) {
-    double smallest = INFINITY;
-    for (const double t : a) {
-        const auto next = std::lower_bound(b.begin(), b.end(), t);
-        if (next != b.end()) smallest = std::min(smallest, *next - t);
-        if (next != b.begin()) smallest = std::min(smallest, t - *(next - 1));
-    }
-    return smallest;
-}
-
 }  // namespace
 
 void matchLists(const std::string& folder_name, const std::string& colour_list, const std::string& depth_list,

@@ -183,6 +183,11 @@ TEST_F(Bag2Rawlog, DepthInTheSameFrameMayHaveIntrinsicsOfItsOwn) {
     EXPECT_EQ(colourCameraOf(*all[0]).fx, 60);
     const Pose written = sensorFromOptical().inverse() * toEigen(all[0]->relativePoseIntensityWRTDepth);
     EXPECT_TRUE(written.isApprox(Pose::Identity(), 1e-9));
+    EXPECT_TRUE(said("--depth-info-topic " + kColourInfo)) << result_.all();
+    const auto aligned = scans({"--depth-info-topic", kColourInfo});
+    ASSERT_EQ(aligned.size(), 1u);
+    EXPECT_EQ(aligned[0]->cameraParams.fx(), 60);
+    EXPECT_TRUE(said("depth is aligned"));
 }
 
 TEST_F(Bag2Rawlog, RectifiedImagesHaveTheCameraOfP) {
