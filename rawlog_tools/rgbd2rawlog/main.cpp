@@ -1,11 +1,11 @@
 // rgbd2rawlog: an RGB-D dataset folder as an MRPT rawlog, lossless unless told otherwise.
 #include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "datasets/dataset_reader.h"
-#include "evaluation/trajectory_io.h"
 #include "rgbd2rawlog/convert.h"
 #include "rgbd2rawlog/verify.h"
 #include "roevo_mrpt/rawlog_writer.h"
@@ -75,6 +75,16 @@ std::optional<int> parse(int argc, char** argv, Settings& settings) {
     return std::nullopt;
 }
 
+/// A line of a TUM trajectory, with more decimals than the 9 of our own results: nothing is to be lost.
+std::string exactTumLine(const StampedPose& pose) {
+    const Eigen::Vector3d t = pose.T_world_camera.translation();
+    const Eigen::Quaterniond q(pose.T_world_camera.linear());
+    char line[256];
+    std::snprintf(line, sizeof line, "%.6f %.12f %.12f %.12f %.12f %.12f %.12f %.12f\n", pose.timestamp,
+                  t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+    return line;
+}
+
 /// The ground truth under a temporary name, to be put in place after the rawlog; null when there is none.
 std::unique_ptr<AtomicFile> prepareGroundTruth(const GroundTruth& truth, const std::string& path) {
     if (truth.poses.empty()) return nullptr;
@@ -84,7 +94,7 @@ std::unique_ptr<AtomicFile> prepareGroundTruth(const GroundTruth& truth, const s
         fs::permissions(file->temporaryPath(), fs::perms::owner_write, fs::perm_options::add);
         return file;
     }
-    for (const StampedPose& pose : truth.poses) file->stream() << toTumLine(pose) << '\n';
+    for (const StampedPose& pose : truth.poses) file->stream() << exactTumLine(pose);
     return file;
 }
 

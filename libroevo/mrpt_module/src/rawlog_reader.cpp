@@ -1,7 +1,6 @@
 #include "roevo_mrpt/rawlog_reader.h"
 
 #include <mrpt/io/CFileGZInputStream.h>
-#include <mrpt/io/lazy_load_path.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CRawlog.h>
@@ -16,6 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "range_file.h"
 #include "roevo_mrpt/rawlog_writer.h"
 
 namespace fs = std::filesystem;
@@ -206,16 +206,9 @@ struct RawlogReader::Impl {
             scan.intensityImage.setExternalStorage(found.string());
         }
         if (!scan.rangeImage_isExternallyStored()) return;
-        scan.hasPoints3D = false;  // load() would want their file, too
-        scan.points3D_overrideExternalStoredFlag(false);
         const fs::path file = scan.rangeImage_getExternalStorageFile("");
         const bool beside = !fs::exists(images / file) && fs::exists(images.parent_path() / file);
-        mrpt::io::setLazyLoadPathBase((beside ? images.parent_path() : images).string());
-        try {
-            scan.load();
-        } catch (const std::exception&) {
-            scan.rangeImage.setSize(0, 0);  // what could be read of it
-        }
+        loadRangeFile(scan, (beside ? images.parent_path() : images).string());
     }
 
     [[noreturn]] void throwNothingFound() const {
