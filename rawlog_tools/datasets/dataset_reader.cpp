@@ -76,8 +76,13 @@ std::string betterFolder(const std::string& folder) {
         std::error_code unreadable;
         const std::string path = entry.path().string();
         if (!entry.is_directory(unreadable) || !isPermitted(path, R_OK | X_OK)) continue;
-        for (const Format& format : kFormats)
-            if (format.recognises(path) && (better.empty() || path < better)) better = path;
+        for (const Format& format : kFormats) {
+            try {
+                if (format.recognises(path) && (better.empty() || path < better)) better = path;
+            } catch (const std::exception&) {
+                // A guess need not say what keeps it from looking
+            }
+        }
     }
     return better;
 }

@@ -56,7 +56,19 @@ CameraDescription findCamera(const std::string& folder) {
     return out;
 }
 
-/// By what the stamps are numbers of frames, they become seconds.
+/// Frames whose time is that of a pose, to the microsecond.
+std::size_t framesWithPose(const DatasetDescription& dataset) {
+    std::size_t count = 0;
+    for (const DatasetEntry& frame : dataset.frames)
+        for (const StampedPose& pose : dataset.ground_truth.poses)
+            if (pose.timestamp == frame.timestamp) {
+                count++;
+                break;
+            }
+    return count;
+}
+
+/// Whole numbers are those of frames: they become seconds.
 void numbersToSeconds(std::vector<StampedPose>& poses) {
     const bool whole = std::all_of(poses.begin(), poses.end(),
                                    [](const StampedPose& pose) { return isWhole(pose.timestamp); });
@@ -86,8 +98,10 @@ void findGroundTruth(DatasetDescription& out) {
     char text[300];
     if (told.mirrored) mirrorY(truth.poses);
     std::snprintf(
-        text, sizeof text, "entries %g to %g; %s (%s: depth misses by %.2g %% as it is, %.2g %% mirrored)",
-        first, last,
+        text, sizeof text,
+        "entries %g to %g, for %zu of %zu frames; %s (%s: depth misses by %.2g %% as it is, %.2g %% "
+        "mirrored)",
+        first, last, framesWithPose(out), out.frames.size(),
         told.mirrored ? "left-handed, mirrored in y to fit the positive fy" : "right-handed, taken as it is",
         told.decided ? "told by the depth images" : "assumed as published, the depth images do not tell",
         100 * told.error_as_is, 100 * told.error_mirrored);

@@ -19,7 +19,10 @@ bool isDigit(char c) {
 /// Image files by name without ending. Hidden files (of file managers) are none.
 std::map<std::string, std::string> imagesIn(const fs::path& folder) {
     std::map<std::string, std::string> images;
-    for (const auto& entry : fs::directory_iterator(folder)) {
+    std::error_code fault;
+    const fs::directory_iterator entries(folder, fault);
+    if (fault) throw std::runtime_error("cannot read folder " + folder.string() + ": " + fault.message());
+    for (const auto& entry : entries) {
         std::string ending = entry.path().extension().string();
         std::transform(ending.begin(), ending.end(), ending.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -147,6 +147,29 @@ TEST(Icl, AFolderWithTimesIsTum) {
                     "counts frames in whole numbers");
 }
 
+TEST(Icl, NumbersCountAsTheyAreAndFramesWithoutAPoseAreSaid) {
+    const SmallDataset folder("icl");
+    folder.write("traj0.gt.freiburg", "101 5 0 0 0 0 0 1\n102 6 0 0 0 0 0 1\n103 7 0 0 0 0 0 1\n");
+    const DatasetReader dataset = openDataset(folder.path());
+    EXPECT_CONTAINS(dataset.summary(), "entries 101 to 103, for 2 of 3 frames");
+    EXPECT_EQ(dataset.groundTruth().poses[0].timestamp, dataset.entry(1).timestamp);
+    EXPECT_EQ(dataset.groundTruth().poses[0].T_world_camera.translation().x(), 5);
+}
+
+TEST(Icl, CountingFromZeroIsATimeLikeAnyOther) {
+    const SmallDataset folder("icl", 2);
+    folder.write("associations.txt", "0 depth/0.png 0 rgb/0.png\n1 depth/1.png 1 rgb/1.png\n");
+    for (int i = 0; i < 2; i++) {
+        fs::rename(folder / folder.colour(i), folder / ("rgb/" + std::to_string(i) + ".png"));
+        fs::rename(folder / folder.depth(i), folder / ("depth/" + std::to_string(i) + ".png"));
+    }
+    const std::string rawlog = folder.parent() / "made.rawlog";
+    const auto made =
+        test::runProgram("rgbd2rawlog", {"--input", folder.path(), "--output", rawlog, "--verify"});
+    EXPECT_EQ(made.exit_code, 0) << made.all();
+    EXPECT_EQ(openDataset(folder.path()).entry(0).timestamp, 0.0);
+}
+
 TEST(Icl, OfSeveralTrajectoriesNoneIsTaken) {
     const SmallDataset folder("icl");
     folder.write("traj1.gt.freiburg", folder.read("traj0.gt.freiburg"));
