@@ -48,8 +48,26 @@ bool isNumbered(const fs::path& associations) {
     return false;
 }
 
-CameraDescription findCamera(const std::string& folder) {
+/// Whether anything but the numbering speaks for ICL-NUIM, as its camera must not be given to other data:
+/// its ground truth, depth named before colour in the list, or the name of an unpacked archive.
+bool isSurelyIcl(const fs::path& folder) {
+    if (!trajectoriesIn(folder).empty()) return true;
+    const fs::path associations = folder / "associations.txt";
+    if (fs::exists(associations))
+        for (const TextLine& line : readTextLines(associations.string()))
+            return line.words.size() > 1 && line.words[1].find("depth") != std::string::npos;
+    const std::string name = fs::weakly_canonical(folder).filename().string();
+    for (const char* part : {"icl", "living_room", "livingroom", "office_", "_traj"})
+        if (name.find(part) != std::string::npos) return true;
+    return false;
+}
+
+CameraDescription findCamera(const std::string& folder, const DatasetOptions& options) {
     if (const auto given = cameraFileIn(folder)) return *given;
+    if (options.format != "icl" && !isSurelyIcl(folder))
+        throw std::runtime_error("no intrinsics: " + folder +
+                                 " counts frames as ICL-NUIM does, but nothing else says that it is: write "
+                                 "camera.txt (or give --format icl for ICL-NUIM's camera)");
     CameraDescription out;
     out.camera = {640, 480, 481.2, 480.0, 319.5, 239.5, {}};
     out.source = "the published ICL-NUIM camera (fy = -480 there: rows are counted downwards here, so +480)";
@@ -119,7 +137,7 @@ bool isIclFolder(const std::string& folder_name) {
            !trajectoriesIn(folder).empty();
 }
 
-DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions&) {
+DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions& options) {
     const fs::path folder(folder_name);
     DatasetDescription out;
     out.folder = folder_name;
@@ -143,7 +161,7 @@ DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions&
     }
     finishFrames(out);
     out.notes.push_back("times are frame numbers at 30 Hz");
-    setCamera(findCamera(folder_name), out);
+    setCamera(findCamera(folder_name, options), out);
     findGroundTruth(out);
     return out;
 }

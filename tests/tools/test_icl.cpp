@@ -120,6 +120,21 @@ TEST(Icl, ThePublishedCameraServesWithoutACameraFileAndItsSignIsSaid) {
     EXPECT_CONTAINS(dataset.summary(), "frame numbers at 30 Hz");
 }
 
+TEST(Icl, ItsCameraIsNotGivenToWhateverIsNumbered) {
+    const SmallDataset folder("icl", 1, "mine");
+    folder.remove("camera.txt");
+    folder.remove("traj0.gt.freiburg");
+    folder.write("associations.txt", "100 rgb/100.png 100 depth/100.png\n");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "no intrinsics");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "write camera.txt (or give --format icl");
+    // What follows gets as far as the size of these images
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path(), {"icl", 0.02}); }), "the camera is 640x480");
+    folder.write("associations.txt", "100 depth/100.png 100 rgb/100.png\n");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "the camera is 640x480");
+    folder.writeCamera("5000");
+    EXPECT_EQ(openDataset(folder.path()).camera().fx, 60);
+}
+
 TEST(Icl, NamesMayBePaddedAndAssociationsMissing) {
     const SmallDataset folder("icl");
     for (int i = 0; i < 3; i++) {
