@@ -141,8 +141,9 @@ void TumWriter::finish(const TumCamera& camera, const std::string& ground_truth_
         write("accelerometer.txt", "# accelerometer data, m/s^2\n# timestamp ax ay az\n" + accelerometer_);
     if (!imu_.empty())
         write("imu.txt", "# inertial data, rad/s and m/s^2\n# timestamp wx wy wz ax ay az\n" + imu_);
-    if (!ground_truth_file.empty()) fs::copy_file(ground_truth_file, temporary_ / "groundtruth.txt");
     std::error_code error;
+    if (!ground_truth_file.empty()) fs::copy_file(ground_truth_file, temporary_ / "groundtruth.txt", error);
+    if (error) throw std::runtime_error("cannot copy " + ground_truth_file + ": " + error.message());
     fs::remove(folder_, error);  // an empty one
     fs::rename(temporary_, folder_, error);
     if (error) throw std::runtime_error("cannot write " + folder_.string() + ": " + error.message());

@@ -90,7 +90,10 @@ std::unique_ptr<AtomicFile> prepareGroundTruth(const GroundTruth& truth, const s
     if (truth.poses.empty()) return nullptr;
     auto file = std::make_unique<AtomicFile>(path);
     if (truth.copyable) {
-        fs::copy_file(truth.file, file->temporaryPath(), fs::copy_options::overwrite_existing);
+        std::error_code error;
+        fs::copy_file(truth.file, file->temporaryPath(), fs::copy_options::overwrite_existing, error);
+        if (error)
+            throw std::runtime_error("cannot copy " + truth.file + " to " + path + ": " + error.message());
         fs::permissions(file->temporaryPath(), fs::perms::owner_write, fs::perm_options::add);
         return file;
     }

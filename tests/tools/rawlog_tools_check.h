@@ -31,6 +31,14 @@ inline ProgramResult convertBack(const std::string& input, const std::string& ou
     return runProgram("rawlog2rgbd", arguments);
 }
 
+/// Runs a program as somebody whom file permissions stop, which they do not stop root.
+inline ProgramResult runUnprivileged(const std::string& name, std::vector<std::string> arguments) {
+    if (geteuid() != 0) return runProgram(name, arguments);
+    arguments.insert(arguments.begin(), {"--reuid=65534", "--regid=65534", "--clear-groups",
+                                         std::string(ROEVO_BIN_DIR) + "/" + name});
+    return runProgram("/usr/bin/setpriv", arguments);
+}
+
 inline bool sameImage(const cv::Mat& a, const cv::Mat& b) {
     return a.size() == b.size() && a.type() == b.type() && (a.empty() || cv::norm(a, b, cv::NORM_INF) == 0);
 }
