@@ -1,5 +1,7 @@
 #include "datasets/camera_file.h"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -18,8 +20,9 @@ struct Value {
 };
 
 std::map<std::string, Value> readKeyValues(const std::string& file) {
+    errno = 0;
     std::ifstream in(file);
-    if (!in) throw std::runtime_error("cannot read " + file);
+    if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno ? errno : ENOENT));
     std::map<std::string, Value> values;
     std::string text;
     for (int number = 1; std::getline(in, text); number++) {
