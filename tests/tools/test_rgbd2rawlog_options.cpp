@@ -218,7 +218,9 @@ double peakMb(const ProgramResult& outcome) {
     return found.empty() ? 0 : std::stod(found[1]);
 }
 
-TEST(Rgbd2rawlogOptions, MemoryDoesNotGrowWithTheNumberOfFrames) {
+class Rgbd2rawlogMemory : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Rgbd2rawlogMemory, DoesNotGrowWithTheNumberOfFrames) {
     const SmallTumFolder input;
     // 150 kB of depth each: what is kept of 450 frames would show as 68 MB
     for (int i = 0; i < 3; i++) {
@@ -228,15 +230,19 @@ TEST(Rgbd2rawlogOptions, MemoryDoesNotGrowWithTheNumberOfFrames) {
     input.write("camera.txt",
                 "width: 320\nheight: 240\nfx: 300\nfy: 300\ncx: 160\ncy: 120\ndepth_scale: 5000\n");
     const test::TemporaryFolder output;
+    const std::vector<std::string> options = {"--verify", GetParam()};
     repeatFrames(input, 50);
-    const double few = peakMb(convert(input.path(), output / "o.rawlog", {"--verify"}));
+    const double few = peakMb(convert(input.path(), output / "o.rawlog", options));
     const double few_back = peakMb(test::convertBack(output / "o.rawlog", output / "few"));
     repeatFrames(input, 500);
-    const double many = peakMb(convert(input.path(), output / "o.rawlog", {"--verify"}));
+    const double many = peakMb(convert(input.path(), output / "o.rawlog", options));
     const double many_back = peakMb(test::convertBack(output / "o.rawlog", output / "many"));
     EXPECT_LE(many, few + 5) << "MB";
     EXPECT_LE(many_back, few_back + 5) << "MB";
 }
+
+INSTANTIATE_TEST_SUITE_P(Depth, Rgbd2rawlogMemory, ::testing::Values("--every=1", "--externalize-depth"),
+                         [](const auto& info) { return info.index == 0 ? "Inside" : "InFiles"; });
 
 }  // namespace
 }  // namespace roevo

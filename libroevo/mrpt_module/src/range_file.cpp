@@ -11,22 +11,21 @@
 namespace roevo {
 namespace {
 
-using RangeImage = decltype(mrpt::obs::CObservation3DRangeScan::rangeImage);
-
 enum class Outcome { kWhole, kDamaged, kOtherFormat };
 
 /// MRPT 2's binary format: rows and columns (uint32), then the values (uint16), little-endian, gz-compressed.
-Outcome readBinary(const std::string& file, RangeImage& image) {
+Outcome readBinary(const std::string& file, mrpt::obs::CObservation3DRangeScan& scan) {
     constexpr std::uint32_t kLargest = 1 << 14;  // pixels
     mrpt::io::CFileGZInputStream stream;
     std::array<std::uint32_t, 2> size{};
     if (!stream.open(file) || stream.Read(size.data(), sizeof size) != sizeof size) return Outcome::kDamaged;
     const auto [rows, cols] = size;
     if (rows == 0 || cols == 0 || rows > kLargest || cols > kLargest) return Outcome::kOtherFormat;
-    image.setSize(static_cast<int>(rows), static_cast<int>(cols));
+    // Not rangeImage.setSize(): the scan gives its memory back to a pool, which only this takes it from
+    scan.rangeImage_setSize(static_cast<int>(rows), static_cast<int>(cols));
     const std::size_t bytes = sizeof(std::uint16_t) * rows * cols;
     char one_more = 0;
-    const bool whole = stream.Read(&image(0, 0), bytes) == bytes &&
+    const bool whole = stream.Read(&scan.rangeImage(0, 0), bytes) == bytes &&
                        stream.Read(&one_more, 1) == 0;  // also where the checksum is compared
     return whole ? Outcome::kWhole : Outcome::kDamaged;
 }
@@ -38,7 +37,7 @@ void loadRangeFile(mrpt::obs::CObservation3DRangeScan& scan, const std::string& 
     Outcome outcome = Outcome::kOtherFormat;
     try {
         const std::string file = scan.rangeImage_getExternalStorageFileAbsolutePath("");
-        if (std::filesystem::path(file).extension() != ".txt") outcome = readBinary(file, scan.rangeImage);
+        if (std::filesystem::path(file).extension() != ".txt") outcome = readBinary(file, scan);
         if (outcome == Outcome::kOtherFormat) {
             scan.hasPoints3D = false;  // load() would want their file, too
             scan.points3D_overrideExternalStoredFlag(false);
