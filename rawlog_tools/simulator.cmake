@@ -20,7 +20,13 @@ target_link_libraries(roevo_simulator PUBLIC roevo opencv_core opencv_imgproc Th
 # Lets the compiler inline square roots and floors; results stay those of IEEE arithmetic.
 target_compile_options(roevo_simulator PRIVATE -fno-math-errno -fno-trapping-math)
 
-add_executable(rawlog-simulate rawlog-simulate/main.cpp rawlog-simulate/recording.cpp)
-target_link_libraries(rawlog-simulate PRIVATE roevo_simulator roevo_mrpt roevo_support opencv_imgcodecs roevo_build_flags)
+add_executable(rawlog-simulate
+  rawlog-simulate/folder_layouts.cpp
+  rawlog-simulate/folder_recording.cpp
+  rawlog-simulate/layout.cpp
+  rawlog-simulate/main.cpp
+  rawlog-simulate/recording.cpp)
+target_link_libraries(rawlog-simulate PRIVATE roevo_simulator roevo_datasets roevo_evaluation roevo_mrpt roevo_support
+                      opencv_imgcodecs roevo_build_flags)
 target_include_directories(rawlog-simulate SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 install(TARGETS rawlog-simulate)

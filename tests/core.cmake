@@ -24,14 +24,15 @@ foreach(suite OdometryAccuracy OdometryStatus OdometryCovariance OdometrySemiDen
   add_test(NAME ${suite} COMMAND test_core_odometry --gtest_filter=${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
-add_executable(test_core_mapped_runs core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp)
+add_executable(test_core_mapped_runs core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp
+               core/test_mapping_gauge.cpp)
 target_link_libraries(test_core_mapped_runs PRIVATE roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-foreach(suite OdometryMapping MappingBadInput)
+foreach(suite OdometryMapping MappingBadInput MappingGauge)
   add_test(NAME ${suite} COMMAND test_core_mapped_runs --gtest_filter=${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
 roevo_test(test_core_sequences
-  SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp
+  SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp core/test_shadow_edges.cpp
   LIBS roevo_simulator roevo_evaluation roevo_datasets)
 foreach(program camera edges tracking mapping odometry mapped_runs sequences)
   target_include_directories(test_core_${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})

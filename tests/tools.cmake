@@ -1,6 +1,26 @@
 roevo_test(test_tools
-  SOURCES tools/test_rgbd2rawlog.cpp tools/test_tum.cpp tools/test_tum_association.cpp
+  SOURCES tools/test_tum.cpp tools/test_tum_association.cpp
   LIBS roevo_datasets)
 target_include_directories(test_tools PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 add_dependencies(test_tools rgbd2rawlog)
+roevo_test(test_rawlog_tools
+  SOURCES tools/test_rgbd2rawlog.cpp tools/test_rgbd2rawlog_options.cpp tools/test_verify.cpp tools/test_rawlog2rgbd.cpp
+          tools/test_rawlog2rgbd_errors.cpp tools/test_mrpt_apps.cpp tools/test_permissions.cpp tools/test_round_trip.cpp
+  LIBS roevo_rgbd2rawlog roevo_datasets roevo_evaluation)
+target_include_directories(test_rawlog_tools PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+target_include_directories(test_rawlog_tools SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+add_dependencies(test_rawlog_tools rgbd2rawlog rawlog2rgbd rawlog-simulate)
 include(${CMAKE_CURRENT_LIST_DIR}/simulator.cmake OPTIONAL)
+if(TARGET bag2rawlog)
+  roevo_test(test_bag SOURCES tools/test_bag.cpp tools/test_bag_errors.cpp LIBS roevo_datasets roevo_rosbag)
+  target_include_directories(test_bag PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  target_include_directories(test_bag SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+  add_dependencies(test_bag bag2rawlog)
+endif()
+roevo_test(test_datasets_readme SOURCES tools/test_datasets_readme.cpp LIBS roevo_datasets roevo_mrpt nlohmann_json::nlohmann_json)
+target_include_directories(test_datasets_readme PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+target_include_directories(test_datasets_readme SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+add_dependencies(test_datasets_readme rgbd2rawlog roevo-odometry roevo-eval)
+if(TARGET bag2rawlog)
+  add_dependencies(test_datasets_readme bag2rawlog)
+endif()

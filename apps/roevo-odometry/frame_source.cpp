@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "datasets/dataset_reader.h"
+#include "datasets/sensor_files.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_mrpt/time_conversions.h"
@@ -53,7 +54,8 @@ class FolderSource : public FrameSource {
     const PinholeCamera& camera() const override { return reader_.camera(); }
     std::string kind() const override { return reader_.description().format; }
     std::string cameraSource() const override { return reader_.description().camera_source; }
-    std::string groundTruthPath() const override { return reader_.groundTruthPath(); }
+    GroundTruth groundTruth() const override { return reader_.groundTruth(); }
+    std::vector<std::string> notes() const override { return reader_.notes(); }
     std::size_t size() const override { return reader_.size(); }
     std::string warning() const override { return {}; }
 
@@ -73,6 +75,8 @@ class RawlogSource : public FrameSource {
     bool next(SourceFrame& frame) override {
         if (!scan_) return false;
         frame.timestamp = fromMrptTime(scan_->timestamp);
+        frame.mounted = isMountedOnRobot(*scan_);
+        frame.camera_on_robot = cameraOnRobot(*scan_);
         decodeInto(frame, [&] {
             RgbdFrame decoded = toRgbdFrame(*scan_);
             if (colourCameraOf(*scan_) != camera_)
@@ -98,11 +102,12 @@ class RawlogSource : public FrameSource {
     std::string cameraSource() const override {
         return "the rawlog's observations, sensor '" + reader_.report().label + "'";
     }
-    std::string groundTruthPath() const override {
+    GroundTruth groundTruth() const override {
         fs::path beside = path_;
         beside.replace_filename(beside.stem().string() + "_groundtruth.txt");
-        return fs::exists(beside) ? beside.string() : std::string();
+        return readGroundTruth(beside.string());
     }
+    std::vector<std::string> notes() const override { return {}; }
     std::size_t size() const override { return 0; }
     std::string warning() const override { return reader_.report().warning(); }
 

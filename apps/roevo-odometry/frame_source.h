@@ -1,20 +1,26 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "datasets/sensor_data.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/camera/rgbd_frame.h"
+#include "roevo/types.h"
 
 namespace roevo {
 
 /// One frame of an input, decoded, or the reason why it could not be.
 struct SourceFrame {
-    double timestamp = 0;  ///< s
-    RgbdFrame frame;       ///< empty images when there is a fault
-    std::string fault;     ///< empty when decoding went well
-    double ms_decode = 0;  ///< reading and decoding
-    double progress = 0;   ///< share of the input that has been read, 0 to 1
+    double timestamp = 0;                 ///< s
+    RgbdFrame frame;                      ///< empty images when there is a fault
+    std::string fault;                    ///< empty when decoding went well
+    double ms_decode = 0;                 ///< reading and decoding
+    double progress = 0;                  ///< share of the input that has been read, 0 to 1
+    std::optional<Pose> camera_on_robot;  ///< T_robot_camera, for inputs that tell
+    bool mounted = false;                 ///< the sensor sits elsewhere than on the robot's origin
 };
 
 /// Frames of a rawlog or of a dataset folder, one after the other.
@@ -29,10 +35,11 @@ class FrameSource {
     virtual bool skip() = 0;
 
     virtual const PinholeCamera& camera() const = 0;
-    virtual std::string kind() const = 0;             ///< "rawlog", "tum", …
-    virtual std::string cameraSource() const = 0;     ///< where the intrinsics come from, in words
-    virtual std::string groundTruthPath() const = 0;  ///< found beside the input, or empty
-    virtual std::size_t size() const = 0;             ///< number of frames, 0 when unknown
+    virtual std::string kind() const = 0;                ///< "rawlog", "tum", …
+    virtual std::string cameraSource() const = 0;        ///< where the intrinsics come from, in words
+    virtual GroundTruth groundTruth() const = 0;         ///< found beside the input, or empty
+    virtual std::vector<std::string> notes() const = 0;  ///< what was assumed or converted, a line each
+    virtual std::size_t size() const = 0;                ///< number of frames, 0 when unknown
     virtual std::string warning() const = 0;  ///< once read: damage, things left out; one line or empty
 };
 

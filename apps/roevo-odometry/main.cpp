@@ -20,7 +20,9 @@ constexpr char kFooter[] =
     "  roevo-odometry --input rgbd_dataset_freiburg1_xyz --output out --set keyframe.max_rotation_deg=10\n"
     "Written into the output folder: trajectory.txt, trajectory_live.txt, keyframes.txt (TUM format), "
     "frames.csv,\n"
-    "map.3Dscene, map.ply, map_semi_dense.ply, summary.json, config_used.ini.";
+    "map.3Dscene, map.ply, map_semi_dense.ply, summary.json, config_used.ini; trajectory_robot.txt when a "
+    "rawlog\n"
+    "says where the camera is mounted on the robot.";
 
 // The options in force: defaults, then the config file, then --set, then --mode.
 OdometryOptions collectOptions(const std::string& config_file, const std::vector<std::string>& settings,

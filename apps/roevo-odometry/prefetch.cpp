@@ -48,7 +48,8 @@ class PrefetchingSource : public FrameSource {
     const PinholeCamera& camera() const override { return source_->camera(); }
     std::string kind() const override { return source_->kind(); }
     std::string cameraSource() const override { return source_->cameraSource(); }
-    std::string groundTruthPath() const override { return source_->groundTruthPath(); }
+    GroundTruth groundTruth() const override { return source_->groundTruth(); }
+    std::vector<std::string> notes() const override { return source_->notes(); }
     std::size_t size() const override { return source_->size(); }
     std::string warning() const override {
         // What has been read so far may be changing under the thread's hands until it has ended.

@@ -1,6 +1,7 @@
 #include "run.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include "evaluation/trajectory_io.h"
 #include "frame_source.h"
 #include "roevo_mrpt/config_file.h"
+#include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "support/atomic_file.h"
 #include "support/progress.h"
@@ -50,18 +52,20 @@ std::size_t expectedFrames(const FrameSource& source, const RunSettings& setting
     return settings.first > 0 ? std::min(left, settings.first) : left;
 }
 
+constexpr double kLongestGap = 1;  // s; a recording that stood still, or a stray stamp, is not waited for
+
 // Hands frames out at the pace of their stamps, as a camera would.
 class FrameClock {
   public:
-    // Waits for the frame's time. False when that is past by more than one frame: tracking is behind.
+    // Waits for the frame's time. False when that is past by more than one frame.
     bool await(double timestamp) {
         const auto now = std::chrono::steady_clock::now();
-        if (!started_) {
+        const double interval = started_ ? timestamp - last_ : 0;
+        if (!started_ || std::abs(interval) > kLongestGap) {
             started_ = true;
             start_ = now;
-            first_ = last_ = timestamp;
+            first_ = timestamp;
         }
-        const double interval = timestamp - last_;
         last_ = timestamp;
         const auto due = start_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                       std::chrono::duration<double>(timestamp - first_));
@@ -88,11 +92,15 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
             scale_checked = true;
         }
         if (settings.realtime && frame.fault.empty() && !clock.await(frame.timestamp)) {
-            frame.fault = "dropped: tracking was behind the clock";
+            frame.fault = "dropped: the one before was not done in time";
             ++report.dropped;
         }
         const FrameResult result = frame.fault.empty() ? odometry.processFrame(frame.frame) : rejected(frame);
         report.frames.push_back({result, frame.ms_decode});
+        if (frame.camera_on_robot && result.hasPose()) {
+            report.camera_on_robot.push_back({frame.timestamp, *frame.camera_on_robot});
+            report.mounted = report.mounted || frame.mounted;
+        }
         const std::size_t done = report.frames.size();
         const double of_first =
             settings.first > 0 ? static_cast<double>(done) / static_cast<double>(settings.first) : 0;
@@ -102,10 +110,19 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
     progress.finish();
 }
 
-void evaluateRun(RunReport& report, const std::vector<StampedPose>& ground_truth) {
-    if (ground_truth.empty()) return;
+// One that was asked for must be good; of one that was only found, GroundTruth::note tells what is wrong.
+GroundTruth groundTruthFor(const RunSettings& settings, const FrameSource& source) {
+    if (settings.ground_truth.empty()) return source.groundTruth();
+    return {readTumTrajectory(settings.ground_truth), settings.ground_truth, {}, true};
+}
+
+void evaluateRun(RunReport& report, const GroundTruth& ground_truth) {
+    if (ground_truth.poses.empty()) {
+        report.evaluation_fault = ground_truth.note;
+        return;
+    }
     try {
-        report.evaluation = evaluate(ground_truth, report.trajectory);
+        report.evaluation = evaluate(ground_truth.poses, report.trajectory);
     } catch (const std::exception& e) {
         report.evaluation_fault = e.what();
     }
@@ -157,13 +174,14 @@ RunReport runOdometry(const RunSettings& settings) {
     report.camera = source->camera();
     report.camera_source = source->cameraSource();
     report.mode = settings.options.mode;
-    report.ground_truth = settings.ground_truth.empty() ? source->groundTruthPath() : settings.ground_truth;
-    const auto ground_truth =
-        report.ground_truth.empty() ? std::vector<StampedPose>() : readTumTrajectory(report.ground_truth);
-    if (!settings.quiet)
+    const GroundTruth ground_truth = groundTruthFor(settings, *source);
+    report.ground_truth = ground_truth.file;
+    if (!settings.quiet) {
         std::printf("input       %s (%s), %d x %d, intrinsics from %s\n", report.input.c_str(),
                     report.kind.c_str(), report.camera.width, report.camera.height,
                     report.camera_source.c_str());
+        for (const std::string& note : source->notes()) std::printf("note        %s\n", note.c_str());
+    }
     std::fflush(stdout);
 
     Odometry odometry(source->camera(), settings.options);
@@ -188,7 +206,13 @@ RunReport runOdometry(const RunSettings& settings) {
         writeTumTrajectory((dir / "trajectory.txt").string(), report.trajectory);
         writeTumTrajectory((dir / "trajectory_live.txt").string(), odometry.liveTrajectory());
         writeTumTrajectory((dir / "keyframes.txt").string(), keyframePoses(report));
-        writeMap(dir, report, odometry, std::move(content), alignedReference(report, ground_truth));
+        const fs::path robot_file = dir / "trajectory_robot.txt";
+        if (report.mounted)
+            writeTumTrajectory(robot_file.string(),
+                               robotTrajectory(report.trajectory, report.camera_on_robot));
+        else
+            fs::remove(robot_file);  // of an earlier run into this folder
+        writeMap(dir, report, odometry, std::move(content), alignedReference(report, ground_truth.poses));
     }
     saveConfigFile((dir / "config_used.ini").string(), odometry.options());
     writeTextAtomically((dir / "frames.csv").string(), framesCsv(report));

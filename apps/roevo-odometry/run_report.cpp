@@ -36,28 +36,38 @@ std::size_t RunReport::count(FrameStatus status) const {
 std::string RunReport::failure() const {
     const std::size_t initialised = count(FrameStatus::kInitialised);
     if (count(FrameStatus::kOk) > 0 || (initialised > 0 && frames.size() == initialised)) return {};
-    std::map<std::string, std::size_t> reasons;
+    std::map<std::string, std::vector<const FrameRecord*>> reasons;
     for (const FrameRecord& f : frames)
-        if (f.result.status != FrameStatus::kInitialised) ++reasons[f.result.reason];
+        if (f.result.status != FrameStatus::kInitialised)
+            reasons[reasonWithoutFile(f.result.reason)].push_back(&f);
     if (reasons.empty()) return "the input has no frame";
-    const auto commonest = std::max_element(reasons.begin(), reasons.end(),
-                                            [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto commonest = std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) {
+        return a.second.size() < b.second.size();
+    });
     return format("none of the %zu frames could be tracked; %zu of them: ", frames.size(),
-                  commonest->second) +
-           commonest->first;
+                  commonest->second.size()) +
+           commonest->second.front()->result.reason;
+}
+
+std::string reasonWithoutFile(const std::string& reason) {
+    const std::size_t colon = reason.rfind(": ");
+    const bool names_file = colon != std::string::npos && reason.find('/', colon) != std::string::npos;
+    return names_file ? reason.substr(0, colon) : reason;
 }
 
 std::string framesCsv(const RunReport& report) {
     std::string csv =
         "timestamp,status,reason,keyframe,edges,points,matched_ratio,inliers,sigma_t_m,sigma_r_deg,"
-        "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total,ms_mapping,ms_waiting,map_correction_m,map_reason\n";
+        "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total,ms_mapping,ms_waiting,map_correction_m,map_correction_"
+        "deg,map_reason\n";
     for (const FrameRecord& f : report.frames) {
         const FrameResult& r = f.result;
         csv += format("%.6f,%s,", r.timestamp, toString(r.status)) + csvField(r.reason) +
-               format(",%d,%d,%d,%.4f,%d,%.6f,%.5f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.6f,",
+               format(",%d,%d,%d,%.4f,%d,%.6f,%.5f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.6f,%.5f,",
                       r.new_keyframe ? 1 : 0, r.num_edges, r.num_points, r.matched_ratio, r.inliers,
                       r.sigmaTranslation(), r.sigmaRotationDeg(), f.ms_decode, r.ms.edges, r.ms.coarse,
-                      r.ms.fine, r.ms.total, r.ms.mapping, r.ms.waiting, r.map_correction) +
+                      r.ms.fine, r.ms.total, r.ms.mapping, r.ms.waiting, r.map_correction,
+                      r.map_turn / kDegree) +
                csvField(r.map_reason) + "\n";
     }
     return csv;

@@ -23,9 +23,11 @@ struct RunReport {
     std::vector<StampedPose> trajectory;
     std::vector<KeyframeInfo> keyframes;
     std::size_t map_edges = 0, map_points = 0, semi_dense_points = 0;
+    std::vector<StampedPose> camera_on_robot;  ///< T_robot_camera of the frames with a pose
+    bool mounted = false;     ///< some frame's sensor sat elsewhere than on the robot's origin
     std::size_t dropped = 0;  ///< frames that came while tracking was busy (--realtime)
     double wall_seconds = 0;
-    std::string ground_truth;              ///< path, empty when there is none
+    std::string ground_truth;              ///< file or folder, empty when there is none
     std::optional<Evaluation> evaluation;  ///< against the ground truth
     std::string evaluation_fault;          ///< why there is none although there is a ground truth
 
@@ -34,6 +36,9 @@ struct RunReport {
     /// Empty when at least one frame was tracked (or the only frame initialised), else the commonest reason.
     std::string failure() const;
 };
+
+/// A reason without the file that it names at its end ("…: <path>"), so that equal faults can be counted.
+std::string reasonWithoutFile(const std::string& reason);
 
 /// One row per frame, as the contract has it.
 std::string framesCsv(const RunReport& report);

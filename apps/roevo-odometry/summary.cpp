@@ -1,5 +1,4 @@
 #include <mrpt/system/os.h>
-#include <sys/resource.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -12,6 +11,7 @@
 
 #include "evaluation/to_json.h"
 #include "run_report.h"
+#include "support/memory_peak.h"
 #include "support/program.h"
 
 namespace roevo {
@@ -21,12 +21,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr FrameStatus kStatuses[] = {FrameStatus::kOk, FrameStatus::kInitialised, FrameStatus::kPredicted,
                                      FrameStatus::kLost, FrameStatus::kRejected};
-
-double memoryPeakMb() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux: kilobytes
-}
 
 struct Stage {
     const char* name;
@@ -66,7 +60,7 @@ std::map<std::string, std::size_t> reasonsOf(const RunReport& report) {
     std::map<std::string, std::size_t> reasons;
     for (const FrameRecord& f : report.frames)
         if (f.result.status != FrameStatus::kOk && !f.result.reason.empty())
-            ++reasons[std::string(toString(f.result.status)) + ": " + f.result.reason];
+            ++reasons[std::string(toString(f.result.status)) + ": " + reasonWithoutFile(f.result.reason)];
     return reasons;
 }
 
@@ -106,11 +100,12 @@ Json timingsJson(const RunReport& report) {
 Json mappingJson(const RunReport& report) {
     if (report.mode != Mode::kBundleAdjustment) return nullptr;
     const auto times = mappingTimes(report);
-    double longest_wait = 0, largest_correction = 0;
+    double longest_wait = 0, largest_correction = 0, largest_turn = 0;
     Json reasons = Json::object();
     for (const FrameRecord& f : report.frames) {
         longest_wait = std::max(longest_wait, f.result.ms.waiting);
         largest_correction = std::max(largest_correction, f.result.map_correction);
+        largest_turn = std::max(largest_turn, f.result.map_turn);
         if (f.result.map_reason.empty()) continue;
         reasons[f.result.map_reason] = reasons.value(f.result.map_reason, 0) + 1;
     }
@@ -119,6 +114,7 @@ Json mappingJson(const RunReport& report) {
             {"max_ms", percentile(times, 1)},
             {"longest_wait_ms", longest_wait},
             {"largest_correction_m", largest_correction},
+            {"largest_correction_deg", largest_turn / kDegree},
             {"reasons", reasons}};
 }
 

@@ -1,6 +1,7 @@
 #include "roevo/options.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -39,6 +40,36 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
         }
     }
     return row.back();
+}
+
+/// How far a name is from meaning this option: typed wrong, without its section, or in another section.
+std::size_t distanceFrom(const OptionField& field, std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::tolower(c)); });
+    const std::size_t dot = name.rfind('.');
+    const bool has_section = dot != std::string::npos;
+    const std::string section = has_section ? name.substr(0, dot) : "",
+                      key = name.substr(has_section ? dot + 1 : 0);
+    const std::size_t by_key =
+        editDistance(field.key, key) + (!has_section || section == field.section ? 0 : 1);
+    return std::min(editDistance(field.name(), name), by_key);
+}
+
+/// "the closest is 'fine.chi2' (what it is)"; of several equally close ones the first three.
+std::string closestText(const std::vector<OptionField>& fields, const std::string& name) {
+    std::vector<const OptionField*> closest;
+    std::size_t least = 0;
+    for (const auto& field : fields) {
+        const std::size_t distance = distanceFrom(field, name);
+        if (closest.empty() || distance < least) closest.clear(), least = distance;
+        if (distance == least && closest.size() < 3) closest.push_back(&field);
+    }
+    if (closest.size() == 1)
+        return "the closest is '" + closest.front()->name() + "' (" + closest.front()->description + ")";
+    std::string text = "the closest are";
+    for (const OptionField* field : closest)
+        text += (field == closest.front() ? " '" : ", '") + field->name() + "'";
+    return text;
 }
 
 }  // namespace
@@ -220,19 +251,9 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
 
 std::string setOption(OdometryOptions& options, const std::string& name, const std::string& text) {
     const auto fields = optionFields(options);
-    const OptionField* closest = nullptr;
-    std::size_t closest_distance = 0;
-    for (const auto& field : fields) {
+    for (const auto& field : fields)
         if (field.name() == name) return field.fromText(text);
-        const std::size_t distance =
-            std::min(editDistance(field.name(), name), editDistance(field.key, name));
-        if (closest == nullptr || distance < closest_distance) {
-            closest = &field;
-            closest_distance = distance;
-        }
-    }
-    return "unknown option '" + name + "'; the closest is '" + closest->name() + "' (" +
-           closest->description + ")";
+    return "unknown option '" + name + "'; " + closestText(fields, name);
 }
 
 std::string checkOptions(const OdometryOptions& options) {

@@ -29,6 +29,16 @@ std::vector<StampMatch> associateStamps(const std::vector<double>& first, const 
     return matches;
 }
 
+double smallestDifference(const std::vector<double>& a, const std::vector<double>& b) {
+    double smallest = INFINITY;
+    for (const double t : a) {
+        const auto next = std::lower_bound(b.begin(), b.end(), t);
+        if (next != b.end()) smallest = std::min(smallest, *next - t);
+        if (next != b.begin()) smallest = std::min(smallest, t - *(next - 1));
+    }
+    return smallest;
+}
+
 std::string AssociationReport::toText() const {
     char text[256];
     std::snprintf(text, sizeof text,
@@ -36,7 +46,9 @@ std::string AssociationReport::toText() const {
                   "time difference %.1f ms, "
                   "largest gap %.3f s",
                   matched, dropped_colour, dropped_depth, duplicates, 1e3 * largest_difference, largest_gap);
-    return text;
+    std::string line = text;
+    if (out_of_order > 0) line += ", " + std::to_string(out_of_order) + " list entries were out of order";
+    return line;
 }
 
 }  // namespace roevo

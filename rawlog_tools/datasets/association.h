@@ -14,6 +14,7 @@ struct AssociationReport {
     std::size_t matched = 0;
     std::size_t dropped_colour = 0, dropped_depth = 0;  ///< images left without a partner
     std::size_t duplicates = 0;                         ///< list entries whose stamp was already there
+    std::size_t out_of_order = 0;                       ///< list entries earlier than the one before them
     double largest_difference = 0;                      ///< s, between the stamps of a matched pair
     double largest_gap = 0;                             ///< s, between neighbouring matched frames
 
@@ -26,5 +27,9 @@ struct AssociationReport {
 /// @return the pairs, ascending in `first`.
 std::vector<StampMatch> associateStamps(const std::vector<double>& first, const std::vector<double>& second,
                                         double max_difference);
+
+/// Smallest difference between any two stamps of two ascending lists, infinite when one is empty: for the
+/// message when nothing matches.
+double smallestDifference(const std::vector<double>& first, const std::vector<double>& second);
 
 }  // namespace roevo

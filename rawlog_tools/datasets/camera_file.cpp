@@ -1,5 +1,8 @@
 #include "datasets/camera_file.h"
 
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -17,8 +20,9 @@ struct Value {
 };
 
 std::map<std::string, Value> readKeyValues(const std::string& file) {
+    errno = 0;
     std::ifstream in(file);
-    if (!in) throw std::runtime_error("cannot read " + file);
+    if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno ? errno : ENOENT));
     std::map<std::string, Value> values;
     std::string text;
     for (int number = 1; std::getline(in, text); number++) {
@@ -74,9 +78,25 @@ CameraDescription readCameraFile(const std::string& file) {
     }
     if (const std::string fault = camera.check(); !fault.empty())
         throw std::runtime_error(file + ": " + fault);
+    if (const auto found = values.find("frame_rate"); found != values.end()) {
+        out.frame_rate = number("frame_rate");
+        if (!(*out.frame_rate > 0)) throw std::runtime_error(file + ": frame_rate must be above 0");
+    }
     if (!(out.depth_scale > 0)) throw std::runtime_error(file + ": depth_scale must be above 0");
     out.source = "camera.txt";
     return out;
+}
+
+void setCamera(const CameraDescription& camera, DatasetDescription& out) {
+    out.camera = camera.camera;
+    out.depth_scale = camera.depth_scale;
+    out.camera_source = camera.source;
+}
+
+std::optional<CameraDescription> cameraFileIn(const std::string& folder) {
+    const std::filesystem::path file = std::filesystem::path(folder) / "camera.txt";
+    if (!std::filesystem::exists(file)) return std::nullopt;
+    return readCameraFile(file.string());
 }
 
 std::optional<CameraDescription> tumCameraNamedIn(const std::string& text) {

@@ -1,14 +1,23 @@
 #include "datasets/dataset_reader.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
-#include <functional>
 #include <stdexcept>
 #include <utility>
 
+#include "datasets/eth3d.h"
+#include "datasets/icl.h"
+#include "datasets/plain.h"
+#include "datasets/seven_scenes.h"
 #include "datasets/tum.h"
+#include "roevo/camera/depth_registration.h"
 #include "roevo_mrpt/image_conversions.h"
 
 namespace fs = std::filesystem;
@@ -26,14 +35,21 @@ struct Format {
     const char* needs;
 };
 
-const Format kFormats[] = {{"tum", &isTumFolder, &loadTum, "rgb.txt and depth.txt, or associations.txt"}};
+/// The more particular layouts come first.
+const Format kFormats[] = {
+    {"7scenes", &isSevenScenesFolder, &loadSevenScenes, "frame-000000.color.png, .depth.png, .pose.txt"},
+    {"eth3d", &isEth3dFolder, &loadEth3d, "calibration.txt and associated.txt, or rgb.txt and depth.txt"},
+    {"icl", &isIclFolder, &loadIcl, "associations.txt with whole numbers for times, files named alike"},
+    {"tum", &isTumFolder, &loadTum, "rgb.txt and depth.txt, or associations.txt"},
+    {"plain", &isPlainFolder, &loadPlain, "camera.txt, rgb/ or color/, and depth/ with the same file names"},
+};
 
-/// Median of the non-zero depths, in PNG units; 0 when there are none.
-double medianDepth(const cv::Mat& depth) {
+/// Median of the known depths, in PNG units; 0 when there are none.
+double medianDepth(const cv::Mat& depth, std::uint16_t invalid) {
     std::vector<std::uint16_t> values;
     for (int v = 0; v < depth.rows; v++)
         std::copy_if(depth.ptr<std::uint16_t>(v), depth.ptr<std::uint16_t>(v) + depth.cols,
-                     std::back_inserter(values), [](std::uint16_t d) { return d != 0; });
+                     std::back_inserter(values), [=](std::uint16_t d) { return d != 0 && d != invalid; });
     if (values.empty()) return 0;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -48,13 +64,27 @@ double likelyDepthScale(double median_units) {
                              [&](double a, double b) { return off(a) < off(b); });
 }
 
+/// With the rights that opening a file has (access() looks at the real user's).
+bool isPermitted(const std::string& path, int rights) {
+    return faccessat(AT_FDCWD, path.c_str(), rights, AT_EACCESS) == 0;
+}
+
 /// A folder one level down that would have been right: people often give the parent.
 std::string betterFolder(const std::string& folder) {
-    for (const auto& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied))
-        if (entry.is_directory())
-            for (const Format& format : kFormats)
-                if (format.recognises(entry.path().string())) return entry.path().string();
-    return "";
+    std::string better;
+    for (const auto& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
+        std::error_code unreadable;
+        const std::string path = entry.path().string();
+        if (!entry.is_directory(unreadable) || !isPermitted(path, R_OK | X_OK)) continue;
+        for (const Format& format : kFormats) {
+            try {
+                if (format.recognises(path) && (better.empty() || path < better)) better = path;
+            } catch (const std::exception&) {
+                // A guess need not say what keeps it from looking
+            }
+        }
+    }
+    return better;
 }
 
 }  // namespace
@@ -72,11 +102,20 @@ void DatasetReader::checkFiles() const {
     std::size_t missing = 0;
     std::string first_missing;
     for (const DatasetEntry& frame : description_.frames)
-        for (const std::string* file : {&frame.image, &frame.depth})
-            if (!fs::is_regular_file(*file) && missing++ == 0) first_missing = *file;
+        for (const std::string* file : {&frame.image, &frame.depth}) {
+            std::error_code fault;
+            const bool there = fs::is_regular_file(*file, fault);
+            if (there && isPermitted(*file, R_OK)) continue;
+            const bool forbidden = there || fault == std::errc::permission_denied;
+            if (missing++ == 0) first_missing = *file + (forbidden ? " (no permission to read it)" : "");
+        }
     if (missing > 0)
         throw std::runtime_error(std::to_string(missing) + " listed image(s) missing in " +
                                  description_.folder + ", first: " + first_missing);
+}
+
+const PinholeCamera& DatasetReader::depthCamera() const {
+    return description_.registration ? description_.registration->depth_camera : camera();
 }
 
 void DatasetReader::checkDepthScale() const {
@@ -88,8 +127,8 @@ void DatasetReader::checkDepthScale() const {
             if (i + 1 < size()) continue;
             throw;
         }
-        checkSize(depth, entry(i).depth);
-        const double median_units = medianDepth(depth);
+        checkSize(depth, depthCamera(), entry(i).depth);
+        const double median_units = medianDepth(depth, description_.invalid_depth);
         if (median_units == 0) continue;
         const double median = median_units / depthScale();
         if (median >= kMinMedianDepth && median <= kMaxMedianDepth) return;
@@ -99,26 +138,33 @@ void DatasetReader::checkDepthScale() const {
             text, sizeof text,
             "median depth %.3g m with depth_scale %g makes no sense; depth_scale %g would give %.3g m",
             median, depthScale(), likely, median_units / likely);
-        throw std::runtime_error(entry(i).depth + ": " + text + ": correct it in camera.txt");
+        throw std::runtime_error(entry(i).depth + ": " + text + ": set it in camera.txt");
     }
 }
 
-void DatasetReader::checkSize(const cv::Mat& image, const std::string& file) const {
-    if (image.cols == camera().width && image.rows == camera().height) return;
+void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,
+                              const std::string& file) const {
+    if (image.cols == camera.width && image.rows == camera.height) return;
     throw std::runtime_error(file + " is " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
-                             ", but the camera is " + std::to_string(camera().width) + "x" +
-                             std::to_string(camera().height));
+                             ", but the camera is " + std::to_string(camera.width) + "x" +
+                             std::to_string(camera.height));
 }
 
 cv::Mat DatasetReader::readDepth(std::size_t i) const {
     cv::Mat depth = readDepthFile(entry(i).depth);
-    checkSize(depth, entry(i).depth);
+    checkSize(depth, depthCamera(), entry(i).depth);
+    if (description_.invalid_depth != 0) depth.setTo(0, depth == description_.invalid_depth);
+    if (!description_.registration) return depth;
+    const DepthRegistration& registration = *description_.registration;
+    cv::Mat registered = registerDepth(depthToMetres(depth, depthUnit()), registration.depth_camera, camera(),
+                                       registration.T_colour_depth);
+    registered.convertTo(depth, CV_16UC1, depthScale());  // rounds
     return depth;
 }
 
 cv::Mat DatasetReader::readImage(std::size_t i) const {
     cv::Mat image = readColourFile(entry(i).image);
-    checkSize(image, entry(i).image);
+    checkSize(image, camera(), entry(i).image);
     return image;
 }
 
@@ -138,12 +184,31 @@ std::string DatasetReader::summary() const {
     std::snprintf(text, sizeof text, "camera %dx%d fx %g fy %g cx %g cy %g, %s, depth_scale %g, from ",
                   c.width, c.height, c.fx, c.fy, c.cx, c.cy,
                   c.isDistorted() ? "with lens distortion" : "no lens distortion", depthScale());
-    return text + description_.camera_source + "\n" + description_.association.toText();
+    std::string lines = text + description_.camera_source + "\n" + description_.association.toText();
+    for (const std::string& note : notes()) lines += "\n" + note;
+    return lines;
+}
+
+std::vector<std::string> DatasetReader::notes() const {
+    std::vector<std::string> notes = description_.notes;
+    const GroundTruth& truth = groundTruth();
+    if (!truth.file.empty())
+        notes.push_back("ground truth: " + std::to_string(truth.poses.size()) + " poses from " + truth.file +
+                        (truth.note.empty() ? "" : ", " + truth.note));
+    if (!description_.imu_source.empty()) notes.push_back("inertial sensor: " + description_.imu_source);
+    return notes;
 }
 
 DatasetReader openDataset(const std::string& folder, const DatasetOptions& options) {
-    if (!fs::exists(folder)) throw std::runtime_error("dataset folder not found: " + folder);
+    std::error_code fault;
+    if (!fs::exists(folder, fault)) {
+        if (fault && fault != std::errc::no_such_file_or_directory)
+            throw std::runtime_error("cannot read folder " + folder + ": " + fault.message());
+        throw std::runtime_error("dataset folder not found: " + folder);
+    }
     if (!fs::is_directory(folder)) throw std::runtime_error("not a folder: " + folder);
+    if (!isPermitted(folder, R_OK | X_OK))
+        throw std::runtime_error("cannot read folder " + folder + ": " + std::strerror(errno));
     std::string names, needs;
     for (const Format& format : kFormats) {
         names += std::string(names.empty() ? "" : ", ") + format.name;
@@ -155,8 +220,8 @@ DatasetReader openDataset(const std::string& folder, const DatasetOptions& optio
         throw std::runtime_error("unknown dataset format '" + options.format + "' (known: auto, " + names +
                                  ")");
     const std::string better = betterFolder(folder);
-    throw std::runtime_error("no dataset recognised in " + folder + " (needed: " + needs + ")" +
-                             (better.empty() ? "" : "; did you mean " + better + "?"));
+    throw std::runtime_error("no dataset recognised in " + folder + " (known layouts and what each needs: " +
+                             needs + ")" + (better.empty() ? "" : "; did you mean " + better + "?"));
 }
 
 std::vector<std::string> datasetFormats() {

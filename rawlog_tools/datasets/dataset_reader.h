@@ -1,9 +1,12 @@
 #pragma once
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "datasets/association.h"
+#include "datasets/sensor_data.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/camera/rgbd_frame.h"
 
@@ -16,16 +19,27 @@ struct DatasetEntry {
     std::string image, depth;    ///< paths that can be opened
 };
 
+/// Depth that was taken by a camera of its own, as the images hold it.
+struct DepthRegistration {
+    PinholeCamera depth_camera;
+    Pose T_colour_depth = Pose::Identity();
+};
+
 /// What a format's loader finds out about a folder.
 struct DatasetDescription {
     std::string folder;
-    std::string format;  ///< "tum"
+    std::string format;  ///< "tum", "icl", "eth3d", "7scenes" or "plain"
     PinholeCamera camera;
-    std::string camera_source;  ///< in words: where the intrinsics come from
-    double depth_scale = 0;     ///< PNG units per metre
+    std::string camera_source;        ///< in words: where the intrinsics come from
+    double depth_scale = 0;           ///< PNG units per metre
+    std::uint16_t invalid_depth = 0;  ///< value that stands for "unknown" in the images, beside 0
+    std::optional<DepthRegistration> registration;  ///< empty: depth and colour pixels are the same
+    std::vector<std::string> notes;                 ///< what was assumed or converted, a line each
     std::vector<DatasetEntry> frames;
     AssociationReport association;
-    std::string ground_truth;  ///< path of a TUM trajectory, empty when there is none
+    GroundTruth ground_truth;    ///< of the colour camera, optical axes; empty when there is none
+    std::vector<ImuSample> imu;  ///< ascending in time; empty when the dataset has none
+    std::string imu_source;      ///< in words: file, what was left out of it
 };
 
 struct DatasetOptions {
@@ -44,13 +58,20 @@ class DatasetReader {
     const PinholeCamera& camera() const { return description_.camera; }
     double depthScale() const { return description_.depth_scale; }  ///< PNG units per metre
     float depthUnit() const;                                        ///< metres per PNG unit
-    const std::string& groundTruthPath() const { return description_.ground_truth; }
+    const GroundTruth& groundTruth() const { return description_.ground_truth; }
+    const std::vector<ImuSample>& imu() const { return description_.imu; }
+
+    /// The dataset's own trajectory file when it can be copied as it is (GroundTruth::copyable), else "".
+    std::string groundTruthPath() const {
+        return groundTruth().copyable ? groundTruth().file : std::string();
+    }
 
     std::size_t size() const { return description_.frames.size(); }
     const DatasetEntry& entry(std::size_t i) const { return description_.frames.at(i); }
 
-    /// Depth as stored, CV_16UC1. @throws std::runtime_error when frame i's depth is unreadable or of another
-    /// size.
+    /// Depth in the colour image's pixels, CV_16UC1 of depthScale() units per metre, 0 where unknown: as
+    /// stored, unless the description has a registration or another value for unknown.
+    /// @throws std::runtime_error when frame i's depth is unreadable or of another size.
     cv::Mat readDepth(std::size_t i) const;
 
     /// Colour as stored, CV_8UC3 (BGR) or CV_8UC1. @throws std::runtime_error as readDepth().
@@ -60,11 +81,16 @@ class DatasetReader {
     /// still are usable.
     RgbdFrame readFrame(std::size_t i) const;
 
-    /// Two lines: the camera with its source, and how the images were matched.
+    /// The camera with its source; how the images were matched; then a line for every note, the ground truth
+    /// and the inertial samples.
     std::string summary() const;
 
+    /// What summary() says from its third line on.
+    std::vector<std::string> notes() const;
+
   private:
-    void checkSize(const cv::Mat& image, const std::string& file) const;
+    void checkSize(const cv::Mat& image, const PinholeCamera& camera, const std::string& file) const;
+    const PinholeCamera& depthCamera() const;
     void checkFiles() const;
     void checkDepthScale() const;
 

@@ -1,8 +1,10 @@
 #include "datasets/text_list.h"
 
-#include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -10,8 +12,12 @@
 namespace roevo {
 
 std::vector<TextLine> readTextLines(const std::string& file) {
+    std::error_code unknown;
+    if (std::filesystem::is_directory(file, unknown))
+        throw std::runtime_error("cannot read " + file + ": it is a folder");
+    errno = 0;
     std::ifstream in(file);
-    if (!in) throw std::runtime_error("cannot read " + file);
+    if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno ? errno : ENOENT));
     std::vector<TextLine> lines;
     std::string text;
     for (int number = 1; std::getline(in, text); number++) {
@@ -20,8 +26,8 @@ std::vector<TextLine> readTextLines(const std::string& file) {
         TextLine line;
         line.number = number;
         std::istringstream words(text);
-        for (std::string word; words >> word;) line.words.push_back(word);
-        if (line.words.empty() || line.words[0][0] == '#') continue;
+        for (std::string word; words >> word && word[0] != '#';) line.words.push_back(word);
+        if (line.words.empty()) continue;
         lines.push_back(std::move(line));
     }
     return lines;
@@ -44,19 +50,14 @@ double parseNumber(const std::string& word, const std::string& where) {
     return value;
 }
 
-std::vector<ListEntry> readStampedList(const std::string& file, std::size_t& duplicates) {
+std::vector<ListEntry> readStampedList(const std::string& file, AssociationReport& report) {
     std::vector<ListEntry> entries;
     for (const TextLine& line : readTextLines(file)) {
         const std::string where = file + ":" + std::to_string(line.number);
         if (line.words.size() < 2) throw std::runtime_error(where + ": expected 'timestamp filename'");
         entries.push_back({parseNumber(line.words[0], where), line.words[1]});
     }
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const ListEntry& a, const ListEntry& b) { return a.timestamp < b.timestamp; });
-    const auto same = [](const ListEntry& a, const ListEntry& b) { return a.timestamp == b.timestamp; };
-    const auto last = std::unique(entries.begin(), entries.end(), same);
-    duplicates += static_cast<std::size_t>(entries.end() - last);
-    entries.erase(last, entries.end());
+    sortByTime(entries, report);
     return entries;
 }
 

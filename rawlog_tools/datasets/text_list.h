@@ -1,8 +1,11 @@
 #pragma once
 /// The text lists of RGB-D datasets: one entry a line, "timestamp filename …", '#' comments, any line ending.
 
+#include <algorithm>
 #include <string>
 #include <vector>
+
+#include "datasets/association.h"
 
 namespace roevo {
 
@@ -11,7 +14,8 @@ struct TextLine {
     std::vector<std::string> words;
 };
 
-/// Lines with something on them, split at blanks; comments, blank lines and carriage returns are dropped.
+/// Lines with something on them, split at blanks; comments (whole lines or at a line's end), blank lines and
+/// carriage returns are dropped.
 /// @throws std::runtime_error when the file cannot be read.
 std::vector<TextLine> readTextLines(const std::string& file);
 
@@ -26,9 +30,22 @@ struct ListEntry {
     std::string file;      ///< as written
 };
 
-/// "timestamp filename" lines in ascending order of time, the first of several with one stamp kept.
-/// @param duplicates  increased by the number of entries left out
+/// Brings entries (of any type with a `timestamp`) into ascending order of time and keeps the first of
+/// several with one stamp; `report` counts both.
+template <class Entry>
+void sortByTime(std::vector<Entry>& entries, AssociationReport& report) {
+    for (std::size_t i = 1; i < entries.size(); i++)
+        if (entries[i].timestamp < entries[i - 1].timestamp) report.out_of_order++;
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const Entry& a, const Entry& b) { return a.timestamp < b.timestamp; });
+    const auto last = std::unique(entries.begin(), entries.end(),
+                                  [](const Entry& a, const Entry& b) { return a.timestamp == b.timestamp; });
+    report.duplicates += static_cast<std::size_t>(entries.end() - last);
+    entries.erase(last, entries.end());
+}
+
+/// "timestamp filename" lines after sortByTime().
 /// @throws std::runtime_error with file and line number for a malformed line.
-std::vector<ListEntry> readStampedList(const std::string& file, std::size_t& duplicates);
+std::vector<ListEntry> readStampedList(const std::string& file, AssociationReport& report);
 
 }  // namespace roevo

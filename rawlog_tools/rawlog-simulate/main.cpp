@@ -6,6 +6,7 @@
 #include <future>
 #include <thread>
 
+#include "layout.h"
 #include "recording.h"
 #include "support/program.h"
 #include "support/progress.h"
@@ -18,7 +19,7 @@ constexpr char kName[] = "rawlog-simulate";
 struct Arguments {
     simulator::SimulationOptions options;
     std::string output, noise = "none", path = "handheld", size = "640x480", layout = "rawlog";
-    std::vector<double> distortion;
+    std::vector<double> distortion, intrinsics;
 };
 
 std::string joined(const std::vector<std::string>& names) {
@@ -31,7 +32,7 @@ void addOptions(CLI::App& app, Arguments& a) {
     simulator::SimulationOptions& o = a.options;
     app.add_option("--scene", o.scene, "Scene: " + joined(simulator::sceneNames()))->required();
     app.add_option("--output", a.output,
-                   "Rawlog to write (images and ground truth beside it), or folder for --layout tum")
+                   "Rawlog to write (images and ground truth beside it), or folder for the other layouts")
         ->required();
     app.add_option("--frames", o.frames, "Number of frames")->capture_default_str();
     app.add_option("--fps", o.fps, "Frames per second")->capture_default_str();
@@ -53,11 +54,13 @@ void addOptions(CLI::App& app, Arguments& a) {
         ->check(CLI::IsMember({"handheld", "walk", "back-and-forth"}));
     app.add_option("--speed", o.speed, "Top speed of the camera, m/s")->capture_default_str();
     app.add_option("--size", a.size, "Image size, WIDTHxHEIGHT")->capture_default_str();
+    app.add_option("--intrinsics", a.intrinsics, "Camera: fx fy cx cy, pixels")->expected(4);
     app.add_option("--distortion", a.distortion, "Lens: k1 k2 p1 p2 k3")->expected(5);
     app.add_option("--start-time", o.start_time, "Time stamp of the first frame, s")->capture_default_str();
-    app.add_option("--layout", a.layout, "rawlog, or tum for a folder in TUM's layout")
+    app.add_option("--layout", a.layout,
+                   "rawlog, or a folder as a benchmark packs it: " + joined(layoutNames()))
         ->capture_default_str()
-        ->check(CLI::IsMember({"rawlog", "tum"}));
+        ->check(CLI::IsMember(layoutNames()));
     app.add_option("--threads", o.threads, "Threads, 0: one per processor; no influence on the result")
         ->capture_default_str();
     app.footer(
@@ -78,7 +81,9 @@ void applyNames(Arguments& a) {
         a.size.size() != static_cast<size_t>(end))
         throw UsageError("--size must be WIDTHxHEIGHT, e.g. 640x480, not '" + a.size + "'");
     for (size_t i = 0; i < a.distortion.size(); ++i) a.options.distortion[i] = a.distortion[i];
-    const std::string problem = a.options.check();
+    std::copy(a.intrinsics.begin(), a.intrinsics.end(), a.options.intrinsics.begin());
+    std::string problem = a.options.check();
+    if (problem.empty()) problem = applyLayout(a.layout, a.options);
     if (!problem.empty()) throw UsageError(problem);
     if (a.layout == "rawlog" && std::filesystem::path(a.output).extension() != ".rawlog")
         throw UsageError("--output must end in .rawlog: " + a.output);
@@ -87,7 +92,7 @@ void applyNames(Arguments& a) {
 int run(int argc, char** argv) {
     Arguments arguments;
     CLI::App app(
-        "Simulates an RGB-D camera carried through a scene: rawlog (or TUM folder) and exact ground truth.",
+        "Simulates an RGB-D camera carried through a scene: rawlog or dataset folder and exact ground truth.",
         kName);
     addOptions(app, arguments);
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
@@ -100,9 +105,8 @@ int run(int argc, char** argv) {
     simulator::SimulationOptions options = arguments.options;
     options.threads = 1;
     const simulator::Simulator simulator(options);
-    const std::unique_ptr<Recording> recording = arguments.layout == "tum"
-                                                     ? recordTumFolder(arguments.output, simulator.camera())
-                                                     : recordRawlog(arguments.output, simulator.camera());
+    const std::unique_ptr<Recording> recording =
+        openRecording(arguments.layout, arguments.output, options, simulator.camera());
     Progress progress("simulating", static_cast<size_t>(simulator.numFrames()));
     std::deque<std::future<simulator::SimulatedFrame>> ahead;
     int started = 0;

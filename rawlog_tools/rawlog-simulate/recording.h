@@ -14,12 +14,12 @@ class Recording {
     virtual void finish() = 0;
 };
 
-/// F.rawlog with F_Images/ and F_groundtruth.txt beside it. @throws std::runtime_error when it cannot be
-/// written
-std::unique_ptr<Recording> recordRawlog(const std::string& path, const PinholeCamera& camera);
-
-/// A folder in TUM's layout; must not exist yet, or be empty. @throws std::runtime_error when it cannot be
-/// written
-std::unique_ptr<Recording> recordTumFolder(const std::string& path, const PinholeCamera& camera);
+/// Opens a recording in one of layoutNames(): F.rawlog with F_Images/ and F_groundtruth.txt beside it, or a
+/// folder, which must not exist yet, or be empty.
+/// @param options  after applyLayout()
+/// @throws std::runtime_error when it cannot be written
+std::unique_ptr<Recording> openRecording(const std::string& layout, const std::string& path,
+                                         const simulator::SimulationOptions& options,
+                                         const PinholeCamera& camera);
 
 }  // namespace roevo

@@ -1,43 +1,114 @@
 #include "rgbd2rawlog/convert.h"
 
-#include <filesystem>
+#include <chrono>
+#include <limits>
 #include <stdexcept>
 
 #include "roevo_mrpt/rawlog_writer.h"
+#include "support/interrupt.h"
 #include "support/progress.h"
 
 namespace roevo {
+namespace {
 
-ConvertResult convertToRawlog(const DatasetReader& dataset, const std::string& rawlog, bool skip_bad) {
-    RawlogWriterOptions options;
-    options.range_units = dataset.depthUnit();
-    RawlogWriter writer(rawlog, dataset.camera(), options);
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Writes inertial samples in step with the frames.
+class ImuTrack {
+  public:
+    ImuTrack(const DatasetReader& dataset, const FrameSelection& selection, ConvertResult& result)
+        : samples_(dataset.imu()), result_(result) {
+        const double first = dataset.entry(0).timestamp;
+        for (; next_ < samples_.size() && !selection.contains(samples_[next_].timestamp, first); next_++) {
+        }
+        for (end_ = next_; end_ < samples_.size() && selection.contains(samples_[end_].timestamp, first);
+             end_++) {
+        }
+    }
+
+    /// Samples up to this time, or all that are left.
+    void writeUntil(double timestamp, RawlogWriter& writer) {
+        for (; next_ < end_ && samples_[next_].timestamp <= timestamp; next_++) {
+            const ImuSample& sample = samples_[next_];
+            writer.addImu(sample.timestamp, sample.acceleration, sample.angular_velocity);
+            result_.imu.push_back(sample);
+        }
+    }
+
+  private:
+    const std::vector<ImuSample>& samples_;
+    ConvertResult& result_;
+    std::size_t next_ = 0, end_ = 0;
+};
+
+RawlogWriterOptions writerOptions(const DatasetReader& dataset, const ConvertOptions& options) {
+    RawlogWriterOptions out;
+    out.range_units = dataset.depthUnit();
+    out.externalize_depth = options.externalize_depth;
+    out.jpeg_quality = options.jpeg_quality;
+    return out;
+}
+
+std::vector<std::size_t> selectFrom(const DatasetReader& dataset, const FrameSelection& selection) {
+    std::vector<double> stamps;
+    for (std::size_t i = 0; i < dataset.size(); i++) stamps.push_back(dataset.entry(i).timestamp);
+    try {
+        return selectFrames(stamps, selection);
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(dataset.description().folder + ": " + error.what());
+    }
+}
+
+}  // namespace
+
+ConvertResult convertToRawlog(const DatasetReader& dataset, const std::string& rawlog,
+                              const ConvertOptions& options,
+                              const std::function<void(const ConvertResult&, const std::string&)>& check) {
+    const auto selected = selectFrom(dataset, options.selection);
+    const InterruptGuard guard;
+    RawlogWriter writer(rawlog, dataset.camera(), writerOptions(dataset, options));
     ConvertResult result;
-    Progress progress("writing", dataset.size());
-    for (std::size_t i = 0; i < dataset.size(); i++) {
-        cv::Mat depth;
+    ImuTrack imu(dataset, options.selection, result);
+    Progress progress("writing", selected.size());
+    const auto start = Clock::now();
+    for (std::size_t done = 0; done < selected.size(); done++) {
+        InterruptGuard::check();
+        const std::size_t i = selected[done];
+        const DatasetEntry& entry = dataset.entry(i);
+        cv::Mat depth, image;
+        const auto decode_start = Clock::now();
         try {
             depth = dataset.readDepth(i);
-            dataset.readImage(i);
+            image = dataset.readImage(i);
         } catch (const std::runtime_error& error) {
-            if (!skip_bad)
+            if (!options.skip_bad)
                 throw std::runtime_error(std::string(error.what()) + " (--skip-bad leaves such frames out)");
             result.left_out.emplace_back(error.what());
             continue;
         }
-        writer.addFile(dataset.entry(i).timestamp, depth, dataset.entry(i).image);
+        result.decode_seconds += secondsSince(decode_start);
+        imu.writeUntil(entry.timestamp, writer);
+        if (options.jpeg_quality > 0)
+            writer.add(entry.timestamp, depth, image);
+        else
+            writer.addFile(entry.timestamp, depth, entry.image);
         result.written.push_back(i);
-        progress.update(i + 1);
+        progress.update(done + 1);
     }
     if (result.written.empty())
         throw std::runtime_error("no usable frame in " + dataset.description().folder);
+    imu.writeUntil(std::numeric_limits<double>::infinity(), writer);
+    writer.close();
+    result.seconds = secondsSince(start);
+    progress.finish();
+    check(result, writer.temporaryPath());
+    InterruptGuard::check();
     writer.finish();
     return result;
-}
-
-std::string groundTruthFileOf(const std::string& rawlog) {
-    const std::filesystem::path path(rawlog);
-    return (path.parent_path() / (path.stem().string() + "_groundtruth.txt")).string();
 }
 
 }  // namespace roevo

@@ -363,8 +363,13 @@ TEST(OdometryMapping, ReuseHelpsOnTheWayBack) {
         options.mapping.reuse_keyframes = reuse;
         const MappedRun run = runOver(path(), options);
         poses[reuse ? 1 : 0] = run.final_poses;
-        end[reuse ? 1 : 0] =
-            distance(run.final_poses.back().T_world_camera, path().truth.back().T_world_camera);
+        // The last quarter: a single pose is luck
+        const std::size_t count = run.final_poses.size(), first = count - count / 4;
+        for (std::size_t i = first; i < count; ++i) {
+            end[reuse ? 1 : 0] +=
+                distance(run.final_poses[i].T_world_camera, path().truth[i].T_world_camera) /
+                static_cast<double>(count - first);
+        }
         ASSERT_EQ(run.final_poses.size(), path().frames.size());
     }
     RecordProperty("off_mm", std::to_string(1000 * end[0]));

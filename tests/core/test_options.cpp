@@ -169,6 +169,25 @@ TEST(Options, UnknownKeyNamesTheClosest) {
     EXPECT_TRUE(contains(setOption(options, "", "1"), "unknown option"));
 }
 
+TEST(Options, ARightKeyInTheWrongSectionIsFound) {
+    OdometryOptions options;
+    for (const auto& [typed, meant] :
+         {std::pair("fine.window", "mapping.window"), std::pair("camera.depth_limit", "sensor.depth_limit"),
+          std::pair("Sensor.Max-Depth", "sensor.max_depth"),
+          std::pair("mapping.estimate_readot", "sensor.estimate_readout")}) {
+        const std::string fault = setOption(options, typed, "1");
+        EXPECT_TRUE(contains(fault, std::string("closest is '") + meant + "'")) << fault;
+    }
+}
+
+TEST(Options, EquallyCloseKeysAreAllNamed) {
+    OdometryOptions options;
+    const std::string fault = setOption(options, "max_points", "1000");
+    for (const char* meant : {"'coarse.max_points'", "'fine.max_points'", "'mapping.max_points'"})
+        EXPECT_TRUE(contains(fault, meant)) << fault;
+    EXPECT_FALSE(contains(setOption(options, "coarse.max_point", "1"), "fine.max_points"));
+}
+
 TEST(Options, ModesAreCtAndTr) {
     OdometryOptions options;
     EXPECT_EQ(setOption(options, "odometry.mode", "ct"), "");

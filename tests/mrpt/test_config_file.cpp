@@ -65,6 +65,8 @@ TEST(ConfigFile, AcceptsCommentsBlanksAndWindowsLineEnds) {
         "x.ini", options);
     EXPECT_EQ(options.sensor.max_depth, 3.5);
     EXPECT_EQ(options.sensor.min_depth, 0.25);
+    loadConfigText("\xEF\xBB\xBF[sensor]\r\nmax_depth = 4.5\r\n", "x.ini", options);
+    EXPECT_EQ(options.sensor.max_depth, 4.5);
 }
 
 TEST(ConfigFile, ErrorsNameFileLineAndClosestKey) {

@@ -104,6 +104,27 @@ TEST_F(SimulateProgram, UnwritableOutputIsOneLineAndLeavesNothing) {
     EXPECT_EQ(contents(path("used/precious")), "keep me");
 }
 
+TEST_F(SimulateProgram, LayoutsHaveTheFilesOfTheirBenchmarks) {
+    const std::string options = "--scene shadows --frames 2 --start-time 0 --output ";
+    ASSERT_EQ(run(options + path("icl") + " --layout icl"), 0) << errors_;
+    const auto icl = tree(path("icl"));
+    EXPECT_EQ(icl.size(), 2u + 2u + 2u) << "at 640x480 no camera.txt, as in the dataset";
+    EXPECT_EQ(icl.at("associations.txt"), "0 depth/0.png 0 rgb/0.png\n1 depth/1.png 1 rgb/1.png\n");
+    EXPECT_EQ(icl.at("traj0.gt.freiburg").substr(0, 2), "0 ");
+    ASSERT_EQ(run(options + path("eth3d") + " --size 64x48 --layout eth3d --intrinsics 60 61 31 23"), 0)
+        << errors_;
+    const auto eth3d = tree(path("eth3d"));
+    EXPECT_EQ(eth3d.size(), 2u + 2u + 5u);
+    EXPECT_EQ(eth3d.at("calibration.txt"), "60 61 31 23\n");
+    EXPECT_NE(eth3d.at("associated.txt").find("0.033333 rgb/0.033333.png 0.033333 depth/0.033333.png\n"),
+              std::string::npos);
+    ASSERT_EQ(run(options + path("seq-01") + " --layout 7scenes"), 0) << errors_;
+    const auto scenes = tree(path("seq-01"));
+    EXPECT_EQ(scenes.size(), 3u + 3u);
+    for (const char* kind : {".color.png", ".depth.png", ".pose.txt"})
+        EXPECT_EQ(scenes.count(std::string("frame-000001") + kind), 1u) << kind;
+}
+
 TEST_F(SimulateProgram, WrongUsageSaysWhatIsAllowed) {
     const std::string output = " --output " + path("x.rawlog");
     EXPECT_EQ(run("--scene attic" + output), 2);
@@ -114,6 +135,20 @@ TEST_F(SimulateProgram, WrongUsageSaysWhatIsAllowed) {
     EXPECT_NE(errors_.find("64by48"), std::string::npos) << errors_;
     EXPECT_EQ(run("--scene shadows --no-such-option" + output), 2);
     EXPECT_EQ(run("--scene shadows --output " + path("x.txt")), 2);
+    const std::string folder = "--scene shadows --output " + path("folder") + " --layout ";
+    EXPECT_EQ(run(folder + "euroc"), 2);
+    EXPECT_NE(errors_.find("rawlog,tum,icl,eth3d,7scenes,plain"), std::string::npos) << errors_;
+    EXPECT_EQ(run(folder + "icl --fps 25"), 2);
+    EXPECT_NE(errors_.find("30 Hz: leave out --fps"), std::string::npos) << errors_;
+    EXPECT_EQ(run(folder + "7scenes --start-time 0.51"), 2);
+    EXPECT_NE(errors_.find("multiple of 1/30 s"), std::string::npos) << errors_;
+    EXPECT_EQ(run(folder + "7scenes --size 320x240"), 2);
+    EXPECT_NE(errors_.find("640x480"), std::string::npos) << errors_;
+    EXPECT_EQ(run(folder + "eth3d --distortion 0.1 0 0 0 0"), 2);
+    EXPECT_NE(errors_.find("leave out --distortion"), std::string::npos) << errors_;
+    EXPECT_EQ(run(folder + "tum --intrinsics 525 0 319 239"), 2);
+    EXPECT_NE(errors_.find("fy = 0"), std::string::npos) << errors_;
+    EXPECT_FALSE(fs::exists(path("folder")) || fs::exists(path("folder.part")));
     EXPECT_EQ(run("--help"), 0);
     EXPECT_FALSE(fs::exists(path("x.rawlog")));
 }

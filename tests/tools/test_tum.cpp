@@ -84,6 +84,16 @@ TEST(Tum, PublishedCamerasAreRecognisedAndSaid) {
     EXPECT_FALSE(tumCameraNamedIn("rgbd_dataset_freiburg3_office")->camera.isDistorted());
     EXPECT_FALSE(tumCameraNamedIn("my_dataset"));
 
+    // As the benchmark's page on file formats prints them
+    EXPECT_EQ(
+        tumCameraNamedIn("freiburg1")->camera,
+        (PinholeCamera{640, 480, 517.3, 516.5, 318.6, 255.3, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}}));
+    EXPECT_EQ(
+        tumCameraNamedIn("freiburg2")->camera,
+        (PinholeCamera{640, 480, 520.9, 521.0, 325.1, 249.7, {0.2312, -0.7849, -0.0033, -0.0001, 0.9172}}));
+    EXPECT_EQ(tumCameraNamedIn("freiburg3")->camera,
+              (PinholeCamera{640, 480, 535.4, 539.2, 320.1, 247.6, {}}));
+
     const SmallTumFolder folder;
     folder.remove("camera.txt");
     EXPECT_CONTAINS(openError(folder), "no intrinsics");
@@ -139,7 +149,8 @@ TEST(Tum, WrongFoldersAndLists) {
     EXPECT_CONTAINS(errorOf([&] { openDataset(parent.string()); }),
                     "did you mean " + (parent / "child").string());
     EXPECT_CONTAINS(errorOf([&] { openDataset((parent / "child").string()); }), "has no depth.txt");
-    EXPECT_CONTAINS(openError(folder, {"oni", 0.02}), "unknown dataset format 'oni' (known: auto, tum)");
+    EXPECT_CONTAINS(openError(folder, {"oni", 0.02}),
+                    "unknown dataset format 'oni' (known: auto, 7scenes, eth3d, icl, tum, plain)");
     EXPECT_CONTAINS(openError(folder, {"tum", 0.001}), "closest pair 0.004 s apart");
     folder.write("rgb.txt", "# nothing\n");
     EXPECT_CONTAINS(openError(folder), "0 colour, 3 depth images");

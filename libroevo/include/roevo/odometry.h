@@ -44,6 +44,7 @@ struct FrameResult {
     /// m: how far the map moved the camera before this frame was tracked (mode ba); positions before and
     /// after differ by it without any motion.
     double map_correction = 0;
+    double map_turn = 0;     ///< rad: how far the map turned the camera, likewise
     std::string map_reason;  ///< in words, where mapping left something as it was
     StageTimes ms;
 

@@ -91,7 +91,7 @@ struct MappingOptions {
     double depth_chi2 = 12;        ///< chi-square limit of a depth
     double prior_weight = 0;       ///< weight of the tracked motion between keyframes
     double max_spread = 8;         ///< sigmas; an edge whose observations differ by more is a pseudo-edge
-    double min_seen = 0.4;         ///< share of the keyframes that look at an edge's place and must see it
+    double min_seen = 0.5;         ///< share of the keyframes that look at an edge's place and must see it
     int min_looks = 3;             ///< fewer such keyframes cannot judge
     bool reuse_keyframes = true;   ///< old keyframes that look at the same place take part again
     int max_reused = 4;            ///< so many of them
@@ -135,7 +135,7 @@ struct OptionField {
 std::vector<OptionField> optionFields(OdometryOptions& options);
 
 /// Sets one option by "section.key". Returns an empty string or one line of error (an unknown key names the
-/// closest known one).
+/// closest known one, or ones).
 std::string setOption(OdometryOptions& options, const std::string& name, const std::string& text);
 
 /// Empty when all options are in range, else the first fault in one line.

@@ -41,6 +41,8 @@ void loadConfigText(const std::string& text, const std::string& name, OdometryOp
     std::istringstream in(text);
     std::string line, section;
     for (int line_number = 1; std::getline(in, line); line_number++) {
+        if (line_number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0)
+            line.erase(0, 3);  // as editors on Windows write
         const std::string content = withoutComment(line);
         if (content.empty()) continue;
         const std::string where = name + ":" + std::to_string(line_number) + ": ";

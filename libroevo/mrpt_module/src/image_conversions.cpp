@@ -1,5 +1,9 @@
 #include "roevo_mrpt/image_conversions.h"
 
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -12,6 +16,8 @@ cv::Mat decode(const std::string& file, int flags) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error))
         throw std::runtime_error("image file not found: " + file);
+    if (access(file.c_str(), R_OK) != 0)
+        throw std::runtime_error("cannot read image (" + std::string(std::strerror(errno)) + "): " + file);
     cv::Mat image;
     try {
         image = cv::imread(file, flags);

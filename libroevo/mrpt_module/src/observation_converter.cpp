@@ -2,6 +2,8 @@
 
 #include <mrpt/obs/CObservation3DRangeScan.h>
 
+#include <filesystem>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
@@ -29,14 +31,27 @@ cv::Mat imageOf(const CObservation3DRangeScan& scan) {
     // Not through CImage: it would keep the pixels in memory, and report a damaged file with a stack trace.
     if (scan.intensityImage.isExternallyStored())
         return readColourFile(scan.intensityImage.getExternalStorageFileAbsolutePath());
-    cv::Mat image = scan.intensityImage.asCvMatRef();
-    if (image.channels() == 3 && scan.intensityImage.getChannelsOrder() == "RGB")
-        cv::cvtColor(image, image, cv::COLOR_RGB2BGR);
-    return image;
+    const cv::Mat image = scan.intensityImage.asCvMatRef();
+    const bool rgb = scan.intensityImage.getChannelsOrder().rfind("RGB", 0) == 0;
+    cv::Mat bgr;
+    if (image.channels() == 3 && rgb)
+        cv::cvtColor(image, bgr, cv::COLOR_RGB2BGR);
+    else if (image.channels() == 4)
+        cv::cvtColor(image, bgr, rgb ? cv::COLOR_RGBA2BGR : cv::COLOR_BGRA2BGR);
+    else
+        return image;
+    return bgr;
 }
 
 cv::Mat depthOf(const CObservation3DRangeScan& scan, const PinholeCamera& depth_camera) {
     const auto& range = scan.rangeImage;
+    if (scan.rangeImage_isExternallyStored() && range.rows() == 0) {
+        const std::string file = scan.rangeImage_getExternalStorageFileAbsolutePath("");
+        std::error_code error;
+        throw std::runtime_error((std::filesystem::exists(file, error) ? "cannot read range image (damaged): "
+                                                                       : "range image file not found: ") +
+                                 file);
+    }
     if (!scan.hasRangeImage || range.rows() == 0)
         throw std::runtime_error("the observation has no range image");
     if (!(scan.rangeUnits > 0)) throw std::runtime_error("the observation's rangeUnits is not above 0");
@@ -48,10 +63,41 @@ cv::Mat depthOf(const CObservation3DRangeScan& scan, const PinholeCamera& depth_
     return depth;
 }
 
+bool camerasCoincide(const CObservation3DRangeScan& scan, const PinholeCamera& depth_camera,
+                     const PinholeCamera& colour_camera) {
+    return depth_camera == colour_camera && scan.doDepthAndIntensityCamerasCoincide();
+}
+
 }  // namespace
 
 PinholeCamera colourCameraOf(const CObservation3DRangeScan& scan) {
     return fromMrptCamera(scan.cameraParamsIntensity, "colour camera");
+}
+
+bool depthIsAsStored(const CObservation3DRangeScan& scan) {
+    return scan.range_is_depth &&
+           camerasCoincide(scan, fromMrptCamera(scan.cameraParams, "depth camera"), colourCameraOf(scan));
+}
+
+bool isMountedOnRobot(const CObservation3DRangeScan& scan) {
+    constexpr double kTolerance = 1e-9;  // m, rad: stored as double, but often computed
+    return !toEigen(scan.sensorPose).isApprox(Pose::Identity(), kTolerance);
+}
+
+Pose cameraOnRobot(const CObservation3DRangeScan& scan) {
+    return toEigen(scan.sensorPose) * toEigen(scan.relativePoseIntensityWRTDepth);
+}
+
+std::vector<StampedPose> robotTrajectory(const std::vector<StampedPose>& camera_trajectory,
+                                         const std::vector<StampedPose>& mounts) {
+    std::vector<StampedPose> robot = camera_trajectory;
+    auto mount = mounts.begin();
+    for (StampedPose& pose : robot) {
+        while (std::next(mount) != mounts.end() && std::next(mount)->timestamp <= pose.timestamp) ++mount;
+        pose.T_world_camera =
+            mounts.front().T_world_camera * pose.T_world_camera * mount->T_world_camera.inverse();
+    }
+    return robot;
 }
 
 RgbdFrame toRgbdFrame(const CObservation3DRangeScan& scan) {
@@ -66,7 +112,7 @@ RgbdFrame toRgbdFrame(const CObservation3DRangeScan& scan) {
     if (image.channels() == 3) frame.colour = image;
 
     frame.depth = depthOf(scan, depth_camera);
-    if (depth_camera != colour_camera || !scan.doDepthAndIntensityCamerasCoincide()) {
+    if (!camerasCoincide(scan, depth_camera, colour_camera)) {
         const Pose T_depthsensor_colour = toEigen(scan.relativePoseIntensityWRTDepth);
         frame.depth = registerDepth(frame.depth, depth_camera, colour_camera,
                                     T_depthsensor_colour.inverse() * sensorFromOptical());

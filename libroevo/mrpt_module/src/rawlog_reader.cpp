@@ -1,7 +1,6 @@
 #include "roevo_mrpt/rawlog_reader.h"
 
 #include <mrpt/io/CFileGZInputStream.h>
-#include <mrpt/io/lazy_load_path.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CRawlog.h>
@@ -14,7 +13,9 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
+#include "range_file.h"
 #include "roevo_mrpt/rawlog_writer.h"
 
 namespace fs = std::filesystem;
@@ -23,6 +24,9 @@ namespace roevo {
 namespace {
 
 using mrpt::obs::CObservation3DRangeScan;
+
+constexpr std::size_t kInterleaved = 30;  // sensors that record together take turns at least this often
+constexpr char kNoName[] = "(no name)";
 
 /// Remembers how far it got and whether it ran dry, which tells a proper end from a cut one.
 class WatchedStream {
@@ -67,20 +71,30 @@ double statedSize(const std::string& file) {
 std::string listCounts(const std::map<std::string, std::size_t>& counts) {
     std::string text;
     for (const auto& [name, count] : counts)
-        text +=
-            (text.empty() ? "" : ", ") + std::to_string(count) + " " + (name.empty() ? "(no name)" : name);
+        text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + (name.empty() ? kNoName : name);
     return text.empty() ? "nothing" : text;
+}
+
+std::size_t sumOf(const std::map<std::string, std::size_t>& counts) {
+    std::size_t sum = 0;
+    for (const auto& [name, count] : counts) sum += count;
+    return sum;
+}
+
+void append(std::string& text, const std::string& more) {
+    text += (text.empty() ? "" : "; ") + more;
 }
 
 }  // namespace
 
 std::string RawlogReport::warning() const {
     std::string text = fault;
-    if (labels.size() > 1) {
-        if (!text.empty()) text += "; ";
-        text += "several sensors have range images (" + listCounts(labels) + "), using '" + label +
-                "' (choose with --sensor-label)";
-    }
+    if (labels.size() > 1)
+        append(text, "several sensors have range images (" + listCounts(labels) + "), using '" + label +
+                         "' (choose with --sensor-label)");
+    if (const std::size_t left_out = sumOf(points_only); left_out > 0)
+        append(text, std::to_string(left_out) + " scan(s) with 3D points but no range image left out (" +
+                         listCounts(points_only) + ")");
     return text;
 }
 
@@ -91,6 +105,7 @@ struct RawlogReader::Impl {
     WatchedStream stream;
     std::deque<mrpt::obs::CObservation::Ptr> queue;  // observations of the entry read last
     RawlogReport report;
+    std::function<void(const mrpt::obs::CObservation&)> listener;
     bool at_end = false;
     double stated_size = 0, compressed_size = 0;  // bytes
 
@@ -145,16 +160,40 @@ struct RawlogReader::Impl {
         }
     }
 
-    /// The observation as a scan of the wanted sensor, or null.
-    CObservation3DRangeScan::Ptr accept(const mrpt::obs::CObservation::Ptr& observation) {
+    /// Counts the observation; what it is as a scan with a range image, or null.
+    CObservation3DRangeScan::Ptr classify(const mrpt::obs::CObservation::Ptr& observation) {
         report.classes[observation->GetRuntimeClass()->className]++;
         auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation);
-        if (!scan || !scan->hasRangeImage) return nullptr;
+        if (!scan && listener) listener(*observation);
+        if (!scan) return nullptr;
+        if (!scan->hasRangeImage) {
+            if (scan->hasPoints3D) report.points_only[scan->sensorLabel]++;
+            return nullptr;
+        }
         if (any_label && report.labels.empty()) report.label = scan->sensorLabel;
         report.labels[scan->sensorLabel]++;
-        if (scan->sensorLabel != report.label) return nullptr;
+        return scan;
+    }
+
+    /// The observation as a scan of the wanted sensor, or null.
+    CObservation3DRangeScan::Ptr accept(const mrpt::obs::CObservation::Ptr& observation) {
+        auto scan = classify(observation);
+        if (!scan) return nullptr;
+        if (scan->sensorLabel != report.label) {
+            if (any_label && report.range_images <= kInterleaved) throwAmbiguous();
+            return nullptr;
+        }
         report.range_images++;
         return scan;
+    }
+
+    [[noreturn]] void throwAmbiguous() {
+        listener = nullptr;
+        do {
+            for (; !queue.empty(); queue.pop_front()) classify(queue.front());
+        } while (!at_end && readEntry());
+        throw std::runtime_error(path + ": several sensors have range images (" + listCounts(report.labels) +
+                                 "): choose one with --sensor-label");
     }
 
     /// Makes the scan independent of MRPT's global search path for external files.
@@ -167,13 +206,9 @@ struct RawlogReader::Impl {
             scan.intensityImage.setExternalStorage(found.string());
         }
         if (!scan.rangeImage_isExternallyStored()) return;
-        mrpt::io::setLazyLoadPathBase(images.string());
-        try {
-            scan.load();
-        } catch (const std::exception&) {
-            throw std::runtime_error(path + ": cannot load the external range image " +
-                                     scan.rangeImage_getExternalStorageFileAbsolutePath(""));
-        }
+        const fs::path file = scan.rangeImage_getExternalStorageFile("");
+        const bool beside = !fs::exists(images / file) && fs::exists(images.parent_path() / file);
+        loadRangeFile(scan, (beside ? images.parent_path() : images).string());
     }
 
     [[noreturn]] void throwNothingFound() const {
@@ -181,6 +216,11 @@ struct RawlogReader::Impl {
         if (!report.labels.empty())
             throw std::runtime_error(path + ": no range images of sensor '" + report.label +
                                      "'; sensors with range images: " + listCounts(report.labels) + note);
+        if (!report.points_only.empty())
+            throw std::runtime_error(
+                path + ": the scans hold 3D points, but no range images (" + listCounts(report.points_only) +
+                "); the odometry needs the depth image: record again with range images (grab_depth = true)" +
+                note);
         throw std::runtime_error(path + ": no range images (CObservation3DRangeScan with depth); it holds " +
                                  listCounts(report.classes) + note);
     }
@@ -196,7 +236,7 @@ RawlogReader::RawlogReader(const std::string& path, const std::string& sensor_la
     impl_->stated_size = statedSize(path);
     impl_->images = findImagesDirectory(path);
     impl_->any_label = sensor_label.empty();
-    impl_->report.label = sensor_label;
+    impl_->report.label = sensor_label == kNoName ? "" : sensor_label;
 }
 
 RawlogReader::~RawlogReader() = default;
@@ -216,6 +256,10 @@ CObservation3DRangeScan::Ptr RawlogReader::next() {
     }
     if (m.report.range_images == 0) m.throwNothingFound();
     return nullptr;
+}
+
+void RawlogReader::onOther(std::function<void(const mrpt::obs::CObservation&)> listener) {
+    impl_->listener = std::move(listener);
 }
 
 double RawlogReader::progress() const {

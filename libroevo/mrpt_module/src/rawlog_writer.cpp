@@ -2,6 +2,7 @@
 
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/serialization/CArchive.h>
 
 #include <array>
@@ -12,10 +13,10 @@
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
-#include <set>
 #include <stdexcept>
 
 #include "roevo_mrpt/camera_conversions.h"
+#include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/time_conversions.h"
 
 namespace fs = std::filesystem;
@@ -57,32 +58,32 @@ std::string fileNamePart(std::string label) {
 }  // namespace
 
 struct RawlogWriter::Impl {
-    fs::path path, images, temporary_path, temporary_images;
+    fs::path path, images;
+    fs::path temporary, temporary_path, temporary_images;  // a folder, with the rawlog and its images in it
     PinholeCamera camera;
     RawlogWriterOptions options;
     mrpt::img::TCamera mrpt_camera;
     CountingStream stream;
-    std::set<std::string> names;
-    bool finished = false;
+    bool closed = false, finished = false;
 
     void removeTemporaries() {
         stream.file.close();
         std::error_code ignored;
-        fs::remove(temporary_path, ignored);
-        fs::remove_all(temporary_images, ignored);
+        fs::remove_all(temporary, ignored);
     }
 
-    /// A name for the next image, unique even when stamps repeat.
-    std::string nextName(double timestamp, const std::string& extension) {
+    /// A name for the next file, unique even when stamps repeat.
+    std::string nextName(double timestamp, const std::string& ending) const {
         std::array<char, 64> stamp{};
         std::snprintf(stamp.data(), stamp.size(), "_%.6f", timestamp);
         const std::string stem = fileNamePart(options.sensor_label) + stamp.data();
-        std::string name = stem + extension;
-        for (int i = 2; !names.insert(name).second; i++) name = stem + "_" + std::to_string(i) + extension;
+        std::string name = stem + ending;
+        for (int i = 2; fs::exists(temporary_images / name); i++)
+            name = stem + "_" + std::to_string(i) + ending;
         return name;
     }
 
-    void checkSize(const cv::Mat& image, const char* what) const {
+    static void checkSize(const cv::Mat& image, const PinholeCamera& camera, const char* what) {
         if (image.cols != camera.width || image.rows != camera.height)
             throw std::runtime_error(std::string(what) + " is " + std::to_string(image.cols) + "x" +
                                      std::to_string(image.rows) + ", but the camera is " +
@@ -100,6 +101,11 @@ struct RawlogWriter::Impl {
         scan.maxRange = 65535.f * options.range_units;
         scan.cameraParams = mrpt_camera;
         scan.cameraParamsIntensity = mrpt_camera;
+        if (options.depth_camera) {
+            scan.cameraParams = toMrptCamera(options.depth_camera->camera, options.sensor_label + "_depth");
+            scan.relativePoseIntensityWRTDepth =
+                toMrpt(sensorFromOptical() * options.depth_camera->T_depth_colour);
+        }
         scan.hasRangeImage = true;
         scan.rangeImage_setSize(depth_u16.rows, depth_u16.cols);
         const size_t row_bytes = static_cast<size_t>(depth_u16.cols) * sizeof(std::uint16_t);
@@ -108,8 +114,22 @@ struct RawlogWriter::Impl {
         scan.hasIntensityImage = true;
         scan.intensityImageChannel = mrpt::obs::CObservation3DRangeScan::CH_VISIBLE;
         scan.intensityImage.setExternalStorage(image_name);
+        if (options.externalize_depth) externalizeDepth(scan, nextName(timestamp, "_RANGES.bin"));
+        append(scan);
+    }
+
+    void externalizeDepth(mrpt::obs::CObservation3DRangeScan& scan, const std::string& name) const {
+        const std::size_t values = static_cast<std::size_t>(scan.rangeImage.rows()) *
+                                   static_cast<std::size_t>(scan.rangeImage.cols());
+        scan.rangeImage_convertToExternalStorage(name, (temporary_images / "").string());
+        const std::size_t head = 2 * sizeof(std::uint32_t);  // rows, columns
+        if (gzTrailerLength(temporary_images / name) != head + sizeof(std::uint16_t) * values)
+            throw std::runtime_error("cannot write " + (temporary_images / name).string() + ": disk full?");
+    }
+
+    void append(const mrpt::serialization::CSerializable& object) {
         try {
-            mrpt::serialization::archiveFrom(stream) << scan;
+            mrpt::serialization::archiveFrom(stream) << object;
         } catch (const std::exception&) {
             throw std::runtime_error("cannot write " + temporary_path.string() + ": disk full?");
         }
@@ -118,7 +138,7 @@ struct RawlogWriter::Impl {
     void checkDepth(const cv::Mat& depth_u16) const {
         if (depth_u16.type() != CV_16UC1)
             throw std::runtime_error("depth image must be 16-bit with one channel");
-        checkSize(depth_u16, "depth image");
+        checkSize(depth_u16, options.depth_camera ? options.depth_camera->camera : camera, "depth image");
     }
 };
 
@@ -127,17 +147,26 @@ std::string RawlogWriter::imagesDirectory(const std::string& rawlog_path) {
     return (path.parent_path() / (path.stem().string() + "_Images")).string();
 }
 
+std::string RawlogWriter::groundTruthFile(const std::string& rawlog_path) {
+    const fs::path path(rawlog_path);
+    return (path.parent_path() / (path.stem().string() + "_groundtruth.txt")).string();
+}
+
 RawlogWriter::RawlogWriter(const std::string& path, const PinholeCamera& camera,
                            const RawlogWriterOptions& options)
     : impl_(std::make_unique<Impl>()) {
     if (const std::string fault = camera.check(); !fault.empty())
         throw std::runtime_error("cannot write a rawlog: " + fault);
+    if (options.depth_camera)
+        if (const std::string fault = options.depth_camera->camera.check(); !fault.empty())
+            throw std::runtime_error("cannot write a rawlog: depth camera: " + fault);
     if (!(options.range_units > 0)) throw std::runtime_error("range_units must be above 0 m");
     Impl& m = *impl_;
     m.path = path;
     m.images = imagesDirectory(path);
-    m.temporary_path = path + ".part";
-    m.temporary_images = m.images.string() + ".part";
+    m.temporary = path + ".part";
+    m.temporary_path = m.temporary / m.path.filename();
+    m.temporary_images = m.temporary / m.images.filename();
     m.camera = camera;
     m.options = options;
     m.mrpt_camera = toMrptCamera(camera, options.sensor_label);
@@ -147,12 +176,12 @@ RawlogWriter::RawlogWriter(const std::string& path, const PinholeCamera& camera,
         throw std::runtime_error(m.images.string() +
                                  " exists, but its rawlog does not: move it away or choose another output");
     std::error_code error;
-    fs::remove_all(m.temporary_images, error);
-    fs::create_directory(m.temporary_images, error);
-    if (error)
-        throw std::runtime_error("cannot create " + m.temporary_images.string() + ": " + error.message());
+    fs::remove_all(m.temporary, error);  // of a run that was killed
+    fs::create_directory(m.temporary, error);
+    if (!error) fs::create_directory(m.temporary_images, error);
+    if (error) throw std::runtime_error("cannot create " + m.temporary.string() + ": " + error.message());
     if (!m.stream.file.open(m.temporary_path.string(), options.gz_level)) {
-        fs::remove_all(m.temporary_images, error);
+        fs::remove_all(m.temporary, error);
         throw std::runtime_error("cannot write " + m.temporary_path.string());
     }
 }
@@ -166,10 +195,14 @@ void RawlogWriter::add(double timestamp, const cv::Mat& depth_u16, const cv::Mat
     m.checkDepth(depth_u16);
     if (colour_or_grey.type() != CV_8UC3 && colour_or_grey.type() != CV_8UC1)
         throw std::runtime_error("image must be 8-bit grey or BGR");
-    m.checkSize(colour_or_grey, "image");
-    const std::string name = m.nextName(timestamp, ".png");
+    m.checkSize(colour_or_grey, m.camera, "image");
+    const int quality = m.options.jpeg_quality;
+    const std::string name = m.nextName(timestamp, quality > 0 ? ".jpg" : ".png");
     const std::string file = (m.temporary_images / name).string();
-    if (!cv::imwrite(file, colour_or_grey)) throw std::runtime_error("cannot write " + file + ": disk full?");
+    const std::vector<int> parameters =
+        quality > 0 ? std::vector<int>{cv::IMWRITE_JPEG_QUALITY, quality} : std::vector<int>{};
+    if (!cv::imwrite(file, colour_or_grey, parameters))
+        throw std::runtime_error("cannot write " + file + ": disk full?");
     m.write(timestamp, depth_u16, name);
 }
 
@@ -189,18 +222,47 @@ void RawlogWriter::addFile(double timestamp, const cv::Mat& depth_u16, const std
     m.write(timestamp, depth_u16, name);
 }
 
-void RawlogWriter::finish() {
+void RawlogWriter::addImu(double timestamp, const Eigen::Vector3d& acceleration,
+                          const std::optional<Eigen::Vector3d>& angular_velocity) {
+    mrpt::obs::CObservationIMU imu;
+    imu.timestamp = toMrptTime(timestamp);
+    imu.sensorLabel = impl_->options.imu_label;
+    imu.set(mrpt::obs::IMU_X_ACC, acceleration.x());
+    imu.set(mrpt::obs::IMU_Y_ACC, acceleration.y());
+    imu.set(mrpt::obs::IMU_Z_ACC, acceleration.z());
+    if (angular_velocity) {
+        imu.set(mrpt::obs::IMU_WX, angular_velocity->x());
+        imu.set(mrpt::obs::IMU_WY, angular_velocity->y());
+        imu.set(mrpt::obs::IMU_WZ, angular_velocity->z());
+    }
+    impl_->append(imu);
+}
+
+std::string RawlogWriter::temporaryPath() const {
+    return impl_->temporary_path.string();
+}
+
+void RawlogWriter::close() {
     Impl& m = *impl_;
-    if (m.finished) return;
+    if (m.closed) return;
     m.stream.file.close();
+    m.closed = true;
     if (m.options.gz_level > 0 &&
         gzTrailerLength(m.temporary_path) != static_cast<std::uint32_t>(m.stream.bytes))
         throw std::runtime_error("cannot write " + m.temporary_path.string() + ": disk full?");
+}
+
+void RawlogWriter::finish() {
+    Impl& m = *impl_;
+    if (m.finished) return;
+    close();
     // Images first: a rawlog under its final name always has them.
-    if (fs::exists(m.images)) fs::remove_all(m.images);
+    if (fs::exists(m.images)) fs::rename(m.images, m.temporary / "replaced_images");
     fs::rename(m.temporary_images, m.images);
     fs::rename(m.temporary_path, m.path);
     m.finished = true;
+    std::error_code ignored;
+    fs::remove_all(m.temporary, ignored);
 }
 
 }  // namespace roevo

@@ -122,6 +122,7 @@ void Odometry::Impl::applyMapUpdate(const MapUpdate& update, FrameResult& result
     orthonormalise(T_world_camera);
     now.T_world_camera = correction * now.T_world_camera;
     motion.moveWorld(correction);
+    result.map_turn += rotationAngle(correction);
     result.map_correction += (T_world_camera.translation() - position).norm();
     if (update.keyframe == keyframe->id && options.mapping.refine_depth) refineDepth(*keyframe, update);
 }

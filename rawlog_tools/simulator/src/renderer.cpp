@@ -59,8 +59,10 @@ void Renderer::forEachBand(int count, const std::function<void(int)>& work) cons
     for (std::thread& helper : helpers) helper.join();
 }
 
-Rendering Renderer::render(const std::function<Instant(double row)>& instant_of_row, bool by_row) const {
-    std::call_once(bake_once_, [&] { baked_ = std::make_unique<const BakedLight>(scene_, threads_); });
+Rendering Renderer::render(const std::function<Instant(double row)>& instant_of_row, bool by_row,
+                           bool with_colour) const {
+    if (with_colour)
+        std::call_once(bake_once_, [&] { baked_ = std::make_unique<const BakedLight>(scene_, threads_); });
     const int rows = by_row ? 1 : kBandRows;
     std::vector<Band> bands;
     for (int row = 0; row < camera_.height; row += rows) {
@@ -70,12 +72,15 @@ Rendering Renderer::render(const std::function<Instant(double row)>& instant_of_
         bands.push_back(band);
     }
     Rendering out;
-    out.colour.create(camera_.height, camera_.width, CV_32FC3);
+    if (with_colour) {
+        out.colour.create(camera_.height, camera_.width, CV_32FC3);
+        out.moving_shadow.create(camera_.height, camera_.width, CV_8UC1);
+    }
     out.depth.create(camera_.height, camera_.width, CV_32FC1);
     out.objects.create(camera_.height, camera_.width, CV_32SC1);
-    out.moving_shadow.create(camera_.height, camera_.width, CV_8UC1);
     forEachBand(static_cast<int>(bands.size()),
                 [&](int i) { renderCentres(bands[static_cast<size_t>(i)], out); });
+    if (!with_colour) return out;
     cv::Mat smooth = out.colour.clone();
     forEachBand(static_cast<int>(bands.size()),
                 [&](int i) { refine(bands[static_cast<size_t>(i)], out, smooth); });
@@ -117,13 +122,14 @@ void Renderer::renderCentres(const Band& band, Rendering& out) const {
             for (int col = col0; col < col1; ++col) {
                 const auto& ray = rays_.at<cv::Vec2d>(row, col);
                 ViewHit hit;
-                Colour colour(0, 0, 0);
-                bool moving_shadow = false;
-                if (view.trace(ray[0], ray[1], in_tile, hit))
-                    colour = shade(view, ray[0], ray[1], hit, 1, &moving_shadow);
-                out.colour.at<cv::Vec3f>(row, col) = {colour.z(), colour.y(), colour.x()};
+                const bool seen = view.trace(ray[0], ray[1], in_tile, hit);
                 out.depth.at<float>(row, col) = static_cast<float>(hit.depth);
                 out.objects.at<int>(row, col) = hit.primitive;
+                if (out.colour.empty()) continue;
+                bool moving_shadow = false;
+                const Colour colour =
+                    seen ? shade(view, ray[0], ray[1], hit, 1, &moving_shadow) : Colour(0, 0, 0);
+                out.colour.at<cv::Vec3f>(row, col) = {colour.z(), colour.y(), colour.x()};
                 out.moving_shadow.at<uchar>(row, col) = moving_shadow;
             }
         }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <thread>
@@ -16,6 +17,10 @@ namespace {
 
 constexpr double kDriftPeriod = 7;  // seconds
 
+bool hasIntrinsics(const SimulationOptions& options) {
+    return options.intrinsics != std::array<double, 4>{};
+}
+
 PinholeCamera makeCamera(const SimulationOptions& options) {
     PinholeCamera camera;
     const double sx = options.width / 640., sy = options.height / 480.;
@@ -23,6 +28,10 @@ PinholeCamera makeCamera(const SimulationOptions& options) {
     camera.fx = camera.fy = 525 * sx;
     camera.cx = (319.5 + 0.5) * sx - 0.5;
     camera.cy = (239.5 + 0.5) * sy - 0.5;
+    if (const auto& given = options.intrinsics; hasIntrinsics(options)) {
+        camera.fx = given[0], camera.fy = given[1];
+        camera.cx = given[2], camera.cy = given[3];
+    }
     camera.distortion = options.distortion;
     return camera;
 }
@@ -88,6 +97,12 @@ std::string SimulationOptions::check() const {
             return complain(range.name, cv::format("%g", range.value), range.allowed);
     for (const double k : distortion)
         if (outside(k, -1.5, 1.5)) return complain("distortion", cv::format("%g", k), "-1.5..1.5");
+    if (hasIntrinsics(*this))
+        if (const std::string fault = makeCamera(*this).check(); !fault.empty())
+            return "intrinsics: " + fault;
+    if (depth_sensor)
+        if (const std::string fault = depth_sensor->camera.check(); !fault.empty())
+            return "depth_sensor: " + fault;
     return {};
 }
 
@@ -115,18 +130,33 @@ struct Simulator::Impl {
           scene(makeScene(o.scene)),
           camera(makeCamera(o)),
           path(o.path == PathKind::kWalk ? scene.walk_loop : scene.handheld_loop, o.path, o.speed, o.seed),
-          renderer(scene, camera,
-                   o.threads > 0 ? o.threads
-                                 : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))) {}
+          renderer(scene, camera, numThreads(o)) {
+        if (o.depth_sensor)
+            depth_renderer = std::make_unique<Renderer>(scene, o.depth_sensor->camera, numThreads(o));
+    }
 
+    static int numThreads(const SimulationOptions& o) {
+        return o.threads > 0 ? o.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    }
+
+    /// When a row is seen, and from where. @param T_path_eye  where the camera sits on the one that travels
+    std::function<Instant(double)> instants(double seconds, double height, const Pose& T_path_eye) const {
+        return [this, seconds, height, T_path_eye](double row) {
+            const double moment = seconds + options.rolling_shutter * ((row + 0.5) / height - 0.5);
+            return Instant{path.pose(moment) * T_path_eye, moment};
+        };
+    }
     Rendering renderAt(double seconds) const {
-        const double readout = options.rolling_shutter, height = camera.height;
-        return renderer.render(
-            [&](double row) {
-                const double moment = seconds + readout * ((row + 0.5) / height - 0.5);
-                return Instant{path.pose(moment), moment};
-            },
-            readout > 0);
+        return renderer.render(instants(seconds, camera.height, Pose::Identity()),
+                               options.rolling_shutter > 0);
+    }
+    cv::Mat depthAt(double seconds, const cv::Mat& depth_of_colour) const {
+        if (!depth_renderer) return depth_of_colour;
+        const DepthSensor& sensor = *options.depth_sensor;
+        return depth_renderer
+            ->renderDepth(instants(seconds, sensor.camera.height, sensor.T_colour_depth),
+                          options.rolling_shutter > 0)
+            .depth;
     }
 
     SimulationOptions options;
@@ -134,6 +164,7 @@ struct Simulator::Impl {
     PinholeCamera camera;
     CameraPath path;
     Renderer renderer;
+    std::unique_ptr<Renderer> depth_renderer;  ///< of the depth sensor, if there is one
 };
 
 namespace {
@@ -194,13 +225,14 @@ SimulatedFrame Simulator::frame(int index) const {
     if (options.image_noise > 0) addImageNoise(levels, options.image_noise, key);
     levels.convertTo(frame.colour, CV_8UC3);
     cv::cvtColor(frame.colour, frame.grey, cv::COLOR_BGR2GRAY);
-    frame.depth = rendering.depth;
+    frame.depth = impl_->depthAt(seconds, rendering.depth);
     frame.objects = rendering.objects;
     frame.shadow_border = borderOf(rendering.moving_shadow, rendering.objects);
     const bool ideal = options.depth_noise <= 0 && !options.holes;
     frame.depth_noisy =
         ideal ? frame.depth
-              : measureDepth(frame.depth, impl_->camera, {options.depth_noise, options.holes}, key);
+              : measureDepth(frame.depth, options.depth_sensor ? options.depth_sensor->camera : impl_->camera,
+                             {options.depth_noise, options.holes}, key);
     return frame;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
+#include <vector>
+
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/camera/rgbd_frame.h"
+#include "roevo/types.h"
 
 namespace mrpt::obs {
 class CObservation3DRangeScan;
@@ -18,5 +21,22 @@ PinholeCamera colourCameraOf(const mrpt::obs::CObservation3DRangeScan& scan);
 /// @throws std::runtime_error in one line: no depth, no image, a missing or damaged file (named), no
 /// intrinsics, sizes that do not fit the intrinsics.
 RgbdFrame toRgbdFrame(const mrpt::obs::CObservation3DRangeScan& scan);
+
+/// Whether toRgbdFrame() takes the depth as stored: both cameras coincide, and it is no range along the ray.
+bool depthIsAsStored(const mrpt::obs::CObservation3DRangeScan& scan);
+
+/// Whether the sensor sits elsewhere than on the robot's origin, looking along its x axis.
+bool isMountedOnRobot(const mrpt::obs::CObservation3DRangeScan& scan);
+
+/// T_robot_camera of the colour camera (optical axes) on the robot (x forward, y left, z up): the scan's
+/// sensorPose, then the colour camera's pose on the sensor.
+Pose cameraOnRobot(const mrpt::obs::CObservation3DRangeScan& scan);
+
+/// What the robot did that carries the camera: T_start_robot (x forward, y left, z up) at every pose of the
+/// camera's trajectory; start is the robot when the camera was at the origin of its trajectory, at the time
+/// of the first mount.
+/// @param mounts  T_robot_camera by time, at least one; a pose takes that of its own stamp or the last before
+std::vector<StampedPose> robotTrajectory(const std::vector<StampedPose>& camera_trajectory,
+                                         const std::vector<StampedPose>& mounts);
 
 }  // namespace roevo

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,12 @@ namespace roevo::simulator {
 
 enum class PathKind { kHandheld, kWalk, kBackAndForth };
 
+/// A depth sensor with a camera of its own, beside the colour camera.
+struct DepthSensor {
+    PinholeCamera camera;
+    Pose T_colour_depth = Pose::Identity();
+};
+
 struct SimulationOptions {
     std::string scene = "livingroom";
     int frames = 300;
@@ -23,9 +30,11 @@ struct SimulationOptions {
     double start_time = 1;  ///< seconds, stamp of frame 0
     PathKind path = PathKind::kHandheld;
     double speed = 0.45;                 ///< m/s, top speed of the camera; it slows down where it turns fast
-    int width = 640, height = 480;       ///< pixels; intrinsics are those of 640x480 scaled
-    std::array<double, 5> distortion{};  ///< k1 k2 p1 p2 k3 of the simulated lens
-    double depth_noise = 0;              ///< 0: exact; 1: as a Kinect; other values scale it
+    int width = 640, height = 480;       ///< pixels
+    std::array<double, 4> intrinsics{};  ///< fx fy cx cy, pixels; all 0: f = 525 at 640x480, scaled
+    std::optional<DepthSensor> depth_sensor;  ///< absent: depth is seen by the colour camera
+    std::array<double, 5> distortion{};       ///< k1 k2 p1 p2 k3 of the simulated lens
+    double depth_noise = 0;                   ///< 0: exact; 1: as a Kinect; other values scale it
     bool holes = false;  ///< depth missing in the projector's shadow, at grazing angles, too near, too far
     double image_noise = 0;      ///< grey levels, standard deviation
     double motion_blur = 0;      ///< seconds of exposure
@@ -49,8 +58,8 @@ struct SimulatedFrame {
     Pose T_world_camera = Pose::Identity();  ///< exact, at `timestamp`
     cv::Mat colour;                          ///< CV_8UC3, BGR, anti-aliased
     cv::Mat grey;                            ///< CV_8UC1, cv::cvtColor of `colour`
-    cv::Mat
-        depth;  ///< CV_32FC1, metres along the optical axis through the pixel's centre, exact; 0: nothing hit
+    cv::Mat depth;  ///< CV_32FC1, metres along the optical axis through the pixel's centre, exact; 0: nothing
+                    ///< hit; in the pixels of the depth sensor if there is one
     cv::Mat depth_noisy;  ///< CV_32FC1, as the simulated sensor measures it; `depth` itself without noise and
                           ///< holes
     cv::Mat objects;      ///< CV_32SC1, index of the primitive seen at the pixel's centre, -1: nothing

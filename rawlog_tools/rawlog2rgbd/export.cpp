@@ -1,0 +1,183 @@
+#include "rawlog2rgbd/export.h"
+
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationIMU.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <stdexcept>
+
+#include "rawlog2rgbd/tum_writer.h"
+#include "roevo_mrpt/image_conversions.h"
+#include "roevo_mrpt/observation_converter.h"
+#include "roevo_mrpt/rawlog_reader.h"
+#include "roevo_mrpt/rawlog_writer.h"
+#include "roevo_mrpt/time_conversions.h"
+#include "support/interrupt.h"
+#include "support/program.h"
+#include "support/progress.h"
+
+namespace roevo {
+namespace {
+
+using mrpt::obs::CObservation3DRangeScan;
+using mrpt::obs::CObservationIMU;
+
+/// Metres as 16-bit units; what does not fit is unknown.
+cv::Mat quantised(const cv::Mat& metres, double depth_scale) {
+    cv::Mat units(metres.size(), CV_16UC1, cv::Scalar(0));
+    for (int v = 0; v < metres.rows; v++)
+        for (int u = 0; u < metres.cols; u++) {
+            const double value = std::round(static_cast<double>(metres.at<float>(v, u)) * depth_scale);
+            if (value > 0 && value <= 65535)
+                units.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(value);
+        }
+    return units;
+}
+
+/// Takes the scans of one rawlog, one after the other.
+class Exporter {
+  public:
+    explicit Exporter(TumWriter& writer) : writer_(writer) {}
+
+    void addFrame(const CObservation3DRangeScan& scan) {
+        const double timestamp = fromMrptTime(scan.timestamp);
+        try {
+            write(scan, timestamp);
+        } catch (const WriteError&) {
+            throw;
+        } catch (const std::runtime_error& error) {
+            char stamp[64];
+            std::snprintf(stamp, sizeof stamp, "frame at %.6f s: ", timestamp);
+            result_.left_out.push_back(stamp + firstLine(error.what()));
+        }
+    }
+
+    void addOther(const mrpt::obs::CObservation& observation) {
+        using namespace mrpt::obs;
+        const auto* imu = dynamic_cast<const CObservationIMU*>(&observation);
+        if (imu == nullptr || !imu->has(IMU_X_ACC) || !imu->has(IMU_Y_ACC) || !imu->has(IMU_Z_ACC)) return;
+        if (result_.imu_samples == 0) imu_label_ = imu->sensorLabel;
+        if (imu->sensorLabel != imu_label_) return;
+        std::optional<Eigen::Vector3d> angular_velocity;
+        if (imu->has(IMU_WX) && imu->has(IMU_WY) && imu->has(IMU_WZ))
+            angular_velocity.emplace(imu->get(IMU_WX), imu->get(IMU_WY), imu->get(IMU_WZ));
+        writer_.addImu(fromMrptTime(imu->timestamp),
+                       {imu->get(IMU_X_ACC), imu->get(IMU_Y_ACC), imu->get(IMU_Z_ACC)}, angular_velocity);
+        result_.imu_samples++;
+    }
+
+    const TumCamera& camera() const { return camera_; }
+    ExportResult& result() { return result_; }
+
+  private:
+    /// The disk is at fault, and not the frame.
+    struct WriteError : std::runtime_error {
+        using std::runtime_error::runtime_error;
+    };
+
+    void write(const CObservation3DRangeScan& scan, double timestamp) {
+        const RgbdFrame frame = toRgbdFrame(scan);  // finds every fault that the odometry would find
+        if (stamps_.count(timestamp) > 0) throw std::runtime_error("its time stamp was there before");
+        if (result_.frames == 0)
+            describeCamera(scan);
+        else if (colourCameraOf(scan) != camera_.camera || scan.rangeUnits != range_units_)
+            throw std::runtime_error(
+                "its intrinsics, size or range units are not those of the first frame, and a folder has one "
+                "camera.txt");
+        const auto& range = scan.rangeImage;
+        const bool as_stored = depthIsAsStored(scan);
+        const cv::Mat depth = as_stored
+                                  ? cv::Mat(static_cast<int>(range.rows()), static_cast<int>(range.cols()),
+                                            CV_16UC1, const_cast<std::uint16_t*>(&range(0, 0)))
+                                  : quantised(frame.depth, camera_.depth_scale);
+        const bool is_file = scan.intensityImage.isExternallyStored();
+        try {
+            writer_.add(timestamp, depth, frame.colour.empty() ? frame.grey : frame.colour,
+                        is_file ? scan.intensityImage.getExternalStorageFileAbsolutePath() : "");
+        } catch (const std::exception& error) {
+            throw WriteError(error.what());
+        }
+        stamps_.insert(timestamp);
+        result_.frames++;
+        if (is_file) result_.linked_images++;
+        if (!as_stored) noteResampling(scan);
+    }
+
+    void describeCamera(const CObservation3DRangeScan& scan) {
+        camera_ = TumCamera();
+        camera_.camera = colourCameraOf(scan);
+        range_units_ = scan.rangeUnits;
+        camera_.depth_scale = result_.depth_scale = depthScaleOf(range_units_);
+        if (!isMountedOnRobot(scan)) return;
+        const mrpt::poses::CPose3D& pose = scan.sensorPose;
+        char note[256];
+        std::snprintf(note, sizeof note,
+                      "sensor_on_robot_x_y_z_yaw_pitch_roll_deg: %.9g %.9g %.9g %.9g %.9g %.9g", pose.x(),
+                      pose.y(), pose.z(), mrpt::RAD2DEG(pose.yaw()), mrpt::RAD2DEG(pose.pitch()),
+                      mrpt::RAD2DEG(pose.roll()));
+        camera_.notes.emplace_back(note);
+    }
+
+    void noteResampling(const CObservation3DRangeScan& scan) {
+        result_.resampled++;
+        char precision[64];
+        std::snprintf(precision, sizeof precision, ", rounded to 1/%g m", camera_.depth_scale);
+        result_.depth_note = (scan.range_is_depth ? "depth registered to the colour camera"
+                                                  : "ranges along the ray turned into depth") +
+                             std::string(precision);
+    }
+
+    TumWriter& writer_;
+    TumCamera camera_;
+    float range_units_ = 0;
+    std::set<double> stamps_;
+    std::string imu_label_;
+    ExportResult result_;
+};
+
+}  // namespace
+
+double depthScaleOf(float range_units) {
+    const float exact = 1.f / range_units;
+    const double rounded = std::round(1.0 / static_cast<double>(range_units));
+    if (rounded >= 1 && depthUnit(rounded) == range_units) return rounded;
+    // The reciprocal of a float is not always undone by another one, but by a neighbour
+    for (const float scale : {exact, std::nextafter(exact, 0.f), std::nextafter(exact, INFINITY)})
+        if (depthUnit(static_cast<double>(scale)) == range_units) return static_cast<double>(scale);
+    return static_cast<double>(exact);
+}
+
+ExportResult exportRawlog(const std::string& rawlog, const std::string& sensor_label,
+                          const std::string& folder) {
+    const auto start = std::chrono::steady_clock::now();
+    const InterruptGuard guard;
+    RawlogReader reader(rawlog, sensor_label);
+    TumWriter writer(folder);
+    Exporter exporter(writer);
+    reader.onOther([&](const mrpt::obs::CObservation& observation) { exporter.addOther(observation); });
+    Progress progress("writing", 0);
+    while (const auto scan = reader.next()) {
+        InterruptGuard::check();
+        exporter.addFrame(*scan);
+        progress.update(exporter.result().frames, reader.progress());
+    }
+    progress.finish();
+
+    ExportResult result = exporter.result();
+    result.warning = reader.report().warning();
+    if (result.frames == 0)
+        throw std::runtime_error(rawlog + ": none of its " + std::to_string(result.left_out.size()) +
+                                 " frames can be used, first: " + result.left_out.front());
+    const std::string truth = RawlogWriter::groundTruthFile(rawlog);
+    if (std::filesystem::is_regular_file(truth)) result.ground_truth = truth;
+    writer.finish(exporter.camera(), result.ground_truth);
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+}  // namespace roevo

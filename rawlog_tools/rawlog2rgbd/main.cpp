@@ -1,0 +1,57 @@
+// rawlog2rgbd: an MRPT rawlog as a dataset folder in TUM RGB-D layout.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "rawlog2rgbd/export.h"
+#include "support/memory_peak.h"
+#include "support/program.h"
+
+namespace roevo {
+namespace {
+
+constexpr char kName[] = "rawlog2rgbd";
+constexpr std::size_t kFaultsShown = 10;
+
+void print(const ExportResult& result, const std::string& output) {
+    for (std::size_t i = 0; i < result.left_out.size() && i < kFaultsShown; i++)
+        std::printf("left out: %s\n", result.left_out[i].c_str());
+    if (result.left_out.size() > kFaultsShown)
+        std::printf("left out: %zu more\n", result.left_out.size() - kFaultsShown);
+    std::printf("%s: %zu frames written, %zu left out, depth_scale %.9g\n", output.c_str(), result.frames,
+                result.left_out.size(), result.depth_scale);
+    std::printf("colour: %zu files as they are, %zu written as PNG\n", result.linked_images,
+                result.frames - result.linked_images);
+    if (result.resampled > 0)
+        std::printf("depth: %zu frames not as in the rawlog: %s\n", result.resampled,
+                    result.depth_note.c_str());
+    if (result.imu_samples > 0) std::printf("inertial samples: %zu\n", result.imu_samples);
+    if (!result.ground_truth.empty()) std::printf("ground truth: from %s\n", result.ground_truth.c_str());
+    std::printf("speed: %.1f frames/s; memory at most %.0f MB\n",
+                static_cast<double>(result.frames) / result.seconds, memoryPeakMb());
+}
+
+int run(int argc, char** argv) {
+    std::string input, output, sensor_label;
+    CLI::App app(
+        "Turns an MRPT rawlog into a dataset folder in TUM RGB-D layout: depth to the last unit, times to "
+        "the "
+        "microsecond, colour files as they are.",
+        kName);
+    app.add_option("--input", input, "Rawlog with RGB-D observations")->required();
+    app.add_option("--output", output, "Folder to write; must not exist, or be empty")->required();
+    app.add_option("--sensor-label", sensor_label, "Rawlogs with several cameras: which one");
+    app.footer("Example:\n  rawlog2rgbd --input office.rawlog --output office");
+    if (auto code = parseCommandLine(app, argc, argv)) return *code;
+
+    const ExportResult result = exportRawlog(input, sensor_label, output);
+    if (!result.warning.empty()) std::fprintf(stderr, "%s: warning: %s\n", kName, result.warning.c_str());
+    print(result, output);
+    return 0;
+}
+
+}  // namespace
+}  // namespace roevo
+
+int main(int argc, char** argv) {
+    return roevo::runProgram(roevo::kName, [&] { return roevo::run(argc, argv); });
+}

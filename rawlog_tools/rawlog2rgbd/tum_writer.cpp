@@ -1,0 +1,152 @@
+#include "rawlog2rgbd/tum_writer.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+
+namespace fs = std::filesystem;
+
+namespace roevo {
+namespace {
+
+std::string stampText(double timestamp) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.6f", timestamp);
+    return text;
+}
+
+/// Numbers after a blank each, with all their digits.
+std::string numbersText(std::initializer_list<double> numbers) {
+    std::string all;
+    for (const double number : numbers) {
+        char text[64];
+        std::snprintf(text, sizeof text, " %.17g", number);
+        all += text;
+    }
+    return all;
+}
+
+/// The shortest text that reads back as the same number.
+std::string shortest(double number) {
+    char text[64];
+    for (int digits = 6; digits <= 17; digits++) {
+        std::snprintf(text, sizeof text, "%.*g", digits, number);
+        if (std::stod(text) == number) break;
+    }
+    return text;
+}
+
+std::string cameraText(const TumCamera& description) {
+    const PinholeCamera& camera = description.camera;
+    std::string text =
+        "width: " + std::to_string(camera.width) + "\nheight: " + std::to_string(camera.height) + "\n";
+    const std::pair<const char*, double> values[] = {
+        {"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx}, {"cy", camera.cy}};
+    for (const auto& [key, value] : values) text += std::string(key) + ": " + shortest(value) + "\n";
+    text += "distortion_k1_k2_p1_p2_k3:";
+    for (const double term : camera.distortion) text += " " + shortest(term);
+    text += "\ndepth_scale: " + shortest(description.depth_scale) + "   # PNG value / depth_scale = metres\n";
+    for (const std::string& note : description.notes) text += note + "\n";
+    return text;
+}
+
+[[noreturn]] void failToWrite(const fs::path& file) {
+    throw std::runtime_error("cannot write " + file.string() + ": disk full?");
+}
+
+}  // namespace
+
+TumWriter::TumWriter(const std::string& folder) : folder_(fs::path(folder).lexically_normal()) {
+    if (!folder_.has_filename()) folder_ = folder_.parent_path();  // "out/"
+    if (fs::exists(folder_) && !(fs::is_directory(folder_) && fs::is_empty(folder_)))
+        throw std::runtime_error("cannot write " + folder + ": it exists" +
+                                 (fs::is_directory(folder_) ? " and is not empty" : "") +
+                                 "; choose another output folder or move it away");
+    temporary_ = folder_.string() + ".part";
+    std::error_code error;
+    fs::remove_all(temporary_, error);  // of a run that was killed
+    fs::create_directory(temporary_, error);
+    for (const char* part : {"rgb", "depth"})
+        if (!error) fs::create_directory(temporary_ / part, error);
+    if (error) throw std::runtime_error("cannot create the folder " + folder + ": " + error.message());
+}
+
+TumWriter::~TumWriter() {
+    std::error_code ignored;
+    fs::remove_all(temporary_, ignored);
+}
+
+void TumWriter::add(double timestamp, const cv::Mat& depth_u16, const cv::Mat& image,
+                    const std::string& image_file) {
+    const std::string stamp = stampText(timestamp);
+    const std::string ending = image_file.empty() ? ".png" : fs::path(image_file).extension().string();
+    const Row row{timestamp, "rgb/" + stamp + ending, "depth/" + stamp + ".png"};
+    const fs::path image_target = temporary_ / row.image, depth_target = temporary_ / row.depth;
+    if (image_file.empty()) {
+        if (!cv::imwrite(image_target.string(), image)) failToWrite(image_target);
+    } else {
+        const fs::path source = fs::canonical(image_file);  // not a link to a symbolic link
+        std::error_code error;
+        fs::create_hard_link(source, image_target, error);
+        if (error) fs::copy_file(source, image_target, error);
+        if (error)
+            throw std::runtime_error("cannot copy " + image_file + " to " + image_target.string() + ": " +
+                                     error.message());
+    }
+    if (!cv::imwrite(depth_target.string(), depth_u16)) failToWrite(depth_target);
+    rows_.push_back(row);
+}
+
+void TumWriter::addImu(double timestamp, const Eigen::Vector3d& acceleration,
+                       const std::optional<Eigen::Vector3d>& angular_velocity) {
+    const std::string a = numbersText({acceleration.x(), acceleration.y(), acceleration.z()});
+    if (!angular_velocity) {
+        accelerometer_ += stampText(timestamp) + a + "\n";
+        return;
+    }
+    const Eigen::Vector3d& w = *angular_velocity;
+    imu_ += stampText(timestamp) + numbersText({w.x(), w.y(), w.z()}) + a + "\n";
+}
+
+void TumWriter::write(const std::string& name, const std::string& text) const {
+    std::ofstream out(temporary_ / name, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) failToWrite(temporary_ / name);
+}
+
+void TumWriter::writeLists() {
+    std::sort(rows_.begin(), rows_.end(),
+              [](const Row& a, const Row& b) { return a.timestamp < b.timestamp; });
+    std::string rgb = "# color images\n# timestamp filename\n",
+                depth = "# depth maps\n# timestamp filename\n";
+    std::string pairs;
+    for (const Row& row : rows_) {
+        const std::string stamp = stampText(row.timestamp) + " ";
+        rgb += stamp + row.image + "\n";
+        depth += stamp + row.depth + "\n";
+        pairs += stamp + row.image + " " + stamp + row.depth + "\n";
+    }
+    write("rgb.txt", rgb);
+    write("depth.txt", depth);
+    write("associations.txt", pairs);
+}
+
+void TumWriter::finish(const TumCamera& camera, const std::string& ground_truth_file) {
+    writeLists();
+    write("camera.txt", cameraText(camera));
+    if (!accelerometer_.empty())
+        write("accelerometer.txt", "# accelerometer data, m/s^2\n# timestamp ax ay az\n" + accelerometer_);
+    if (!imu_.empty())
+        write("imu.txt", "# inertial data, rad/s and m/s^2\n# timestamp wx wy wz ax ay az\n" + imu_);
+    std::error_code error;
+    if (!ground_truth_file.empty()) fs::copy_file(ground_truth_file, temporary_ / "groundtruth.txt", error);
+    if (error) throw std::runtime_error("cannot copy " + ground_truth_file + ": " + error.message());
+    fs::remove(folder_, error);  // an empty one
+    fs::rename(temporary_, folder_, error);
+    if (error) throw std::runtime_error("cannot write " + folder_.string() + ": " + error.message());
+}
+
+}  // namespace roevo

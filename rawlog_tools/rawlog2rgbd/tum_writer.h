@@ -1,0 +1,60 @@
+#pragma once
+#include <Eigen/Core>
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roevo/camera/pinhole_camera.h"
+
+namespace roevo {
+
+/// What camera.txt says.
+struct TumCamera {
+    PinholeCamera camera;
+    double depth_scale = 5000;       ///< PNG units per metre
+    std::vector<std::string> notes;  ///< "key: value" lines that readers pass over
+};
+
+/// Writes a folder in TUM RGB-D layout: rgb/, depth/, rgb.txt, depth.txt, associations.txt, camera.txt, and
+/// what there is of accelerometer.txt, imu.txt and groundtruth.txt. Until finish() everything is in
+/// "<folder>.part", which is removed without it.
+class TumWriter {
+  public:
+    /// @throws std::runtime_error when the folder exists and is not empty, or cannot be created
+    explicit TumWriter(const std::string& folder);
+    ~TumWriter();
+    TumWriter(const TumWriter&) = delete;
+    TumWriter& operator=(const TumWriter&) = delete;
+
+    /// @param timestamp   s, of both images, not used before
+    /// @param depth_u16   CV_16UC1
+    /// @param image       CV_8UC3 (BGR) or CV_8UC1, becomes a PNG file
+    /// @param image_file  if not empty, hard-linked or copied instead of writing `image`
+    void add(double timestamp, const cv::Mat& depth_u16, const cv::Mat& image, const std::string& image_file);
+
+    /// @param acceleration m/s^2 @param angular_velocity rad/s. Without it the sample goes to
+    /// accelerometer.txt, with it to imu.txt (stamp, angular velocity, acceleration).
+    void addImu(double timestamp, const Eigen::Vector3d& acceleration,
+                const std::optional<Eigen::Vector3d>& angular_velocity);
+
+    /// Writes the lists, takes a copy of the ground truth (empty: none) and gives the folder its name.
+    /// @throws std::runtime_error when something cannot be written
+    void finish(const TumCamera& camera, const std::string& ground_truth_file);
+
+  private:
+    struct Row {
+        double timestamp;
+        std::string image, depth;  ///< relative to the folder
+    };
+
+    void writeLists();
+    void write(const std::string& name, const std::string& text) const;
+
+    std::filesystem::path folder_, temporary_;
+    std::vector<Row> rows_;
+    std::string accelerometer_, imu_;
+};
+
+}  // namespace roevo

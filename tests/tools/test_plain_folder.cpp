@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include "datasets/dataset_reader.h"
+#include "datasets/numbered_files.h"
+#include "tools/small_dataset.h"
+
+namespace roevo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::errorOf;
+using test::SmallDataset;
+
+/// Gives frame i's images another name.
+void rename(const SmallDataset& folder, int i, const std::string& name) {
+    fs::rename(folder / folder.colour(i), folder / ("rgb/" + name + ".png"));
+    fs::rename(folder / folder.depth(i), folder / ("depth/" + name + ".png"));
+}
+
+std::vector<double> timesWithNames(const std::vector<std::string>& names, const std::string& camera = "") {
+    const SmallDataset folder("plain", static_cast<int>(names.size()));
+    for (std::size_t i = 0; i < names.size(); i++) rename(folder, static_cast<int>(i), names[i]);
+    folder.writeCamera("5000", camera);
+    const DatasetReader dataset = openDataset(folder.path());
+    std::vector<double> times;
+    for (std::size_t i = 0; i < dataset.size(); i++) times.push_back(dataset.entry(i).timestamp);
+    return times;
+}
+
+TEST(PlainFolder, NamesTellTheTime) {
+    using Times = std::vector<double>;
+    EXPECT_EQ(timesWithNames({"1305031453.359684", "1305031453.4"}),
+              (Times{1305031453.359684, 1305031453.4}));
+    EXPECT_EQ(timesWithNames({"9", "10"}), (Times{0.3, 0.333333})) << "not in the order of the letters";
+    EXPECT_EQ(timesWithNames({"frame_0003", "frame_0006"}), (Times{0.1, 0.2}));
+    EXPECT_EQ(timesWithNames({"0003", "0006"}, "frame_rate: 10\n"), (Times{0.3, 0.6}));
+    EXPECT_EQ(timesWithNames({"1305031453", "1305031454"}), (Times{1305031453, 1305031454}));
+    EXPECT_EQ(timesWithNames({"1305031453359"}), (Times{1305031453.359}));
+    EXPECT_EQ(timesWithNames({"1305031453359684"}), (Times{1305031453.359684}));
+    EXPECT_EQ(timesWithNames({"1305031453359684123"}), (Times{1305031453.359684}));
+}
+
+TEST(PlainFolder, AnAssumedRateIsSaid) {
+    const SmallDataset folder("plain", 1);
+    rename(folder, 0, "7");
+    EXPECT_CONTAINS(openDataset(folder.path()).summary(), "frame numbers at 30 Hz (assumed; frame_rate");
+    folder.writeCamera("5000", "frame_rate: 15\n");
+    EXPECT_CONTAINS(openDataset(folder.path()).summary(), "frame numbers at 15 Hz");
+    folder.writeCamera("5000", "frame_rate: 0\n");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "frame_rate must be above 0");
+}
+
+TEST(PlainFolder, NamesThatTellNoTime) {
+    const auto error = [](const std::string& first, const std::string& second) {
+        return errorOf([&] { timesWithNames({first, second}); });
+    };
+    EXPECT_CONTAINS(error("left", "right"), "left.png: no time in its name");
+    EXPECT_CONTAINS(error("7", "1305031453.5"), "some images are named by number, others by time");
+    const SmallDataset folder("plain", 1);
+    fs::rename(folder / folder.depth(0), folder / "depth/other7.png");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "other7.png");
+    folder.remove("depth/other7.png");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "depth has no images in it");
+}
+
+TEST(PlainFolder, NoCameraFileIsAnErrorAndNeverADefault) {
+    const SmallDataset folder("plain");
+    folder.remove("camera.txt");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "no intrinsics");
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "has no camera.txt; write it with width");
+}
+
+TEST(PlainFolder, ColourFolderMayHaveOtherNamesAndEndings) {
+    for (const char* name : {"color", "colour", "images"}) {
+        const SmallDataset folder("plain");
+        fs::rename(folder / "rgb", folder / name);
+        fs::copy(folder / folder.depth(0), folder / "depth/Thumbs.db");
+        EXPECT_EQ(openDataset(folder.path()).size(), 3u);
+    }
+}
+
+TEST(PlainFolder, WholeNumbers) {
+    EXPECT_EQ(wholeNumber("000012"), 12);
+    for (const char* none : {"", "-1", "1.5", "a1", "99999999999999999999"})
+        EXPECT_FALSE(wholeNumber(none)) << none;
+}
+
+}  // namespace
+}  // namespace roevo
