@@ -97,7 +97,7 @@ struct MappingOptions {
     int max_reused = 4;            ///< so many of them
     bool deterministic = true;     ///< the tracker waits for the map; else it takes what is ready
     int latency = 4;               ///< frames after which the mapping of a keyframe takes effect
-    bool refine_depth = true;      ///< the tracker uses the fused depth of its keyframe
+    bool refine_depth = false;      ///< the tracker uses the fused depth of its keyframe
     /// Surface points kept of a keyframe, next to its edges (0: none); in all modes. 10 bytes each.
     int semi_dense_points = 2500;
 };
