@@ -84,7 +84,7 @@ struct LossOptions {
 struct MappingOptions {
     int window = 10;               ///< newest keyframes that are refined together
     int max_points = 2500;         ///< edge points kept of a keyframe
-    int max_iterations = 8;        ///< of the bundle adjustment, per keyframe
+    int max_iterations = 6;        ///< of the bundle adjustment, per keyframe
     bool joint_refinement = true;  ///< poses move together; else each is registered alone, as in the paper
     double chi2 = 16;              ///< chi-square limit of a point-to-tangent residual
     double depth_weight = 0.3;     ///< weight of the depth of an observation

@@ -23,7 +23,7 @@ CovisibilityGraph::CovisibilityGraph(const FineOptions& fine, int span)
 
 void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<const MapKeyframe*>& others,
                                const PinholeCamera& camera, double radius) {
-    auto& links = links_[current.id];
+    auto& of_current = links_[current.id];
     std::vector<char> associated(static_cast<std::size_t>(current.image.numEdges()), 0);
     const std::size_t padded = current.x.size();
     for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
@@ -39,31 +39,35 @@ void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<con
         grid_.build(other->image, camera.width, camera.height);
         associator_.associate(current.image, u_.data(), v_.data(), imageRotation(T_other_current), span_,
                               other->image, grid_, camera.width, camera.height, radius, matches_);
+        Links found{other->id, {}};
+        std::vector<Link>& links = found.links;
         // Pairs come in the order of the current edges
         for (std::size_t k = 0; k < matches_.size(); ++k) {
-            const int edge = current.image.edge_of[static_cast<std::size_t>(matches_.reference[k])];
-            const int found = other->image.edge_of[static_cast<std::size_t>(matches_.current[k])];
-            associated[static_cast<std::size_t>(edge)] = 1;
-            const auto same = std::find_if(links.rbegin(), links.rend(), [&](const Link& link) {
-                return link.edge != edge || link.other.keyframe != other->id || link.other.edge == found;
-            });
-            if (same != links.rend() && same->edge == edge && same->other.keyframe == other->id &&
-                same->other.edge == found) {
-                ++same->points;
+            const auto edge = static_cast<std::size_t>(
+                current.image.edge_of[static_cast<std::size_t>(matches_.reference[k])]);
+            const auto other_edge =
+                static_cast<std::size_t>(other->image.edge_of[static_cast<std::size_t>(matches_.current[k])]);
+            associated[edge] = 1;
+            auto same = links.rbegin();
+            while (same != links.rend() && same->edge == edge && same->other_edge != other_edge) ++same;
+            if (same != links.rend() && same->edge == edge) {
+                if (same->points < std::numeric_limits<std::uint16_t>::max()) ++same->points;
             } else {
-                links.push_back({edge, {other->id, found}, 1});
+                links.push_back(
+                    {static_cast<std::uint16_t>(edge), static_cast<std::uint16_t>(other_edge), 1});
             }
         }
+        links.shrink_to_fit();
+        if (!links.empty()) of_current.push_back(std::move(found));
     }
-    links.shrink_to_fit();
 }
 
 void CovisibilityGraph::remove(int keyframe) {
     links_.erase(keyframe);
-    for (auto& [id, links] : links_) {
-        links.erase(std::remove_if(links.begin(), links.end(),
-                                   [&](const Link& link) { return link.other.keyframe == keyframe; }),
-                    links.end());
+    for (auto& [id, groups] : links_) {
+        groups.erase(std::remove_if(groups.begin(), groups.end(),
+                                    [&](const Links& group) { return group.other == keyframe; }),
+                     groups.end());
     }
 }
 
@@ -71,8 +75,9 @@ int CovisibilityGraph::sharedPoints(int a, int b) const {
     const auto found = links_.find(a);
     if (found == links_.end()) return 0;
     int points = 0;
-    for (const Link& link : found->second) {
-        if (link.other.keyframe == b) points += link.points;
+    for (const Links& group : found->second) {
+        if (group.other != b) continue;
+        for (const Link& link : group.links) points += link.points;
     }
     return points;
 }
@@ -89,11 +94,11 @@ std::vector<std::vector<int>> CovisibilityGraph::clusters(
     for (const auto& [id, first] : first_edge) {
         const auto found = links_.find(id);
         if (found == links_.end()) continue;
-        for (const Link& link : found->second) {
-            const auto other = first_edge.find(link.other.keyframe);
+        for (const Links& group : found->second) {
+            const auto other = first_edge.find(group.other);
             if (other == first_edge.end()) continue;
-            sets.unite(first + static_cast<std::size_t>(link.edge),
-                       other->second + static_cast<std::size_t>(link.other.edge));
+            for (const Link& link : group.links)
+                sets.unite(first + link.edge, other->second + link.other_edge);
         }
     }
     std::vector<int> number(count, -1);

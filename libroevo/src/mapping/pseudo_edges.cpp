@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "point_buckets.h"
+
 namespace roevo {
 namespace {
 
-constexpr double kNearest = 0.05;   ///< m; nearer points cannot be projected
-constexpr double kFarOff = 100;     ///< px, for a point that cannot be projected
-constexpr double kLookShare = 0.7;  ///< a keyframe looks at an edge when so much of it is in its image
-constexpr double kSeeShare = 0.3;   ///< and sees it when so much of that is observed
+constexpr double kNearest = 0.05;       ///< m; nearer points cannot be projected
+constexpr double kFarOff = 100;         ///< px, for a point that cannot be projected
+constexpr double kLookShare = 0.7;      ///< a keyframe looks at an edge when so much of it is in its image
+constexpr double kSeeShare = 0.3;       ///< and sees it when so much of that is observed
+constexpr std::size_t kMostLooks = 12;  ///< points of an edge that are looked for, evenly along it
 /// An edge is in an image when so much of it has an edge point within so many pixels and about its direction.
 constexpr double kImageShare = 0.5;
 constexpr float kLookRadius = 3, kLookSine = 0.35F;
@@ -27,6 +30,11 @@ double tangentResidual(const PinholeCamera& camera, const MapKeyframe& keyframe,
 
 }  // namespace
 
+PseudoEdgeJudge::PseudoEdgeJudge(const MappingOptions& mapping, const SensorOptions& sensor,
+                                 const PinholeCamera& camera)
+    : options_(mapping), sensor_(sensor), camera_(camera), buckets_(std::make_unique<PointBuckets>()) {}
+PseudoEdgeJudge::~PseudoEdgeJudge() = default;
+
 double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
                                  std::size_t p) const {
     const auto first = static_cast<std::size_t>(edges.observation_begin[p]);
@@ -43,16 +51,15 @@ double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, cons
     return std::sqrt(sum / static_cast<double>(end - first - 1));
 }
 
-bool PseudoEdgeJudge::project(const WindowKeyframe& view, const Eigen::Vector3d& point,
-                              Eigen::Vector2f& pixel) const {
+bool PseudoEdgeJudge::project(std::size_t slot, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const {
     constexpr double kMargin = 5;
-    const Eigen::Vector3d q =
-        view.T_world_camera.linear().transpose() * (point - view.T_world_camera.translation());
+    const Eigen::Vector3d q = T_camera_world_[slot] * point;
     if (!(q.z() > sensor_.min_depth)) return false;
-    const Eigen::Vector2d at = camera_.project(q);
-    pixel = at.cast<float>();
-    return at.x() >= kMargin && at.y() >= kMargin && at.x() <= camera_.width - 1 - kMargin &&
-           at.y() <= camera_.height - 1 - kMargin;
+    const double inverse = 1 / q.z();
+    const double u = camera_.fx * q.x() * inverse + camera_.cx, v = camera_.fy * q.y() * inverse + camera_.cy;
+    pixel = {static_cast<float>(u), static_cast<float>(v)};
+    return u >= kMargin && v >= kMargin && u <= camera_.width - 1 - kMargin &&
+           v <= camera_.height - 1 - kMargin;
 }
 
 PseudoEdgeJudge::Looks PseudoEdgeJudge::countLooks(const std::vector<WindowKeyframe>& window,
@@ -61,10 +68,12 @@ PseudoEdgeJudge::Looks PseudoEdgeJudge::countLooks(const std::vector<WindowKeyfr
     const auto end = static_cast<std::size_t>(edges.begin[edge + 1]);
     Looks looks;
     Eigen::Vector2f pixel;
+    const std::size_t stride = 1 + (end - first) / kMostLooks;
+    const double count = static_cast<double>((end - first + stride - 1) / stride);
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
         int inside = 0, observed = 0;
-        for (std::size_t p = first; p < end; ++p) {
-            if (!project(window[slot], edges.points[p], pixel)) continue;
+        for (std::size_t p = first; p < end; p += stride) {
+            if (!project(slot, edges.points[p], pixel)) continue;
             ++inside;
             const auto from = edges.observations.begin() + edges.observation_begin[p];
             const auto to = edges.observations.begin() + edges.observation_begin[p + 1];
@@ -75,7 +84,7 @@ PseudoEdgeJudge::Looks PseudoEdgeJudge::countLooks(const std::vector<WindowKeyfr
                             ? 1
                             : 0;
         }
-        if (inside < kLookShare * static_cast<double>(end - first)) continue;
+        if (inside < kLookShare * count) continue;
         ++looks.looked;
         if (observed >= kSeeShare * inside) {
             ++looks.seen;
@@ -86,29 +95,30 @@ PseudoEdgeJudge::Looks PseudoEdgeJudge::countLooks(const std::vector<WindowKeyfr
     return looks;
 }
 
-bool PseudoEdgeJudge::isInImage(const WindowKeyframe& view, const FusedEdges& edges, std::size_t edge,
-                                const EdgeGrid& grid) const {
-    const OrganizedEdges& image = view.keyframe->image;
+bool PseudoEdgeJudge::isInImage(std::size_t slot, const OrganizedEdges& image, const FusedEdges& edges,
+                                std::size_t edge) const {
     const auto first = static_cast<std::size_t>(edges.begin[edge]);
     const auto end = static_cast<std::size_t>(edges.begin[edge + 1]);
     int inside = 0, found = 0;
     Eigen::Vector2f pixel, before, after;
-    for (std::size_t p = first; p < end; ++p) {
-        if (!project(view, edges.points[p], pixel)) continue;
+    for (std::size_t p = first; p < end; p += 1 + (end - first) / kMostLooks) {
+        if (!project(slot, edges.points[p], pixel)) continue;
         ++inside;
-        project(view, edges.points[std::max(first + kTangentSpan, p) - kTangentSpan], before);
-        project(view, edges.points[std::min(end - 1, p + kTangentSpan)], after);
-        const Eigen::Vector2f tangent = (after - before).normalized();
-        const int nearest = grid.nearest(pixel.x(), pixel.y(), kLookRadius, [&](std::size_t i) {
-            return std::abs(tangent.x() * image.normal_x[i] + tangent.y() * image.normal_y[i]) < kLookSine;
+        project(slot, edges.points[std::max(first + kTangentSpan, p) - kTangentSpan], before);
+        project(slot, edges.points[std::min(end - 1, p + kTangentSpan)], after);
+        const Eigen::Vector2f chord = after - before;
+        const float limit = kLookSine * chord.norm();
+        found += buckets_->any(pixel.x(), pixel.y(), kLookRadius, [&](std::size_t i) {
+            return std::abs(chord.x() * image.normal_x[i] + chord.y() * image.normal_y[i]) < limit;
         });
-        found += nearest >= 0 ? 1 : 0;
     }
     return found >= kImageShare * inside;
 }
 
 void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdges& edges, double scale) {
     suspects_.clear();
+    T_camera_world_.clear();
+    for (const WindowKeyframe& view : window) T_camera_world_.push_back(view.T_world_camera.inverse());
     std::vector<double> spreads;
     for (int e = 0; e < edges.numEdges(); ++e) {
         const auto edge = static_cast<std::size_t>(e);
@@ -130,18 +140,22 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
         }
         const Looks looks = countLooks(window, edges, edge);
         const double found = foundShare(window, edges, edge);
-        if (isVanishing(looks, found)) suspects_.push_back({edge, looks, found});
+        if (isVanishing(looks, found)) suspects_.push_back({edge, looks, found, 0});
     }
     // Associations miss edges that are in pieces: before an edge is called vanishing, the images themselves
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
-        const WindowKeyframe& view = window[slot];
+        const OrganizedEdges& image = window[slot].keyframe->image;
         bool built = false;
         for (Suspect& suspect : suspects_) {
             const auto& missed = suspect.looks.missed;
-            if (std::find(missed.begin(), missed.end(), static_cast<int>(slot)) == missed.end()) continue;
-            if (!built) grid_.build(view.keyframe->image, camera_.width, camera_.height);
+            if (suspect.asked == missed.size() || missed[suspect.asked] != static_cast<int>(slot)) continue;
+            ++suspect.asked;
+            Looks at_best{suspect.looks.looked, suspect.looks.seen, {}};
+            at_best.seen += static_cast<int>(missed.size() - suspect.asked) + 1;
+            if (!isVanishing(suspect.looks, suspect.found) || isVanishing(at_best, suspect.found)) continue;
+            if (!built) buckets_->build(image, camera_.width, camera_.height);
             built = true;
-            suspect.looks.seen += isInImage(view, edges, suspect.edge, grid_) ? 1 : 0;
+            suspect.looks.seen += isInImage(slot, image, edges, suspect.edge) ? 1 : 0;
         }
     }
     for (const Suspect& suspect : suspects_) {

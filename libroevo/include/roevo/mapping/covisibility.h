@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <map>
 #include <vector>
 
@@ -7,11 +8,6 @@
 #include "roevo/tracking/edge_association.h"
 
 namespace roevo {
-
-/// An edge of a keyframe.
-struct EdgeId {
-    int keyframe = 0, edge = 0;
-};
 
 /// Which edges of keyframes show the same edge of the world (Sec. VI-A, Algorithms 1 and 2). The graph keeps
 /// the associations; clusters of any set of keyframes are the disjoint sets of the associations among them,
@@ -36,15 +32,20 @@ class CovisibilityGraph {
     std::vector<std::vector<int>> clusters(const std::vector<const MapKeyframe*>& keyframes) const;
 
   private:
+    /// Maps keep them for ever: images have fewer than 65,536 edges.
     struct Link {
-        int edge = 0;
-        EdgeId other;
-        int points = 0;
+        std::uint16_t edge = 0, other_edge = 0;
+        std::uint16_t points = 0;  ///< at most 65,535
     };
+    struct Links {
+        int other = 0;  ///< keyframe
+        std::vector<Link> links;
+    };
+
     FineOptions options_;
     EdgeAssociator associator_;
     int span_;
-    std::map<int, std::vector<Link>> links_;  // by the newer keyframe
+    std::map<int, std::vector<Links>> links_;  // by the newer keyframe
     EdgeGrid grid_;
     EdgeMatches matches_;
     std::vector<float> x_, y_, z_, u_, v_;

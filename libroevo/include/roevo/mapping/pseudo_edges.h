@@ -1,18 +1,20 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "roevo/camera/pinhole_camera.h"
-#include "roevo/edges/edge_grid.h"
 #include "roevo/mapping/edge_fusion.h"
 #include "roevo/options.h"
 
 namespace roevo {
 
+class PointBuckets;
+
 /// Recognises pseudo-edges: cast shadows that move, reflections, occlusion borders.
 class PseudoEdgeJudge {
   public:
-    PseudoEdgeJudge(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera)
-        : options_(mapping), sensor_(sensor), camera_(camera) {}
+    PseudoEdgeJudge(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera);
+    ~PseudoEdgeJudge();
 
     /// Gives every edge its verdict: by the spread of its observations (instead of Eq. (16)'s largest
     /// eigenvalue, which the depth noise of the sensor dominates, across the edge in the images), and by
@@ -31,16 +33,17 @@ class PseudoEdgeJudge {
         std::size_t edge = 0;
         Looks looks;
         double found = 0;
+        std::size_t asked = 0;  ///< of looks.missed, whose images were asked
     };
 
     Looks countLooks(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
                      std::size_t edge) const;
     /// Whether a keyframe's image has an edge in the place of a fused one, associated or not.
-    bool isInImage(const WindowKeyframe& view, const FusedEdges& edges, std::size_t edge,
-                   const EdgeGrid& grid) const;
+    bool isInImage(std::size_t slot, const OrganizedEdges& image, const FusedEdges& edges,
+                   std::size_t edge) const;
     bool isVanishing(const Looks& looks, double found) const;
     /// Whether a point is in a keyframe's image, and where.
-    bool project(const WindowKeyframe& view, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const;
+    bool project(std::size_t slot, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const;
     /// Share of the frames after a keyframe that found an edge, mean over its keyframes; < 0: not known.
     double foundShare(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
                       std::size_t edge) const;
@@ -48,8 +51,9 @@ class PseudoEdgeJudge {
     MappingOptions options_;
     SensorOptions sensor_;
     PinholeCamera camera_;
+    std::vector<Pose> T_camera_world_;  ///< of the window
     std::vector<Suspect> suspects_;
-    EdgeGrid grid_;
+    std::unique_ptr<PointBuckets> buckets_;
 };
 
 }  // namespace roevo
