@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "roevo/mapping/edge_smoothing.h"
 #include "roevo/tracking/se3.h"
 
 namespace roevo {
@@ -204,6 +205,13 @@ EdgeMap LocalMapper::fusedMap() const {
         edge.views = edges.views[number];
         edge.verdict = keptVerdict(window, edges, number);
         edge.confidence = isPseudo(edge.verdict) ? 0 : 1 - 1 / (1 + static_cast<float>(edge.views));
+        std::vector<Eigen::Vector3d> points(edges.points.begin() + edges.begin[number],
+                                            edges.points.begin() + edges.begin[number + 1]);
+        const auto reference = static_cast<std::size_t>(
+            edges.observation_begin[static_cast<std::size_t>(edges.begin[number]) + 1] - 1);
+        smoothDepthAlong(points,
+                         window[static_cast<std::size_t>(edges.observations[reference].slot)].T_world_camera,
+                         options_.sensor.depth_noise);
         for (auto p = static_cast<std::size_t>(edges.begin[number]);
              p < static_cast<std::size_t>(edges.begin[number + 1]); ++p) {
             // Observations are in reverse order: the last one is the reference's own
@@ -211,7 +219,7 @@ EdgeMap LocalMapper::fusedMap() const {
                 edges.observations[static_cast<std::size_t>(edges.observation_begin[p + 1]) - 1];
             const MapKeyframe& keyframe = *window[static_cast<std::size_t>(seen.slot)].keyframe;
             if (edge.points.empty()) edge.keyframe_id = keyframe.id;
-            edge.points.push_back(edges.points[p].cast<float>());
+            edge.points.push_back(points[p - static_cast<std::size_t>(edges.begin[number])].cast<float>());
             edge.colours.push_back(keyframe.colours[static_cast<std::size_t>(seen.point)]);
         }
         map.push_back(std::move(edge));

@@ -1,0 +1,53 @@
+#include "roevo/mapping/edge_smoothing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roevo {
+namespace {
+
+constexpr int kSpan = 6;         ///< points to each side
+constexpr int kLeastPoints = 5;  ///< fewer make no line
+constexpr double kSigmas = 3;
+
+}  // namespace
+
+void smoothDepthAlong(std::vector<Eigen::Vector3d>& points, const Pose& T_world_camera, double depth_noise) {
+    const auto count = static_cast<int>(points.size());
+    if (count < kLeastPoints) return;
+    const Pose T_camera_world = T_world_camera.inverse();
+    std::vector<Eigen::Vector2d> image;  // normalised coordinates
+    std::vector<double> inverse;         // of depth: it is linear along the image of a straight edge
+    for (const Eigen::Vector3d& point : points) {
+        const Eigen::Vector3d q = T_camera_world * point;
+        if (!(q.z() > 0)) return;
+        image.emplace_back(q.x() / q.z(), q.y() / q.z());
+        inverse.push_back(1 / q.z());
+    }
+    for (int i = 0; i < count; ++i) {
+        // A window that does not shrink at the ends
+        const int first = std::clamp(i - kSpan, 0, std::max(0, count - 1 - 2 * kSpan));
+        const int last = std::min(count - 1, first + 2 * kSpan);
+        const auto at = static_cast<std::size_t>(i);
+        const Eigen::Vector2d chord =
+            image[static_cast<std::size_t>(last)] - image[static_cast<std::size_t>(first)];
+        double n = 0, s_sum = 0, w_sum = 0, ss = 0, sw = 0;
+        for (int j = first; j <= last; ++j) {
+            const auto other = static_cast<std::size_t>(j);
+            const double s = chord.dot(image[other] - image[at]), w = inverse[other];
+            n += 1;
+            s_sum += s;
+            w_sum += w;
+            ss += s * s;
+            sw += s * w;
+        }
+        const double spread = n * ss - s_sum * s_sum;
+        if (!(spread > 1e-9 * n * ss)) continue;
+        const double fitted = (w_sum * ss - s_sum * sw) / spread;
+        // sigma of 1 / z is a, whatever the depth
+        if (!(std::abs(fitted - inverse[at]) <= kSigmas * depth_noise) || !(fitted > 0)) continue;
+        points[at] = T_world_camera * (Eigen::Vector3d(image[at].x(), image[at].y(), 1) / fitted);
+    }
+}
+
+}  // namespace roevo
