@@ -13,7 +13,7 @@ namespace {
 constexpr int kRoughIterations = 3;   ///< before edges are judged
 constexpr double kReusedScale = 0.5;  ///< px of spread that drift may cause at first
 /// Keyframes that see about the same: camera centres nearer than this share of the depth, and turned by less.
-constexpr double kNearDistance = 0.4, kNearDegrees = 30;
+constexpr double kNearDistance = 0.4, kNearDegrees = 30, kAboutAsNear = 0.5;
 /// A keyframe that bundle adjustment moves by more (share of its depth; degrees) went astray.
 constexpr double kLargestJump = 0.1, kLargestTurn = 5;
 
@@ -48,7 +48,9 @@ std::vector<const MapKeyframe*> LocalMapper::nearbyOf(const MapKeyframe& keyfram
         const double distance = T.translation().norm() / std::max(0.1, keyframe.median_depth);
         const double degrees = rotationAngle(T) / kDegree;
         if (distance > kNearDistance || degrees > kNearDegrees) continue;
-        found.emplace_back(distance / kNearDistance + degrees / kNearDegrees, &it->second);
+        // About as near, the older is the better: it has less of the drift
+        const double apart = distance / kNearDistance + degrees / kNearDegrees;
+        found.emplace_back(std::floor(apart / kAboutAsNear), &it->second);
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
