@@ -56,7 +56,7 @@ int run(int argc, char** argv) {
     std::string config_file, mode, default_config;
     std::vector<std::string> sets;
     CLI::App app("RGB-D visual odometry from organized edges.", kName);
-    app.add_option("--input", settings.input, "A .rawlog file or a dataset folder (TUM RGB-D layout)");
+    app.add_option("--input", settings.input, "A .rawlog file or a dataset folder (layout detected)");
     app.add_option("--output", settings.output_dir, "Folder for the results; created when missing");
     app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");
     app.add_option("--set", sets, "section.key=value: one option on top of the config; may be repeated")

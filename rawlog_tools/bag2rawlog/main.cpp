@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "bag2rawlog/convert.h"
+#include "bag2rawlog/ros_home.h"
 #include "support/program.h"
 
 namespace roevo {
@@ -19,6 +20,7 @@ void printTopics(const BagFile& bag) {
 }
 
 int run(int argc, char** argv) {
+    const TemporaryRosHome ros_home;
     std::string input, output;
     BagTopicNames topics;
     double max_time_difference = 0.02;
