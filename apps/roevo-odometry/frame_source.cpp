@@ -55,7 +55,11 @@ class FolderSource : public FrameSource {
     std::string kind() const override { return reader_.description().format; }
     std::string cameraSource() const override { return reader_.description().camera_source; }
     GroundTruth groundTruth() const override { return reader_.groundTruth(); }
-    std::vector<std::string> notes() const override { return reader_.notes(); }
+    std::vector<std::string> notes() const override {
+        std::vector<std::string> notes = reader_.notes();
+        notes.insert(notes.begin(), reader_.description().association.toText());
+        return notes;
+    }
     std::size_t size() const override { return reader_.size(); }
     std::string warning() const override { return {}; }
 

@@ -26,7 +26,9 @@ namespace roevo {
 namespace {
 
 constexpr double kMinMedianDepth = 0.1,
-                 kMaxMedianDepth = 20;  // m: beyond these the scale is wrong, not the room
+                 kMaxMedianDepth = 20;               // m: beyond these the scale is wrong, not the room
+constexpr double kLikelyNear = 0.4, kLikelyFar = 8;  // m: what most recordings are within
+constexpr std::size_t kMostEmpty = 30;               // images without any depth before that is said
 
 struct Format {
     const char* name;
@@ -56,12 +58,21 @@ double medianDepth(const cv::Mat& depth, std::uint16_t invalid) {
     return *middle;
 }
 
-/// The scale in use among sensors that puts this median closest to two metres.
-double likelyDepthScale(double median_units) {
-    const double known[] = {1, 100, 256, 1000, 5000, 10000};
-    const auto off = [&](double scale) { return std::abs(std::log(median_units / scale / 2.0)); };
-    return *std::min_element(std::begin(known), std::end(known),
-                             [&](double a, double b) { return off(a) < off(b); });
+/// What scales in use among sensors would make of this median, where that is plausible; nearest to 2 m first.
+std::string likelyScales(double median_units) {
+    std::string text;
+    std::vector<double> known{1, 100, 256, 1000, 5000, 10000};
+    const auto off = [&](double scale) { return std::abs(std::log(median_units / scale / 2)); };
+    std::sort(known.begin(), known.end(), [&](double a, double b) { return off(a) < off(b); });
+    for (const double scale : known) {
+        const double median = median_units / scale;
+        if (median < kLikelyNear || median > kLikelyFar) continue;
+        char one[80];
+        std::snprintf(one, sizeof one, "%s %g would give %.3g m", text.empty() ? "depth_scale" : ",", scale,
+                      median);
+        text += one;
+    }
+    return text;
 }
 
 /// With the rights that opening a file has (access() looks at the real user's).
@@ -118,8 +129,9 @@ const PinholeCamera& DatasetReader::depthCamera() const {
     return description_.registration ? description_.registration->depth_camera : camera();
 }
 
-void DatasetReader::checkDepthScale() const {
-    for (std::size_t i = 0; i < size(); i++) {
+void DatasetReader::checkDepthScale() {
+    std::size_t empty = 0;
+    for (std::size_t i = 0; i < size() && empty < kMostEmpty; i++) {
         cv::Mat depth;
         try {
             depth = readDepthFile(entry(i).depth);
@@ -129,17 +141,22 @@ void DatasetReader::checkDepthScale() const {
         }
         checkSize(depth, depthCamera(), entry(i).depth);
         const double median_units = medianDepth(depth, description_.invalid_depth);
-        if (median_units == 0) continue;
+        if (median_units == 0) {
+            ++empty;
+            continue;
+        }
         const double median = median_units / depthScale();
         if (median >= kMinMedianDepth && median <= kMaxMedianDepth) return;
-        const double likely = likelyDepthScale(median_units);
-        char text[256];
-        std::snprintf(
-            text, sizeof text,
-            "median depth %.3g m with depth_scale %g makes no sense; depth_scale %g would give %.3g m",
-            median, depthScale(), likely, median_units / likely);
-        throw std::runtime_error(entry(i).depth + ": " + text + ": set it in camera.txt");
+        char text[160];
+        std::snprintf(text, sizeof text, "median depth %.3g m with depth_scale %g makes no sense", median,
+                      depthScale());
+        const std::string likely = likelyScales(median_units);
+        throw std::runtime_error(entry(i).depth + ": " + text + (likely.empty() ? "" : "; " + likely) +
+                                 ": put the sensor's own into camera.txt");
     }
+    if (empty > 0)
+        description_.notes.push_back("warning: the first " + std::to_string(empty) +
+                                     " depth images hold no depth at all");
 }
 
 void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,

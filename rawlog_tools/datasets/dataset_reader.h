@@ -92,7 +92,7 @@ class DatasetReader {
     void checkSize(const cv::Mat& image, const PinholeCamera& camera, const std::string& file) const;
     const PinholeCamera& depthCamera() const;
     void checkFiles() const;
-    void checkDepthScale() const;
+    void checkDepthScale();
 
     DatasetDescription description_;
 };

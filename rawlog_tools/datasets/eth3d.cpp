@@ -62,7 +62,7 @@ DatasetDescription loadEth3d(const std::string& folder_name, const DatasetOption
     out.format = "eth3d";
     const bool has_lists = fs::exists(folder / "rgb.txt") && fs::exists(folder / "depth.txt");
     if (fs::exists(folder / "associated.txt")) {
-        readAssociations(folder_name, "associated.txt", out);
+        readAssociations(folder_name, "associated.txt", options.max_time_difference, out);
     } else if (has_lists) {
         matchLists(folder_name, "rgb.txt", "depth.txt", options.max_time_difference, out);
     } else {

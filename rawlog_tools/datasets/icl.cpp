@@ -143,7 +143,7 @@ DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions&
     out.folder = folder_name;
     out.format = "icl";
     if (fs::exists(folder / "associations.txt")) {
-        readAssociations(folder_name, "associations.txt", out);
+        readAssociations(folder_name, "associations.txt", options.max_time_difference, out);
         for (const DatasetEntry& frame : out.frames)
             if (!isWhole(frame.timestamp) || !isWhole(frame.depth_timestamp))
                 throw std::runtime_error((folder / "associations.txt").string() +

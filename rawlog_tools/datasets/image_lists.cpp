@@ -45,7 +45,9 @@ void matchLists(const std::string& folder_name, const std::string& colour_list, 
     out.association.dropped_depth = depth.size() - out.frames.size();
 }
 
-void readAssociations(const std::string& folder_name, const std::string& file_name, DatasetDescription& out) {
+void readAssociations(const std::string& folder_name, const std::string& file_name, double max_difference,
+                      DatasetDescription& out) {
+    double closest = INFINITY;
     const fs::path folder(folder_name), file = folder / file_name;
     for (const TextLine& line : readTextLines(file.string())) {
         const std::string where = file.string() + ":" + std::to_string(line.number);
@@ -58,9 +60,21 @@ void readAssociations(const std::string& folder_name, const std::string& file_na
             std::swap(entry.timestamp, entry.depth_timestamp);
             std::swap(entry.image, entry.depth);
         }
+        const double difference = std::abs(entry.timestamp - entry.depth_timestamp);
+        closest = std::min(closest, difference);
+        if (difference > max_difference) {
+            ++out.association.dropped_colour;
+            ++out.association.dropped_depth;
+            continue;
+        }
         out.frames.push_back(std::move(entry));
     }
-    if (out.frames.empty()) throw std::runtime_error(file.string() + " lists no images");
+    if (!out.frames.empty()) return;
+    if (std::isinf(closest)) throw std::runtime_error(file.string() + " lists no images");
+    char text[120];
+    std::snprintf(text, sizeof text, ": no pair is within %g s, the closest is %.3g s apart", max_difference,
+                  closest);
+    throw std::runtime_error(file.string() + text);
 }
 
 void finishFrames(DatasetDescription& out) {

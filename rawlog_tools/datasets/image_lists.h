@@ -15,7 +15,8 @@ void matchLists(const std::string& folder, const std::string& colour_list, const
 
 /// Pairs that somebody else matched, "t file t file" a line, colour first or depth first, into `out.frames`.
 /// @throws std::runtime_error naming file and line
-void readAssociations(const std::string& folder, const std::string& file, DatasetDescription& out);
+void readAssociations(const std::string& folder, const std::string& file, double max_difference,
+                      DatasetDescription& out);
 
 /// Last step of every loader: `out.frames` in order of time, stamps to the microsecond, report complete.
 void finishFrames(DatasetDescription& out);

@@ -48,8 +48,10 @@ DatasetDescription loadTum(const std::string& folder_name, const DatasetOptions&
     const bool has_colour = fs::exists(folder / "rgb.txt"), has_depth = fs::exists(folder / "depth.txt");
     if (has_colour && has_depth) {
         matchLists(folder_name, "rgb.txt", "depth.txt", options.max_time_difference, out);
+        if (fs::exists(folder / "associations.txt"))
+            out.notes.push_back("associations.txt was not used: rgb.txt and depth.txt were matched anew");
     } else if (fs::exists(folder / "associations.txt")) {
-        readAssociations(folder_name, "associations.txt", out);
+        readAssociations(folder_name, "associations.txt", options.max_time_difference, out);
     } else {
         throw std::runtime_error(folder_name + " has no " + (has_colour ? "depth.txt" : "rgb.txt") +
                                  ": not a whole TUM sequence");

@@ -124,6 +124,37 @@ TEST(Tum, CameraFileErrorsNameTheKey) {
     EXPECT_CONTAINS(openError(folder), "needs 5 number(s), found 3");
 }
 
+TEST(Tum, PairsThatSomebodyElseMatchedMustBeCloseToo) {
+    SmallTumFolder folder(3);
+    folder.remove("rgb.txt");
+    std::string text;
+    for (const int i : {0, 1, 2}) {
+        const int other = i == 1 ? 2 : i;  // 104 ms apart
+        text += SmallTumFolder::stamp(i) + " " + SmallTumFolder::rgbName(i) + " " +
+                SmallTumFolder::stamp(other, 0.004) + " " + SmallTumFolder::depthName(other) + "\n";
+    }
+    folder.write("associations.txt", text);
+    const DatasetReader dataset = openDataset(folder.path());
+    EXPECT_EQ(dataset.size(), 2U);
+    EXPECT_EQ(dataset.description().association.dropped_colour, 1U);
+    EXPECT_EQ(dataset.description().association.dropped_depth, 1U);
+    DatasetOptions strict;
+    strict.max_time_difference = 0.001;
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path(), strict); }), "the closest is 0.004 s apart");
+}
+
+TEST(Tum, AllScalesThatMakeSenseAreNamed) {
+    SmallTumFolder folder(2, 20500);  // 4.1 m at TUM's 5000, which looks as likely as 2.05 m
+    folder.writeCamera("1000");
+    EXPECT_CONTAINS(openError(folder), "depth_scale 10000 would give 2.05 m, 5000 would give 4.1 m");
+}
+
+TEST(Tum, DepthImagesWithoutDepthAreSaid) {
+    SmallTumFolder folder(3, 0);
+    folder.writeCamera("5000");
+    EXPECT_CONTAINS(openDataset(folder.path()).summary(), "the first 3 depth images hold no depth at all");
+}
+
 TEST(Tum, ADepthScaleThatMakesNoSenseIsNamedWithTheLikelyOne) {
     SmallTumFolder folder(2, 1500);  // 1.5 m in millimetres
     folder.writeCamera("50");
