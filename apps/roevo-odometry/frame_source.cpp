@@ -39,7 +39,7 @@ void decodeInto(SourceFrame& frame, const Decode& decode) {
 
 class FolderSource : public FrameSource {
   public:
-    explicit FolderSource(const std::string& folder) : reader_(openDataset(folder)) {}
+    explicit FolderSource(const std::string& folder) : reader_(open(folder)) {}
 
     bool next(SourceFrame& frame) override {
         if (index_ >= reader_.size()) return false;
@@ -64,6 +64,12 @@ class FolderSource : public FrameSource {
     std::string warning() const override { return {}; }
 
   private:
+    static DatasetReader open(const std::string& folder) {
+        DatasetOptions options;
+        options.tolerate_missing = true;  // such frames are rejected with the reason, the others tracked
+        return openDataset(folder, options);
+    }
+
     DatasetReader reader_;
     std::size_t index_ = 0;
 };

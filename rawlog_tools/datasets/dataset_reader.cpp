@@ -100,8 +100,9 @@ std::string betterFolder(const std::string& folder) {
 
 }  // namespace
 
-DatasetReader::DatasetReader(DatasetDescription description) : description_(std::move(description)) {
-    checkFiles();
+DatasetReader::DatasetReader(DatasetDescription description, bool tolerate_missing)
+    : description_(std::move(description)) {
+    checkFiles(tolerate_missing);
     checkDepthScale();
 }
 
@@ -109,7 +110,7 @@ float DatasetReader::depthUnit() const {
     return roevo::depthUnit(description_.depth_scale);
 }
 
-void DatasetReader::checkFiles() const {
+void DatasetReader::checkFiles(bool tolerate_missing) {
     std::size_t missing = 0;
     std::string first_missing;
     for (const DatasetEntry& frame : description_.frames)
@@ -120,9 +121,11 @@ void DatasetReader::checkFiles() const {
             const bool forbidden = there || fault == std::errc::permission_denied;
             if (missing++ == 0) first_missing = *file + (forbidden ? " (no permission to read it)" : "");
         }
-    if (missing > 0)
-        throw std::runtime_error(std::to_string(missing) + " listed image(s) missing in " +
-                                 description_.folder + ", first: " + first_missing);
+    if (missing == 0) return;
+    const std::string text = std::to_string(missing) + " listed image(s) missing in " + description_.folder +
+                             ", first: " + first_missing;
+    if (!tolerate_missing || missing >= 2 * description_.frames.size()) throw std::runtime_error(text);
+    description_.notes.push_back("warning: " + text);
 }
 
 const PinholeCamera& DatasetReader::depthCamera() const {
@@ -231,7 +234,7 @@ DatasetReader openDataset(const std::string& folder, const DatasetOptions& optio
         names += std::string(names.empty() ? "" : ", ") + format.name;
         needs += std::string(needs.empty() ? "" : "; ") + format.name + ": " + format.needs;
         if (options.format == format.name || (options.format == "auto" && format.recognises(folder)))
-            return DatasetReader(format.load(folder, options));
+            return DatasetReader(format.load(folder, options), options.tolerate_missing);
     }
     if (options.format != "auto")
         throw std::runtime_error("unknown dataset format '" + options.format + "' (known: auto, " + names +

@@ -45,6 +45,8 @@ struct DatasetDescription {
 struct DatasetOptions {
     std::string format = "auto";
     double max_time_difference = 0.02;  ///< s, between a colour and its depth image
+    /// Listed images that are not there: go on, the frame cannot be read then; else openDataset() throws.
+    bool tolerate_missing = false;
 };
 
 /// An RGB-D dataset in a folder, read frame by frame.
@@ -52,7 +54,7 @@ class DatasetReader {
   public:
     /// Checks that the files are there and that the first readable depth image makes sense.
     /// @throws std::runtime_error with one line that says what is wrong and what to do.
-    explicit DatasetReader(DatasetDescription description);
+    explicit DatasetReader(DatasetDescription description, bool tolerate_missing = false);
 
     const DatasetDescription& description() const { return description_; }
     const PinholeCamera& camera() const { return description_.camera; }
@@ -91,7 +93,7 @@ class DatasetReader {
   private:
     void checkSize(const cv::Mat& image, const PinholeCamera& camera, const std::string& file) const;
     const PinholeCamera& depthCamera() const;
-    void checkFiles() const;
+    void checkFiles(bool tolerate_missing);
     void checkDepthScale();
 
     DatasetDescription description_;

@@ -28,7 +28,7 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
               "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total,ms_mapping,ms_waiting,"
               "map_correction_m,map_correction_deg,map_reason\n100.");
     ASSERT_EQ(rows().size(), 40u);
-    for (const auto& row : rows()) EXPECT_EQ(row.size(), 19u);
+    for (const auto& row : rows()) EXPECT_EQ(row.size(), 20u);
     EXPECT_EQ(status(0), "initialised");
     EXPECT_EQ(readTumTrajectory(output() + "/trajectory.txt").size(), 40u);
     EXPECT_EQ(readTumTrajectory(output() + "/trajectory_live.txt").size(), 40u);

@@ -143,6 +143,21 @@ TEST(Tum, PairsThatSomebodyElseMatchedMustBeCloseToo) {
     EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path(), strict); }), "the closest is 0.004 s apart");
 }
 
+TEST(Tum, MissingImagesCostOnlyTheirFramesWhereThatIsWanted) {
+    SmallTumFolder folder(3);
+    folder.remove(SmallTumFolder::rgbName(1));
+    DatasetOptions options;
+    options.tolerate_missing = true;
+    const DatasetReader dataset = openDataset(folder.path(), options);
+    EXPECT_CONTAINS(dataset.summary(), "warning: 1 listed image(s) missing");
+    EXPECT_NO_THROW(dataset.readFrame(0));
+    EXPECT_CONTAINS(errorOf([&] { dataset.readFrame(1); }), SmallTumFolder::rgbName(1));
+    EXPECT_NO_THROW(dataset.readFrame(2));
+    for (const int i : {0, 2}) folder.remove(SmallTumFolder::rgbName(i));
+    for (const int i : {0, 1, 2}) folder.remove(SmallTumFolder::depthName(i));
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path(), options); }), "6 listed image(s) missing");
+}
+
 TEST(Tum, AllScalesThatMakeSenseAreNamed) {
     SmallTumFolder folder(2, 20500);  // 4.1 m at TUM's 5000, which looks as likely as 2.05 m
     folder.writeCamera("1000");
