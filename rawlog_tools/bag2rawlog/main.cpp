@@ -5,6 +5,7 @@
 
 #include "bag2rawlog/convert.h"
 #include "bag2rawlog/ros_home.h"
+#include "output_check.h"
 #include "support/program.h"
 
 namespace roevo {
@@ -54,6 +55,7 @@ int run(int argc, char** argv) {
     if (!list && output.empty()) throw UsageError("--output is required");
     if (!list && std::filesystem::path(output).extension() != ".rawlog")
         throw UsageError("--output must end in .rawlog: " + output);
+    if (!list) checkOutputFolder(output);
 
     const BagFile bag(input);
     if (list) {
@@ -75,6 +77,7 @@ int run(int argc, char** argv) {
                     result.too_far);
     std::printf("%s: %zu frames written, sensor label %s\n", output.c_str(), result.written,
                 cameras.label.c_str());
+    warnOfForeignGroundTruth(kName, output);
     return 0;
 }
 

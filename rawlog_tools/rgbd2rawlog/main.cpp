@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "datasets/dataset_reader.h"
+#include "output_check.h"
 #include "rgbd2rawlog/convert.h"
 #include "rgbd2rawlog/verify.h"
 #include "roevo_mrpt/rawlog_writer.h"
@@ -131,6 +132,8 @@ int run(int argc, char** argv) {
     Settings settings;
     if (auto code = parse(argc, argv, settings)) return *code;
 
+    checkOutputFolder(settings.output);
+    settings.dataset.tolerate_missing = settings.convert.skip_bad;
     const DatasetReader dataset = openDataset(settings.input, settings.dataset);
     std::printf("%s\n", dataset.summary().c_str());
     const std::string truth_path = RawlogWriter::groundTruthFile(settings.output);
@@ -143,11 +146,8 @@ int run(int argc, char** argv) {
     printConverted(settings, result);
     if (truth)
         std::printf("ground truth: %s\n", truth_path.c_str());
-    else if (fs::exists(truth_path))
-        std::fprintf(stderr,
-                     "%s: warning: %s was there before and is not from this dataset, which has no ground "
-                     "truth; move it away\n",
-                     kName, truth_path.c_str());
+    else
+        warnOfForeignGroundTruth(kName, settings.output);
     printSpeed(result);
     return 0;
 }

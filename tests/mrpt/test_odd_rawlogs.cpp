@@ -77,10 +77,13 @@ TEST_F(OddRawlog, ASecondSensorThatTurnsUpLateIsLeftOutWithAWarning) {
     for (int i = 0; i < 40; i++) objects.push_back(scanAt(i, "front"));
     objects.push_back(scanAt(40, "back"));
     objects.push_back(scanAt(41, "front"));
-    RawlogReader reader(write(objects));
+    const std::string rawlog = write(objects);
+    RawlogReader reader(rawlog), chosen(rawlog, "front");
     EXPECT_EQ(count(reader), 41u);
     EXPECT_CONTAINS(reader.report().warning(), "1 back, 41 front");
     EXPECT_CONTAINS(reader.report().warning(), "--sensor-label");
+    EXPECT_EQ(count(chosen), 41u);
+    EXPECT_EQ(chosen.report().warning(), "") << "left out as asked";
 }
 
 TEST_F(OddRawlog, ASensorWithoutANameCanBeChosen) {

@@ -272,7 +272,18 @@ TEST_F(Bag2RawlogErrors, ListNamesTopicsTypesAndCounts) {
 TEST_F(Bag2RawlogErrors, OutputThatCannotBeWritten) {
     write([](BagWriter& bag) { bag.frames(1); });
     expectError(runProgram(kName, {"--input", bagPath(), "--output", folder_ / "none/out.rawlog"}), 1, kName,
-                {"none/out.rawlog"});
+                {"none/out.rawlog", "none does not exist: create it"});
+}
+
+TEST_F(Bag2RawlogErrors, AnOlderGroundTruthOfSomethingElseIsPointedOut) {
+    write([](BagWriter& bag) { bag.frames(1); });
+    scans();
+    EXPECT_EQ(result_.err.find("warning: "), std::string::npos) << result_.err;
+    writeFile(folder_ / "out_groundtruth.txt", "1 0 0 0 0 0 0 1\n");
+    scans();
+    EXPECT_NE(result_.err.find("bag2rawlog: warning: " + (folder_ / "out_groundtruth.txt")),
+              std::string::npos)
+        << result_.err;
 }
 
 }  // namespace

@@ -44,13 +44,41 @@ class Permissions : public ::testing::Test {
 };
 
 TEST_F(Permissions, OutputFolder) {
-    expectRefused("rgbd2rawlog", input_.path(), "closed/x.rawlog", {"closed/x", "Permission denied"});
+    expectRefused("rgbd2rawlog", input_.path(), "closed/x.rawlog",
+                  {"closed/x", "folder", "closed: Permission denied"});
     expectRefused("rawlog2rgbd", folder_ / "open/o.rawlog", "closed/x", {"closed/x", "Permission denied"});
 }
 
 TEST_F(Permissions, Rawlog) {
     forbid(folder_ / "open/o.rawlog");
     expectRefused("rawlog2rgbd", folder_ / "open/o.rawlog", "open/x", {"cannot read", "o.rawlog"});
+}
+
+TEST_F(Permissions, FolderOfARawlog) {
+    forbid(folder_ / "closed");
+    expectError(runUnprivileged("rawlog2rgbd",
+                                {"--input", folder_ / "closed/o.rawlog", "--output", folder_ / "open/x"}),
+                1, "rawlog2rgbd", {"error: cannot read " + (folder_ / "closed/o.rawlog: Permission denied")});
+}
+
+TEST_F(Permissions, ImagesFolderOfARawlog) {
+    forbid(folder_ / "open/o_Images");
+    const std::string image = folder_ / ("open/o_Images/RGBD_" + SmallTumFolder::stamp(0) + ".png");
+    expectRefused("rawlog2rgbd", folder_ / "open/o.rawlog", "open/x",
+                  {"none of its 3 frames can be used", "cannot read image (Permission denied): " + image});
+    fs::permissions(folder_ / "open/o_Images", fs::perms(0755));
+}
+
+TEST_F(Permissions, DepthFilesBehindAClosedFolder) {
+    auto scan = test::scanAt(0);
+    fs::create_directory(folder_ / "depth");
+    scan->rangeImage_convertToExternalStorage("d.bin", folder_ / "depth/");
+    fs::create_directory_symlink(folder_ / "depth", folder_ / "open/d_Images");
+    test::writeObjects(folder_ / "open/d.rawlog", {scan});
+    forbid(folder_ / "depth");
+    expectRefused("rawlog2rgbd", folder_ / "open/d.rawlog", "open/x",
+                  {"cannot read range image (Permission denied): " + (folder_ / "open/d_Images/d.bin")});
+    fs::permissions(folder_ / "depth", fs::perms(0755));
 }
 
 TEST_F(Permissions, ImageOfADataset) {

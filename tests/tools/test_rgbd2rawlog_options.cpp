@@ -163,8 +163,15 @@ TEST(Rgbd2rawlogOptions, BadOutputsAndInputs) {
     expectError(convert(input / "rgb.txt", input / "o.rawlog"), 1, "rgbd2rawlog",
                 {"rgb.txt", "not a folder"});
     expectError(convert(input.path(), "/sys/o.rawlog"), 1, "rgbd2rawlog", {"/sys/o"});  // not even root may
-    // The ground truth cannot be written: then the rawlog is not, either
+    expectError(convert(input.path(), input / "rgb.txt/o.rawlog"), 1, "rgbd2rawlog",
+                {"rgb.txt is not a folder"});
+    // The folder is named, not what would have been written into it first
     input.write("groundtruth.txt", "1 0 0 0 0 0 0 1\n");
+    const ProgramResult nowhere = convert(input.path(), input / "nodir/o.rawlog");
+    expectError(nowhere, 1, "rgbd2rawlog",
+                {"nodir/o.rawlog: folder " + (input / "nodir") + " does not exist: create it"});
+    EXPECT_EQ(nowhere.err.find("groundtruth"), std::string::npos) << nowhere.err;
+    // The ground truth cannot be written: then the rawlog is not, either
     fs::create_directory(input / "o_groundtruth.txt");
     expectError(convert(input.path(), input / "o.rawlog"), 1, "rgbd2rawlog", {"o_groundtruth.txt"});
     for (const char* name : {"o.rawlog", "o_Images", "o.rawlog.part"})

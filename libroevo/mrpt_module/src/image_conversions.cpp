@@ -14,7 +14,9 @@ namespace {
 
 cv::Mat decode(const std::string& file, int flags) {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error))
+    const auto status = std::filesystem::status(file, error);
+    // Behind a folder that may not be entered nobody knows: access() says why
+    if (std::filesystem::status_known(status) && !std::filesystem::is_regular_file(status))
         throw std::runtime_error("image file not found: " + file);
     if (access(file.c_str(), R_OK) != 0)
         throw std::runtime_error("cannot read image (" + std::string(std::strerror(errno)) + "): " + file);

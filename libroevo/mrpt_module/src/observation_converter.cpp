@@ -48,9 +48,10 @@ cv::Mat depthOf(const CObservation3DRangeScan& scan, const PinholeCamera& depth_
     if (scan.rangeImage_isExternallyStored() && range.rows() == 0) {
         const std::string file = scan.rangeImage_getExternalStorageFileAbsolutePath("");
         std::error_code error;
-        throw std::runtime_error((std::filesystem::exists(file, error) ? "cannot read range image (damaged): "
-                                                                       : "range image file not found: ") +
-                                 file);
+        const bool there = std::filesystem::exists(file, error);
+        if (error) throw std::runtime_error("cannot read range image (" + error.message() + "): " + file);
+        throw std::runtime_error(
+            (there ? "cannot read range image (damaged): " : "range image file not found: ") + file);
     }
     if (!scan.hasRangeImage || range.rows() == 0)
         throw std::runtime_error("the observation has no range image");

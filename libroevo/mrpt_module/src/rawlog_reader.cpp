@@ -46,14 +46,22 @@ class WatchedStream {
     std::string getStreamDescription() const { return file.getStreamDescription(); }
 };
 
+/// Whether it can be seen: a file behind a folder that may not be entered costs its frame, not the run.
+bool isThere(const fs::path& file) {
+    std::error_code unreadable;
+    return fs::exists(file, unreadable);
+}
+
 /// Where this rawlog's external files are: <stem>_Images, or the spellings that MRPT's own programs accept.
 fs::path findImagesDirectory(const fs::path& rawlog) {
     const fs::path usual = RawlogWriter::imagesDirectory(rawlog.string());
     const std::string stem = rawlog.stem().string();
     for (const fs::path& candidate :
          {usual, rawlog.parent_path() / (stem + "_images"), rawlog.parent_path() / (stem + "_IMAGES"),
-          rawlog.parent_path() / "Images"})
-        if (fs::is_directory(candidate)) return fs::absolute(candidate);
+          rawlog.parent_path() / "Images"}) {
+        std::error_code unreadable;
+        if (fs::is_directory(candidate, unreadable)) return fs::absolute(candidate);
+    }
     return fs::absolute(usual);
 }
 
@@ -89,7 +97,7 @@ void append(std::string& text, const std::string& more) {
 
 std::string RawlogReport::warning() const {
     std::string text = fault;
-    if (labels.size() > 1)
+    if (labels.size() > 1 && !label_chosen)
         append(text, "several sensors have range images (" + listCounts(labels) + "), using '" + label +
                          "' (choose with --sensor-label)");
     if (const std::size_t left_out = sumOf(points_only); left_out > 0)
@@ -201,13 +209,12 @@ struct RawlogReader::Impl {
         if (scan.intensityImage.isExternallyStored()) {
             const fs::path file = scan.intensityImage.getExternalStorageFile();
             fs::path found = images / file;  // an absolute file stays as it is
-            if (!fs::exists(found) && fs::exists(images.parent_path() / file))
-                found = images.parent_path() / file;
+            if (!isThere(found) && isThere(images.parent_path() / file)) found = images.parent_path() / file;
             scan.intensityImage.setExternalStorage(found.string());
         }
         if (!scan.rangeImage_isExternallyStored()) return;
         const fs::path file = scan.rangeImage_getExternalStorageFile("");
-        const bool beside = !fs::exists(images / file) && fs::exists(images.parent_path() / file);
+        const bool beside = !isThere(images / file) && isThere(images.parent_path() / file);
         loadRangeFile(scan, (beside ? images.parent_path() : images).string());
     }
 
@@ -228,7 +235,10 @@ struct RawlogReader::Impl {
 
 RawlogReader::RawlogReader(const std::string& path, const std::string& sensor_label)
     : impl_(std::make_unique<Impl>()) {
-    if (!fs::exists(path)) throw std::runtime_error("rawlog not found: " + path);
+    std::error_code error;
+    if (!fs::exists(path, error))
+        throw std::runtime_error(error ? "cannot read " + path + ": " + error.message()
+                                       : "rawlog not found: " + path);
     if (fs::is_directory(path)) throw std::runtime_error("not a rawlog but a folder: " + path);
     if (!impl_->stream.file.open(path)) throw std::runtime_error("cannot read " + path);
     impl_->path = path;
@@ -236,6 +246,7 @@ RawlogReader::RawlogReader(const std::string& path, const std::string& sensor_la
     impl_->stated_size = statedSize(path);
     impl_->images = findImagesDirectory(path);
     impl_->any_label = sensor_label.empty();
+    impl_->report.label_chosen = !sensor_label.empty();
     impl_->report.label = sensor_label == kNoName ? "" : sensor_label;
 }
 

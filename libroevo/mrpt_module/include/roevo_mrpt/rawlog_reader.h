@@ -19,9 +19,10 @@ struct RawlogReport {
     std::map<std::string, std::size_t> classes;  ///< class name -> how many observations (and other entries)
     std::map<std::string, std::size_t> labels;   ///< sensor label -> how many scans with a range image
     std::map<std::string, std::size_t>
-        points_only;    ///< sensor label -> scans with 3D points, but no range image
-    std::string label;  ///< the sensor that is being read
-    std::string fault;  ///< why reading stopped before a proper end; empty when all is well
+        points_only;            ///< sensor label -> scans with 3D points, but no range image
+    std::string label;          ///< the sensor that is being read
+    bool label_chosen = false;  ///< the caller named it, so that other sensors are left out on purpose
+    std::string fault;          ///< why reading stopped before a proper end; empty when all is well
 
     /// Things the user should hear (damage, other cameras left out), one line, or "".
     std::string warning() const;
