@@ -131,9 +131,12 @@ class RawlogSource : public FrameSource {
 }  // namespace
 
 std::unique_ptr<FrameSource> openSource(const std::string& input, const std::string& sensor_label) {
-    if (!fs::exists(input))
+    std::error_code fault;
+    const fs::file_status status = fs::status(input, fault);
+    if (status.type() == fs::file_type::not_found)
         throw std::runtime_error("cannot read " + input + ": there is no such file or folder");
-    if (!fs::is_directory(input)) return std::make_unique<RawlogSource>(input, sensor_label);
+    if (fault) throw std::runtime_error("cannot read " + input + ": " + fault.message());
+    if (!fs::is_directory(status)) return std::make_unique<RawlogSource>(input, sensor_label);
     if (!sensor_label.empty())
         throw UsageError("--sensor-label is for rawlogs, and " + input + " is a folder");
     return std::make_unique<FolderSource>(input);

@@ -174,7 +174,8 @@ ExportResult exportRawlog(const std::string& rawlog, const std::string& sensor_l
         throw std::runtime_error(rawlog + ": none of its " + std::to_string(result.left_out.size()) +
                                  " frames can be used, first: " + result.left_out.front());
     const std::string truth = RawlogWriter::groundTruthFile(rawlog);
-    if (std::filesystem::is_regular_file(truth)) result.ground_truth = truth;
+    std::error_code unreadable;
+    if (std::filesystem::is_regular_file(truth, unreadable)) result.ground_truth = truth;
     writer.finish(exporter.camera(), result.ground_truth);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;

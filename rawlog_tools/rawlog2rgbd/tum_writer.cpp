@@ -60,9 +60,14 @@ std::string cameraText(const TumCamera& description) {
 
 TumWriter::TumWriter(const std::string& folder) : folder_(fs::path(folder).lexically_normal()) {
     if (!folder_.has_filename()) folder_ = folder_.parent_path();  // "out/"
-    if (fs::exists(folder_) && !(fs::is_directory(folder_) && fs::is_empty(folder_)))
+    std::error_code fault;
+    const bool is_folder = fs::is_directory(folder_, fault);
+    const bool is_empty = is_folder && fs::is_empty(folder_, fault);
+    if (fault && fault != std::errc::no_such_file_or_directory)
+        throw std::runtime_error("cannot write " + folder + ": " + fault.message());
+    if (is_folder ? !is_empty : fs::exists(folder_, fault))
         throw std::runtime_error("cannot write " + folder + ": it exists" +
-                                 (fs::is_directory(folder_) ? " and is not empty" : "") +
+                                 (is_folder ? " and is not empty" : "") +
                                  "; choose another output folder or move it away");
     temporary_ = folder_.string() + ".part";
     std::error_code error;

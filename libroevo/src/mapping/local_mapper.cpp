@@ -281,6 +281,7 @@ EdgeMap LocalMapper::keyframeEdges() const {
     for (const auto& [id, keyframe] : keyframes_) members.push_back(&keyframe);
     const auto clusters = graph_.clusters(members);
     EdgeMap map;
+    std::vector<Eigen::Vector3d> points;
     for (std::size_t k = 0; k < members.size(); ++k) {
         const MapKeyframe& keyframe = *members[k];
         const auto verdicts = verdicts_.find(keyframe.id);
@@ -289,11 +290,14 @@ EdgeMap LocalMapper::keyframeEdges() const {
             edge.keyframe_id = keyframe.id;
             edge.cluster = clusters[k][e];
             if (verdicts != verdicts_.end()) edge.verdict = verdicts->second[e];
+            points.clear();
             for (auto i = static_cast<std::size_t>(keyframe.image.begin[e]);
                  i < static_cast<std::size_t>(keyframe.image.begin[e + 1]); ++i) {
-                edge.points.push_back((keyframe.T_world_camera * keyframe.point(i)).cast<float>());
+                points.push_back(keyframe.T_world_camera * keyframe.point(i));
                 edge.colours.push_back(keyframe.colours[i]);
             }
+            smoothDepthAlong(points, keyframe.T_world_camera, options_.sensor.depth_noise);
+            for (const Eigen::Vector3d& point : points) edge.points.push_back(point.cast<float>());
             map.push_back(std::move(edge));
         }
     }
