@@ -22,7 +22,7 @@ cv::Mat1b maskAround(const OrganizedEdges& edges, const PinholeCamera& camera, i
             const int reach = halfWidth(radius, dy);
             const int from = std::max(0, u - reach), to = std::min(camera.width - 1, u + reach);
             if (v + dy < 0 || v + dy >= camera.height || from > to) continue;
-            mask.row(v + dy).colRange(from, to + 1).setTo(1);
+            std::fill(mask[v + dy] + from, mask[v + dy] + to + 1, std::uint8_t{1});
         }
     }
     return mask;
