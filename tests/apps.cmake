@@ -11,7 +11,7 @@ roevo_test(test_programs
           apps/test_odometry_program.cpp apps/test_bad_folders.cpp apps/test_bad_rawlogs.cpp apps/test_realtime.cpp
           apps/test_odd_rawlogs_program.cpp
   LIBS roevo_test_support roevo_evaluation roevo_mrpt nlohmann_json::nlohmann_json)
-add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog)
+add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog rawlog2rgbd rawlog-simulate)
 
 # Needs the whole build. Sanitized libraries would want the sanitizer in the program that uses them, too.
 if(NOT ROEVO_SANITIZE)
