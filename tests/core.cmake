@@ -13,7 +13,7 @@ roevo_test(test_core_tracking
 find_package(Ceres REQUIRED)
 roevo_test(test_core_mapping
   SOURCES core/test_disjoint_set.cpp core/test_covisibility.cpp core/test_semi_dense.cpp
-          core/test_edge_smoothing.cpp core/test_edge_fusion.cpp core/test_bundle_adjustment.cpp core/test_pseudo_edges.cpp
+          core/test_edge_smoothing.cpp core/test_edge_fusion.cpp core/test_bundle_adjustment.cpp core/test_bundle_ceres.cpp core/test_pseudo_edges.cpp
           core/test_local_mapper.cpp
   LIBS roevo Ceres::ceres)
 # One ctest entry per suite, since the cases of a suite share a rendered sequence.

@@ -36,6 +36,10 @@ class PairsRecording : public FolderRecording {
         makeFolder("rgb");
         makeFolder("depth");
     }
+    void add(const SimulatedFrame& frame) override {
+        addPair(frame, stampText(frame.timestamp), stampText(frame.timestamp));
+        truth_ += truthLine(frame.timestamp, frame.T_world_camera);
+    }
 
   protected:
     /// @param stamp  what the lists say of the time, @param name  of both files, without ending
@@ -58,10 +62,6 @@ class TumRecording : public PairsRecording {
   public:
     TumRecording(const std::string& path, const PinholeCamera& camera) : PairsRecording(path) {
         writeText("camera.txt", cameraText(camera));
-    }
-    void add(const SimulatedFrame& frame) override {
-        addPair(frame, stampText(frame.timestamp), stampText(frame.timestamp));
-        truth_ += truthLine(frame.timestamp, frame.T_world_camera);
     }
 
   private:
@@ -94,10 +94,6 @@ class Eth3dRecording : public PairsRecording {
         std::snprintf(text, sizeof text, "%.17g %.17g %.17g %.17g\n", camera.fx, camera.fy, camera.cx,
                       camera.cy);
         writeText("calibration.txt", text);
-    }
-    void add(const SimulatedFrame& frame) override {
-        addPair(frame, stampText(frame.timestamp), stampText(frame.timestamp));
-        truth_ += truthLine(frame.timestamp, frame.T_world_camera);
     }
 
   private:

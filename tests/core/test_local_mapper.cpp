@@ -205,6 +205,7 @@ TEST_F(Mapper, TheMapHasEveryCurveOnce) {
 }
 
 TEST_F(Mapper, RefinedDepthIsNearerToTheTruth) {
+    options_.mapping.refine_depth = true;
     LocalMapper mapper(mappingCamera(), options_);
     std::mt19937 random(3);
     std::normal_distribution<double> normal;

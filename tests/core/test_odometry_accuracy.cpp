@@ -11,6 +11,7 @@
 namespace roevo {
 namespace {
 
+using testing::makeTwiceAsLarge;
 using testing::positionError;
 using testing::Sequence;
 using testing::simulate;
@@ -64,16 +65,7 @@ TEST(OdometryAccuracy, TheSameImageAgainDoesNotMoveThePose) {
 TEST(OdometryAccuracy, AWorldTwiceAsLargeGivesATrajectoryTwiceAsLarge) {
     Sequence large = room();
     OdometryOptions options;
-    // The weights know metres (Eq. (20), the sensor's noise, likely speeds): they are scaled with the world
-    options.sensor.max_depth *= 2;
-    options.sensor.min_depth *= 2;
-    options.sensor.depth_limit *= 2;
-    options.sensor.depth_weight_k /= 2;
-    options.sensor.depth_noise /= 2;
-    options.motion.acceleration *= 2;
-    options.motion.speed *= 2;
-    for (auto& frame : large.frames) frame.depth = cv::Mat(2 * frame.depth);  // its own memory
-    for (auto& pose : large.truth) pose.T_world_camera.translation() *= 2;
+    makeTwiceAsLarge(large, options);
     const TrackedRun once = track(room()), twice = track(large, options);
     expectAllOk(twice);
     for (std::size_t i = 0; i < once.results.size(); ++i) {

@@ -313,16 +313,7 @@ TEST(OdometryMapping, StartPoseOnlyMovesTheTrajectory) {
 TEST(OdometryMapping, AWorldTwiceAsLargeGivesATrajectoryTwiceAsLarge) {
     Sequence large = path();
     OdometryOptions options = manyKeyframes();
-    // The weights know metres (Eq. (20), the sensor's noise, likely speeds): they are scaled with the world
-    options.sensor.max_depth *= 2;
-    options.sensor.min_depth *= 2;
-    options.sensor.depth_limit *= 2;
-    options.sensor.depth_weight_k /= 2;
-    options.sensor.depth_noise /= 2;
-    options.motion.acceleration *= 2;
-    options.motion.speed *= 2;
-    for (auto& frame : large.frames) frame.depth = cv::Mat(2 * frame.depth);  // its own memory
-    for (auto& pose : large.truth) pose.T_world_camera.translation() *= 2;
+    makeTwiceAsLarge(large, options);
     const MappedRun twice = runOver(large, options);
     double worst = 0, turned = 0;
     for (std::size_t i = 0; i < twice.final_poses.size(); ++i) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "line_fit.h"
+
 namespace roevo {
 namespace {
 
@@ -31,19 +33,13 @@ void smoothDepthAlong(std::vector<Eigen::Vector3d>& points, const Pose& T_world_
         const auto at = static_cast<std::size_t>(i);
         const Eigen::Vector2d chord =
             image[static_cast<std::size_t>(last)] - image[static_cast<std::size_t>(first)];
-        double n = 0, s_sum = 0, w_sum = 0, ss = 0, sw = 0;
+        LineFit<double> line;
         for (int j = first; j <= last; ++j) {
             const auto other = static_cast<std::size_t>(j);
-            const double s = chord.dot(image[other] - image[at]), w = inverse[other];
-            n += 1;
-            s_sum += s;
-            w_sum += w;
-            ss += s * s;
-            sw += s * w;
+            line.add(chord.dot(image[other] - image[at]), inverse[other]);
         }
-        const double spread = n * ss - s_sum * s_sum;
-        if (!(spread > 1e-9 * n * ss)) continue;
-        const double fitted = (w_sum * ss - s_sum * sw) / spread;
+        if (!(line.spread() > 1e-9 * line.magnitude())) continue;
+        const double fitted = line.atZero();
         // sigma of 1 / z is a, whatever the depth
         if (!(std::abs(fitted - inverse[at]) <= kSigmas * depth_noise) || !(fitted > 0)) continue;
         points[at] = T_world_camera * (Eigen::Vector3d(image[at].x(), image[at].y(), 1) / fitted);

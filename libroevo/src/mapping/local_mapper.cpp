@@ -164,7 +164,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
         update.poses.emplace_back(view.keyframe->id, view.T_world_camera);
     }
     keepVerdicts();
-    describeNewest(update);
+    if (options_.mapping.refine_depth) describeNewest(update);
     compact(keyframe);
     return update;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "line_fit.h"
 #include "roevo/tracking/kernels.h"
 
 namespace roevo {
@@ -47,20 +48,14 @@ void computeSlopes(MapKeyframe& keyframe, int span) {
             const auto at = static_cast<std::size_t>(i);
             const int first = std::max(image.begin[e], i - span),
                       last = std::min(image.begin[e + 1] - 1, i + span);
-            float sum = 0, sum_s = 0, sum_z = 0, sum_ss = 0, sum_sz = 0;
+            LineFit<float> line;
             for (int j = first; j <= last; ++j) {
                 const auto other = static_cast<std::size_t>(j);
-                const float s = image.normal_x[at] * (image.y[other] - image.y[at]) -
-                                image.normal_y[at] * (image.x[other] - image.x[at]);
-                const float z = keyframe.z[other] - keyframe.z[at];
-                sum += 1;
-                sum_s += s;
-                sum_z += z;
-                sum_ss += s * s;
-                sum_sz += s * z;
+                line.add(image.normal_x[at] * (image.y[other] - image.y[at]) -
+                             image.normal_y[at] * (image.x[other] - image.x[at]),
+                         keyframe.z[other] - keyframe.z[at]);
             }
-            const float spread = sum * sum_ss - sum_s * sum_s;
-            if (spread > kLeastSpread) keyframe.slope[at] = (sum * sum_sz - sum_s * sum_z) / spread;
+            if (line.spread() > kLeastSpread) keyframe.slope[at] = line.slope();
         }
     }
 }

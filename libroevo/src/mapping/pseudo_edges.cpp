@@ -104,6 +104,7 @@ bool PseudoEdgeJudge::isInImage(std::size_t slot, const OrganizedEdges& image, c
     for (std::size_t p = first; p < end; p += 1 + (end - first) / kMostLooks) {
         if (!project(slot, edges.points[p], pixel)) continue;
         ++inside;
+        before = after = pixel;  // where a neighbour is behind the camera
         project(slot, edges.points[std::max(first + kTangentSpan, p) - kTangentSpan], before);
         project(slot, edges.points[std::min(end - 1, p + kTangentSpan)], after);
         const Eigen::Vector2f chord = after - before;

@@ -55,6 +55,20 @@ inline TrackedRun track(const Sequence& sequence, const OdometryOptions& options
     return run;
 }
 
+/// Makes the world twice as large. The weights know metres (Eq. (20), the sensor's noise, likely speeds):
+/// they are scaled with it.
+inline void makeTwiceAsLarge(Sequence& sequence, OdometryOptions& options) {
+    options.sensor.max_depth *= 2;
+    options.sensor.min_depth *= 2;
+    options.sensor.depth_limit *= 2;
+    options.sensor.depth_weight_k /= 2;
+    options.sensor.depth_noise /= 2;
+    options.motion.acceleration *= 2;
+    options.motion.speed *= 2;
+    for (auto& frame : sequence.frames) frame.depth = cv::Mat(2 * frame.depth);  // its own memory
+    for (auto& pose : sequence.truth) pose.T_world_camera.translation() *= 2;
+}
+
 /// RMSE of the positions, m, with no alignment: both begin at the same pose.
 inline double positionError(const TrackedRun& run, const Sequence& sequence) {
     double sum = 0;

@@ -15,9 +15,10 @@ namespace roevo {
 struct MapUpdate {
     int keyframe = 0;                         ///< the inserted one
     std::vector<std::pair<int, Pose>> poses;  ///< T_world_camera of all keyframes that were refined
-    std::vector<float> depth_ratio;           ///< of the inserted keyframe's points: refined / measured depth
-    std::vector<std::int32_t> source;         ///< tracker's point of each of them
-    int reused = 0;                           ///< old keyframes that took part
+    /// Of the inserted keyframe's points: refined / measured depth. Empty without mapping.refine_depth.
+    std::vector<float> depth_ratio;
+    std::vector<std::int32_t> source;  ///< tracker's point of each of them
+    int reused = 0;                    ///< old keyframes that took part
     RefinementResult refinement;
     std::string reason;  ///< in words, where something was left as it was
 };

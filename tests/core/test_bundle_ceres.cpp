@@ -1,0 +1,148 @@
+// Bundle adjustment against an independent solver.
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+
+#include "core/support/bundle_fixture.h"
+
+namespace roevo {
+namespace {
+
+using namespace testing;
+using BundleOracle = BundleAdjustment;
+
+/// One observation for Ceres: the pose is T_camera_world (angle-axis, translation).
+struct CeresObservation {
+    PinholeCamera camera;
+    Eigen::Vector2d measured, normal;
+    double across, along, depth,
+        slope;  // factors of the two residuals; measured depth, its change along the edge
+
+    template <class T>
+    bool operator()(const T* pose, const T* point, T* residual) const {
+        T q[3];
+        ceres::AngleAxisRotatePoint(pose, point, q);
+        for (int k = 0; k < 3; ++k) q[k] += pose[3 + k];
+        const T u = camera.fx * q[0] / q[2] + camera.cx, v = camera.fy * q[1] / q[2] + camera.cy;
+        residual[0] = across * (normal.x() * (u - measured.x()) + normal.y() * (v - measured.y()));
+        const T further = normal.x() * (v - measured.y()) - normal.y() * (u - measured.x());
+        residual[1] = along * (q[2] - depth - slope * further);
+        return true;
+    }
+};
+
+/// Keeps a point where it is along its edge: lines are compared, on which its place is free.
+struct CeresHold {
+    Eigen::Vector3d point, direction;
+
+    template <class T>
+    bool operator()(const T* at, T* residual) const {
+        residual[0] = T(0);
+        for (int k = 0; k < 3; ++k) residual[0] += 1e6 * direction[k] * (at[k] - point[k]);
+        return true;
+    }
+};
+
+/// Camera centres of the window by Ceres, from where the poses and points are now. No robust loss.
+std::vector<Eigen::Vector3d> solveWithCeres(const std::vector<WindowKeyframe>& window,
+                                            const FusedEdges& edges, const MappingOptions& mapping,
+                                            const SensorOptions& sensor, double scale) {
+    std::vector<std::array<double, 6>> poses(window.size());
+    std::vector<Eigen::Vector3d> points = edges.points;
+    ceres::Problem problem;
+    for (std::size_t s = 0; s < window.size(); ++s) {
+        const Pose T = window[s].T_world_camera.inverse();
+        const Eigen::AngleAxisd turn(T.linear());
+        for (int k = 0; k < 3; ++k) {
+            poses[s][static_cast<std::size_t>(k)] = turn.angle() * turn.axis()[k];
+            poses[s][static_cast<std::size_t>(k) + 3] = T.translation()[k];
+        }
+        problem.AddParameterBlock(poses[s].data(), 6);
+        if (window[s].fixed) problem.SetParameterBlockConstant(poses[s].data());
+    }
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const auto first = static_cast<std::size_t>(edges.observation_begin[p]);
+        const auto end = static_cast<std::size_t>(edges.observation_begin[p + 1]);
+        if (end - first < 2) continue;
+        const auto edge_end = std::upper_bound(edges.begin.begin(), edges.begin.end(), static_cast<int>(p));
+        const auto low = std::max(p, static_cast<std::size_t>(*(edge_end - 1)) + 1) - 1;
+        const auto high = std::min(p + 1, static_cast<std::size_t>(*edge_end) - 1);
+        const Eigen::Vector3d chord = edges.points[high] - edges.points[low];
+        problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CeresHold, 1, 3>(
+                                     new CeresHold{edges.points[p], chord.normalized()}),
+                                 nullptr, points[p].data());
+        for (std::size_t k = first; k < end; ++k) {
+            const auto slot = static_cast<std::size_t>(edges.observations[k].slot);
+            const auto i = static_cast<std::size_t>(edges.observations[k].point);
+            const MapKeyframe& keyframe = *window[slot].keyframe;
+            const double trust = std::sqrt(static_cast<double>(keyframe.weight[i]));
+            const double depth = keyframe.z[i];
+            // A millimetre is the least deviation of a depth
+            const double sigma = std::hypot(sensor.depth_noise * depth * depth, 1e-3);
+            problem.AddResidualBlock(
+                new ceres::AutoDiffCostFunction<CeresObservation, 2, 6, 3>(
+                    new CeresObservation{mappingCamera(),
+                                         {keyframe.image.x[i], keyframe.image.y[i]},
+                                         {keyframe.image.normal_x[i], keyframe.image.normal_y[i]},
+                                         trust / scale,
+                                         trust * std::sqrt(mapping.depth_weight) / sigma,
+                                         depth,
+                                         keyframe.slope[i]}),
+                nullptr, poses[slot].data(), points[p].data());
+        }
+    }
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::SPARSE_SCHUR;
+    options.max_num_iterations = 100;
+    options.function_tolerance = 1e-16;
+    options.gradient_tolerance = 1e-14;
+    options.parameter_tolerance = 1e-14;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    EXPECT_TRUE(summary.IsSolutionUsable()) << summary.FullReport();
+    std::vector<Eigen::Vector3d> centres;
+    for (const auto& pose : poses) {
+        const double back[3] = {-pose[0], -pose[1], -pose[2]}, t[3] = {-pose[3], -pose[4], -pose[5]};
+        Eigen::Vector3d centre;
+        ceres::AngleAxisRotatePoint(back, t, centre.data());
+        centres.push_back(centre);
+    }
+    return centres;
+}
+
+TEST_F(BundleOracle, AgreesWithCeresOnNoisyKeyframes) {
+    for (unsigned seed = 1; seed <= 2; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> normal;
+        SetUp();
+        for (auto& made : made_) {
+            MapKeyframe& keyframe = made.keyframe;
+            double bias = 0;
+            for (std::size_t i = 0; i < keyframe.size(); ++i) {
+                // Errors of an edge go together. So small that all weights of the t-distribution are alike
+                if (i == 0 || keyframe.image.edge_of[i] != keyframe.image.edge_of[i - 1])
+                    bias = 0.01 * normal(random);
+                const double error = bias + 0.003 * normal(random);
+                keyframe.image.x[i] += static_cast<float>(error) * keyframe.image.normal_x[i];
+                keyframe.image.y[i] += static_cast<float>(error) * keyframe.image.normal_y[i];
+                keyframe.z[i] += static_cast<float>(2e-4 * normal(random));
+                keyframe.weight[i] = static_cast<float>(uniform(random, 0.2, 1));
+            }
+        }
+        // Associations are those of the true poses: false ones make residuals that weigh differently
+        disturb(window_, random, kFewMillimetres, kThirdOfADegree);
+        mapping_.chi2 = mapping_.depth_chi2 = 1e9;
+        const double scale = refineToTheEnd(600);
+        const auto centres = solveWithCeres(truth_, edges_, mapping_, sensor_, scale);
+        double moved = 0, apart = 0;
+        for (std::size_t s = 1; s < window_.size(); ++s) {
+            const Eigen::Vector3d found = window_[s].T_world_camera.translation();
+            moved = std::max(moved, (centres[s] - truth_[s].T_world_camera.translation()).norm());
+            apart = std::max(apart, (centres[s] - found).norm());
+        }
+        EXPECT_GT(moved, 2e-5) << "the noise must matter for the comparison to mean something";
+        EXPECT_LT(apart, 0.01 * moved) << "weights differ by up to 1 %";
+    }
+}
+
+}  // namespace
+}  // namespace roevo
