@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <opencv2/core/utility.hpp>
 
+#include "recording/option_arguments.h"
 #include "roevo_mrpt/config_file.h"
 #include "run.h"
 #include "support/atomic_file.h"
@@ -23,25 +24,6 @@ constexpr char kFooter[] =
     "map.3Dscene, map.ply, map_semi_dense.ply, summary.json, config_used.ini; trajectory_robot.txt when a "
     "rawlog\n"
     "says where the camera is mounted on the robot.";
-
-// The options in force: defaults, then the config file, then --set, then --mode.
-OdometryOptions collectOptions(const std::string& config_file, const std::vector<std::string>& settings,
-                               const std::string& mode) {
-    OdometryOptions options;
-    if (!config_file.empty()) loadConfigFile(config_file, options);
-    for (const std::string& setting : settings) {
-        const std::size_t equals = setting.find('=');
-        if (equals == std::string::npos)
-            throw UsageError("--set: '" + setting + "' is not section.key=value");
-        const std::string fault = setOption(options, setting.substr(0, equals), setting.substr(equals + 1));
-        if (!fault.empty()) throw UsageError("--set: " + fault);
-    }
-    if (!mode.empty())
-        if (const std::string fault = setOption(options, "odometry.mode", mode); !fault.empty())
-            throw UsageError("--mode: " + fault);
-    if (const std::string fault = checkOptions(options); !fault.empty()) throw UsageError(fault);
-    return options;
-}
 
 void writeDefaultConfig(const std::string& path) {
     const std::string text = toConfigText(OdometryOptions());

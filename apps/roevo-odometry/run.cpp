@@ -8,35 +8,18 @@
 #include <thread>
 
 #include "evaluation/trajectory_io.h"
-#include "frame_source.h"
+#include "recording/frame_source.h"
 #include "roevo_mrpt/config_file.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "support/atomic_file.h"
+#include "support/output_folder.h"
 #include "support/progress.h"
 
 namespace roevo {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Fails before the work is done rather than after it.
-void prepareOutputDir(const std::string& dir) {
-    std::error_code error;
-    fs::create_directories(dir, error);
-    if (error || !fs::is_directory(dir))
-        throw std::runtime_error("cannot create the output folder " + dir + ": " +
-                                 (error ? error.message() : "a file of that name is in the way"));
-    AtomicFile probe((fs::path(dir) / "probe").string());
-    probe.stream();
-}
-
-void skipFrames(FrameSource& source, std::size_t count, const std::string& input) {
-    for (std::size_t i = 0; i < count; ++i)
-        if (!source.skip())
-            throw std::runtime_error("--skip " + std::to_string(count) + ": " + input + " has only " +
-                                     std::to_string(i) + " frames");
-}
 
 FrameResult rejected(const SourceFrame& frame) {
     FrameResult result;
@@ -110,12 +93,6 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
     progress.finish();
 }
 
-// One that was asked for must be good; of one that was only found, GroundTruth::note tells what is wrong.
-GroundTruth groundTruthFor(const RunSettings& settings, const FrameSource& source) {
-    if (settings.ground_truth.empty()) return source.groundTruth();
-    return {readTumTrajectory(settings.ground_truth), settings.ground_truth, {}, true};
-}
-
 void evaluateRun(RunReport& report, const GroundTruth& ground_truth) {
     if (ground_truth.poses.empty()) {
         report.evaluation_fault = ground_truth.note;
@@ -166,7 +143,7 @@ void writeMap(const fs::path& dir, const RunReport& report, const Odometry& odom
 RunReport runOdometry(const RunSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
     auto source = prefetch(openSource(settings.input, settings.sensor_label));
-    prepareOutputDir(settings.output_dir);
+    prepareOutputFolder(settings.output_dir);
 
     RunReport report;
     report.input = settings.input;
@@ -174,7 +151,7 @@ RunReport runOdometry(const RunSettings& settings) {
     report.camera = source->camera();
     report.camera_source = source->cameraSource();
     report.mode = settings.options.mode;
-    const GroundTruth ground_truth = groundTruthFor(settings, *source);
+    const GroundTruth ground_truth = groundTruthFor(settings.ground_truth, *source);
     report.ground_truth = ground_truth.file;
     if (!settings.quiet) {
         std::printf("input       %s (%s), %d x %d, intrinsics from %s\n", report.input.c_str(),

@@ -52,6 +52,15 @@ std::unique_ptr<FrameSource> openSource(const std::string& input, const std::str
 /// may use one processor only.
 std::unique_ptr<FrameSource> prefetch(std::unique_ptr<FrameSource> source);
 
+/// Leaves out the first frames. @throws std::runtime_error when there are fewer
+/// @param input  name of the source for the message
+void skipFrames(FrameSource& source, std::size_t count, const std::string& input);
+
+/// The ground truth in `path`, or what is found beside the source when `path` is empty: one that was asked
+/// for must be good; of one that was only found, GroundTruth::note tells what is wrong.
+/// @throws std::runtime_error in one line
+GroundTruth groundTruthFor(const std::string& path, const FrameSource& source);
+
 /// Empty when the depth of a frame is of a plausible scale (or there is none), else one line that says by
 /// which factor it is likely to be wrong.
 std::string depthScaleFault(const RgbdFrame& frame);

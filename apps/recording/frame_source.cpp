@@ -12,6 +12,7 @@
 
 #include "datasets/dataset_reader.h"
 #include "datasets/sensor_files.h"
+#include "evaluation/trajectory_io.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_mrpt/time_conversions.h"
@@ -140,6 +141,18 @@ std::unique_ptr<FrameSource> openSource(const std::string& input, const std::str
     if (!sensor_label.empty())
         throw UsageError("--sensor-label is for rawlogs, and " + input + " is a folder");
     return std::make_unique<FolderSource>(input);
+}
+
+void skipFrames(FrameSource& source, std::size_t count, const std::string& input) {
+    for (std::size_t i = 0; i < count; ++i)
+        if (!source.skip())
+            throw std::runtime_error("--skip " + std::to_string(count) + ": " + input + " has only " +
+                                     std::to_string(i) + " frames");
+}
+
+GroundTruth groundTruthFor(const std::string& path, const FrameSource& source) {
+    if (path.empty()) return source.groundTruth();
+    return {readTumTrajectory(path), path, {}, true};
 }
 
 std::string depthScaleFault(const RgbdFrame& frame) {

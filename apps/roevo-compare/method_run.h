@@ -1,0 +1,44 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "roevo/types.h"
+
+namespace roevo {
+
+/// Times of one stage over the frames, ms.
+struct StageStatistics {
+    std::string name;
+    double median = 0, p95 = 0, mean = 0;
+};
+
+/// One method's run over one recording, as it is kept in a folder: run.json, trajectory.txt (TUM), frames.csv
+/// (timestamp,tracked,reason,ms_decode,ms_<stage>…,ms_total) and, for methods with a map, map.3Dscene. The
+/// method ran in a process of its own, on one core, so that its memory and its crashes are its own.
+struct MethodRun {
+    std::string method, label, note;
+    std::string input;    ///< as given on the command line
+    std::string skipped;  ///< why the method was not run at all (a library lacks it); empty when it was
+    std::string failure;  ///< why there is no (whole) result: what it threw, the signal that ended it, a NaN
+    std::size_t frames = 0, tracked = 0, rejected = 0;  ///< rejected: unreadable, no method can use them
+    std::vector<StageStatistics> stages;                ///< of tracked frames
+    StageStatistics total;                              ///< of tracked frames, decoding apart
+    StageStatistics decode;
+    double cpu_ms_per_frame = 0;  ///< processor time of all threads by frame, decoding apart
+    std::string background;       ///< name of the work beside the frames, e.g. "mapping"; may be empty
+    double background_ms = 0;     ///< mean of one piece of it
+    double memory_peak_mb = 0;    ///< of the process
+    std::vector<StampedPose> trajectory;
+    std::string scene;  ///< file name of the 3-D scene in the folder, or empty
+
+    bool ok() const { return skipped.empty() && failure.empty(); }
+};
+
+/// Writes all but map.3Dscene and frames.csv, run.json last: a folder with run.json is whole.
+/// @throws std::runtime_error
+void writeMethodRun(const std::string& folder, const MethodRun& run);
+
+/// @throws std::runtime_error in one line when it is not there or not whole
+MethodRun readMethodRun(const std::string& folder);
+
+}  // namespace roevo
