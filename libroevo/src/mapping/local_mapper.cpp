@@ -38,6 +38,32 @@ std::vector<const MapKeyframe*> LocalMapper::recentOf(int id) const {
     return recent;
 }
 
+void LocalMapper::hold(int id) {
+    MapKeyframe& keyframe = keyframes_.at(id);
+    if (keyframe.size() > 0) return;
+    if (const auto packed = packed_.find(id); packed != packed_.end())
+        packed->second.unpackInto(keyframe, camera_, options_.sensor);
+}
+
+void LocalMapper::leaveWindow(MapKeyframe& newest) {
+    compact(newest);
+    const std::vector<const MapKeyframe*> held = recentOf(newest.id + 1);
+    for (auto& [id, keyframe] : keyframes_) {
+        if (keyframe.size() == 0 || std::find(held.begin(), held.end(), &keyframe) != held.end()) continue;
+        // What was unpacked has not changed since
+        if (packed_.find(id) == packed_.end()) packed_.emplace(id, PackedKeyframe(keyframe));
+        dropPoints(keyframe);
+    }
+}
+
+std::map<int, MapKeyframe> LocalMapper::unpacked() const {
+    std::map<int, MapKeyframe> all = keyframes_;
+    for (auto& [id, keyframe] : all)
+        if (const auto packed = packed_.find(id); keyframe.size() == 0 && packed != packed_.end())
+            packed->second.unpackInto(keyframe, camera_, options_.sensor);
+    return all;
+}
+
 std::vector<const MapKeyframe*> LocalMapper::nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const {
     std::vector<std::pair<double, const MapKeyframe*>> found;
     const auto begin = keyframes_.lower_bound(track_begin_);
@@ -131,6 +157,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     std::vector<const MapKeyframe*> reused;
     if (options_.mapping.reuse_keyframes) {
         reused = nearbyOf(keyframe, recent.size());
+        for (const MapKeyframe* old : reused) hold(old->id);
         graph_.insert(keyframe, reused, camera_, options_.fine.final_radius);
     }
 
@@ -140,7 +167,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     buildWindow(id, reused);
     addPriors();
     if (window_.size() < 2) {
-        compact(keyframe);
+        leaveWindow(keyframe);
         return update;
     }
     std::vector<const MapKeyframe*> members;
@@ -165,7 +192,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     }
     keepVerdicts();
     if (options_.mapping.refine_depth) describeNewest(update);
-    compact(keyframe);
+    leaveWindow(keyframe);
     return update;
 }
 
@@ -191,7 +218,8 @@ EdgeVerdict LocalMapper::keptVerdict(const std::vector<WindowKeyframe>& window, 
 EdgeMap LocalMapper::fusedMap() const {
     std::vector<WindowKeyframe> window;
     std::vector<const MapKeyframe*> members;
-    for (const auto& [id, keyframe] : keyframes_) {
+    const std::map<int, MapKeyframe> all = unpacked();
+    for (const auto& [id, keyframe] : all) {
         members.push_back(&keyframe);
         window.push_back({&keyframe, keyframe.T_world_camera, true});
     }
@@ -278,7 +306,8 @@ void LocalMapper::keepVerdicts() {
 
 EdgeMap LocalMapper::keyframeEdges() const {
     std::vector<const MapKeyframe*> members;
-    for (const auto& [id, keyframe] : keyframes_) members.push_back(&keyframe);
+    const std::map<int, MapKeyframe> all = unpacked();
+    for (const auto& [id, keyframe] : all) members.push_back(&keyframe);
     const auto clusters = graph_.clusters(members);
     EdgeMap map;
     std::vector<Eigen::Vector3d> points;

@@ -11,7 +11,7 @@ namespace {
 constexpr int kSlopeSpan = 4;         ///< points to each side: depth is noisy
 constexpr float kLeastSpread = 1.0f;  ///< px^2 times points^2; less and a slope cannot be told
 
-/// Keyframes are kept for ever: arrays that grow by doubling would waste half of it.
+/// Arrays that grow by doubling would waste half of their memory.
 void reserve(MapKeyframe& keyframe, std::size_t points) {
     OrganizedEdges& image = keyframe.image;
     for (auto* array :
@@ -40,14 +40,14 @@ const char* toString(EdgeVerdict verdict) {
     return "unknown";
 }
 
-void computeSlopes(MapKeyframe& keyframe, int span) {
+void computeSlopes(MapKeyframe& keyframe) {
     const OrganizedEdges& image = keyframe.image;
     keyframe.slope.assign(keyframe.size(), 0);
     for (std::size_t e = 0; e + 1 < image.begin.size(); ++e) {
         for (int i = image.begin[e]; i < image.begin[e + 1]; ++i) {
             const auto at = static_cast<std::size_t>(i);
-            const int first = std::max(image.begin[e], i - span),
-                      last = std::min(image.begin[e + 1] - 1, i + span);
+            const int first = std::max(image.begin[e], i - kSlopeSpan),
+                      last = std::min(image.begin[e + 1] - 1, i + kSlopeSpan);
             LineFit<float> line;
             for (int j = first; j <= last; ++j) {
                 const auto other = static_cast<std::size_t>(j);
@@ -101,7 +101,7 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
         }
         out.image.finishEdge();
     }
-    computeSlopes(out, kSlopeSpan);
+    computeSlopes(out);
     out.found.assign(static_cast<std::size_t>(out.image.numEdges()), -1);
     const std::size_t padded = kernels::paddedSize(out.size());
     out.x.resize(padded, 0);

@@ -134,7 +134,7 @@ inline TestKeyframe makeKeyframe(int id, const Pose& pose, const std::vector<Cur
         made.curve_of_edge.push_back(sighting.curve);
     }
     computeNormals(out.image, kNormalSpan);
-    computeSlopes(out, kNormalSpan);
+    computeSlopes(out);
     out.found.assign(made.curve_of_edge.size(), -1);
     const std::size_t padded = kernels::paddedSize(out.size());
     out.x.resize(padded, 0);

@@ -7,6 +7,7 @@
 #include "roevo/mapping/bundle_adjustment.h"
 #include "roevo/mapping/covisibility.h"
 #include "roevo/mapping/edge_fusion.h"
+#include "roevo/mapping/packed_keyframe.h"
 #include "roevo/mapping/pseudo_edges.h"
 
 namespace roevo {
@@ -34,6 +35,7 @@ class LocalMapper {
     /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
     void setFound(int keyframe, std::vector<float> shares);
 
+    /// All of them at their present poses; points only of those in the window.
     const std::map<int, MapKeyframe>& keyframes() const { return keyframes_; }
 
     /// All keyframes' edges fused at the present poses.
@@ -43,6 +45,9 @@ class LocalMapper {
 
   private:
     std::vector<const MapKeyframe*> recentOf(int id) const;
+    void hold(int id);
+    void leaveWindow(MapKeyframe& newest);
+    std::map<int, MapKeyframe> unpacked() const;
     std::vector<const MapKeyframe*> nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const;
     void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
     bool acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const;
@@ -59,7 +64,8 @@ class LocalMapper {
     BundleAdjuster adjuster_;
     PseudoEdgeJudge judge_;
     std::map<int, MapKeyframe> keyframes_;
-    int track_begin_ = 0;                               ///< first keyframe of the present track
+    std::map<int, PackedKeyframe> packed_;  ///< the points of those that have left the window once
+    int track_begin_ = 0;                   ///< first keyframe of the present track
     std::map<int, std::vector<EdgeVerdict>> verdicts_;  ///< of each keyframe's edges
     std::vector<WindowKeyframe> window_;
     std::vector<RelativePrior> priors_;

@@ -36,11 +36,10 @@ struct MapKeyframe {
     }
 };
 
-/// Fills slope: a line through the depths of the points up to `span` places before and after.
-void computeSlopes(MapKeyframe& keyframe, int span);
+/// Fills slope: a line through the depths of the points up to 4 places before and after.
+void computeSlopes(MapKeyframe& keyframe);
 
 /// Drops what only a new keyframe needs: image gradients and the points' indices in the tracker's keyframe.
-/// Maps keep keyframes for ever.
 void compact(MapKeyframe& keyframe);
 
 /// @param colours  one per point of the keyframe's edges

@@ -1,0 +1,77 @@
+#include "roevo/mapping/packed_keyframe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "roevo/tracking/edge_points.h"
+#include "roevo/tracking/kernels.h"
+
+namespace roevo {
+
+QuantizedArray::QuantizedArray(const std::vector<float>& values, std::size_t count) {
+    constexpr float kMostSteps = std::numeric_limits<std::uint16_t>::max();
+    if (count == 0) return;
+    const auto end = values.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto [smallest, largest] = std::minmax_element(values.begin(), end);
+    first_ = *smallest;
+    step_ = (*largest - *smallest) / kMostSteps;
+    steps_.resize(count, 0);
+    if (step_ <= 0) return;
+    for (std::size_t i = 0; i < count; ++i)
+        steps_[i] =
+            static_cast<std::uint16_t>(std::min(std::round((values[i] - first_) / step_), kMostSteps));
+}
+
+PackedKeyframe::PackedKeyframe(const MapKeyframe& keyframe)
+    : u_(keyframe.image.x, keyframe.size()),
+      v_(keyframe.image.y, keyframe.size()),
+      colours_(keyframe.colours),
+      begin_(keyframe.image.begin) {
+    std::vector<float> values(keyframe.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1 / keyframe.z[i];
+    inverse_depth_ = QuantizedArray(values, values.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = std::atan2(keyframe.image.normal_y[i], keyframe.image.normal_x[i]);
+    normal_angle_ = QuantizedArray(values, values.size());
+    colours_.shrink_to_fit();
+    begin_.shrink_to_fit();
+}
+
+void PackedKeyframe::unpackInto(MapKeyframe& keyframe, const PinholeCamera& camera,
+                                const SensorOptions& sensor) const {
+    const std::size_t size = colours_.size();
+    OrganizedEdges& image = keyframe.image;
+    for (auto* array : {&image.x, &image.y, &image.normal_x, &image.normal_y, &keyframe.weight})
+        array->resize(size);
+    for (auto* array : {&keyframe.x, &keyframe.y, &keyframe.z}) array->assign(kernels::paddedSize(size), 0);
+    std::fill(keyframe.z.begin(), keyframe.z.end(), 1.0f);
+    image.edge_of.resize(size);
+    for (std::size_t i = 0; i < size; ++i) {
+        image.x[i] = u_.at(i);
+        image.y[i] = v_.at(i);
+        const float angle = normal_angle_.at(i), z = 1 / inverse_depth_.at(i);
+        image.normal_x[i] = std::cos(angle);
+        image.normal_y[i] = std::sin(angle);
+        keyframe.x[i] = (image.x[i] - static_cast<float>(camera.cx)) / static_cast<float>(camera.fx) * z;
+        keyframe.y[i] = (image.y[i] - static_cast<float>(camera.cy)) / static_cast<float>(camera.fy) * z;
+        keyframe.z[i] = z;
+        keyframe.weight[i] = static_cast<float>(depthWeight(static_cast<double>(z), sensor));
+    }
+    image.begin = begin_;
+    for (std::size_t e = 0; e + 1 < begin_.size(); ++e)
+        std::fill(image.edge_of.begin() + begin_[e], image.edge_of.begin() + begin_[e + 1],
+                  static_cast<std::int32_t>(e));
+    keyframe.colours = colours_;
+    computeSlopes(keyframe);
+}
+
+void dropPoints(MapKeyframe& keyframe) {
+    keyframe.image = OrganizedEdges();
+    for (auto* array : {&keyframe.x, &keyframe.y, &keyframe.z, &keyframe.weight, &keyframe.slope})
+        std::vector<float>().swap(*array);
+    std::vector<std::int32_t>().swap(keyframe.source);
+    std::vector<Rgb>().swap(keyframe.colours);
+}
+
+}  // namespace roevo
