@@ -118,6 +118,30 @@ TEST_F(Mapper, AKeyframeThatJumpsTooFarIsLeftWithAReason) {
     }
 }
 
+TEST_F(Mapper, AKeyframeThatContradictsTrackingIsLeftWithAReason) {
+    // 14 mm off what tracking said: within four of its sigmas a correction, beyond them something moved
+    Pose error = Pose::Identity();
+    error.translation().z() = 0.014;
+    for (const double sigma : {0.01, 0.001}) {
+        LocalMapper mapper(mappingCamera(), options_);
+        for (int k = 0; k < 4; ++k) mapper.insert(keyframeAt(k, k));
+        MapKeyframe keyframe = tracked(4, 4, 3, error);
+        keyframe.parent_information = Matrix6d::Identity() / (sigma * sigma);
+        const Pose T_tracked = mapper.keyframes().at(3).T_world_camera * keyframe.T_parent_camera;
+        const MapUpdate update = mapper.insert(keyframe);
+        if (sigma > 0.005) {
+            EXPECT_EQ(update.reason, "");
+            EXPECT_LT(errorOf(mapper, 4, 4), 1e-3);
+            continue;
+        }
+        EXPECT_NE(update.reason.find("keyframe 4 left as it was: bundle adjustment contradicts tracking by"),
+                  std::string::npos)
+            << update.reason;
+        EXPECT_EQ(mapper.keyframes().at(4).T_world_camera.matrix(), T_tracked.matrix());
+        for (const auto& [id, pose] : update.poses) EXPECT_NE(id, 4);
+    }
+}
+
 TEST_F(Mapper, ComingBackFindsTheOldKeyframes) {
     options_.mapping.window = 4;
     double with = 0, without = 0;

@@ -16,6 +16,10 @@ constexpr double kReusedScale = 0.5;  ///< px of spread that drift may cause at 
 constexpr double kNearDistance = 0.4, kNearDegrees = 30, kAboutAsNear = 0.5;
 /// A keyframe that bundle adjustment moves by more (share of its depth; degrees) went astray.
 constexpr double kLargestJump = 0.1, kLargestTurn = 5;
+/// So did one that is so far from where it was tracked, relative to its parent: what moves in the scene moves
+/// further from keyframe to keyframe than from frame to frame, and misleads the map more than it does
+/// tracking.
+constexpr double kMostSigmas = 4;
 
 }  // namespace
 
@@ -103,6 +107,22 @@ void LocalMapper::buildWindow(int newest, const std::vector<const MapKeyframe*>&
     }
 }
 
+double LocalMapper::sigmasFromTracked(const WindowKeyframe& view) const {
+    const MapKeyframe& keyframe = *view.keyframe;
+    const auto kept = keyframes_.find(keyframe.parent);
+    if (kept == keyframes_.end() || !(keyframe.parent_information.diagonal().array() > 0).all()) return 0;
+    const auto parent = std::find_if(window_.begin(), window_.end(), [&](const WindowKeyframe& other) {
+        return other.keyframe->id == keyframe.parent;
+    });
+    const Pose& T_world_parent =
+        parent == window_.end() ? kept->second.T_world_camera : parent->T_world_camera;
+    const Pose change = (T_world_parent * keyframe.T_parent_camera).inverse() * view.T_world_camera;
+    const Matrix6d covariance = keyframe.parent_information.inverse();
+    const double sigma_translation = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+    const double sigma_rotation = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+    return std::max(change.translation().norm() / sigma_translation, rotationAngle(change) / sigma_rotation);
+}
+
 bool LocalMapper::acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const {
     const MapKeyframe& keyframe = *view.keyframe;
     const Pose jump = keyframe.T_world_camera.inverse() * view.T_world_camera;
@@ -117,6 +137,12 @@ bool LocalMapper::acceptable(const WindowKeyframe& view, int inliers, std::strin
         reason = "keyframe " + std::to_string(keyframe.id) +
                  " left as it was: bundle adjustment moved it by " +
                  std::to_string(std::lround(1000 * jump.translation().norm())) + " mm";
+        return false;
+    }
+    if (const double sigmas = sigmasFromTracked(view); sigmas > kMostSigmas) {
+        reason = "keyframe " + std::to_string(keyframe.id) +
+                 " left as it was: bundle adjustment contradicts tracking by " +
+                 std::to_string(std::lround(sigmas)) + " sigmas";
         return false;
     }
     return true;

@@ -1,6 +1,17 @@
 #include "pose_history.h"
 
+#include "roevo/tracking/se3.h"
+
 namespace roevo {
+namespace {
+
+constexpr double kTypicalDepth = 2;  // m; at this depth a turn by 1 rad changes a view like so many metres
+
+double changeOfView(const Pose& motion) {
+    return motion.translation().norm() + kTypicalDepth * rotationAngle(motion);
+}
+
+}  // namespace
 
 void PoseHistory::addKeyframe(const KeyframeInfo& keyframe, int parent) {
     Link link;
@@ -29,13 +40,21 @@ void PoseHistory::apply(const MapUpdate& update) {
     }
 }
 
+Pose PoseHistory::finalPose(const Link& link) const {
+    if (link.keyframe < 0) return link.T_parent_camera;
+    const Pose from_parent = keyframePose(link.keyframe) * link.T_parent_camera;
+    const auto next = static_cast<std::size_t>(link.keyframe) + 1;
+    if (next >= links_.size() || links_[next].keyframe != link.keyframe) return from_parent;
+    const Pose T_next_camera = links_[next].T_parent_camera.inverse() * link.T_parent_camera;
+    const Pose from_next = keyframes_[next].T_world_camera * T_next_camera;
+    const double since = changeOfView(link.T_parent_camera), left = changeOfView(T_next_camera);
+    if (since + left <= 0) return from_parent;
+    return interpolate(from_parent, from_next, since / (since + left));
+}
+
 std::vector<StampedPose> PoseHistory::frames() const {
     std::vector<StampedPose> poses;
-    for (const Frame& frame : frames_) {
-        const Pose T_world_parent =
-            frame.link.keyframe < 0 ? Pose::Identity() : keyframePose(frame.link.keyframe);
-        poses.push_back({frame.timestamp, T_world_parent * frame.link.T_parent_camera});
-    }
+    for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame.link)});
     return poses;
 }
 

@@ -23,6 +23,9 @@ class PoseHistory {
     int parentOf(int id) const { return links_[static_cast<std::size_t>(id)].keyframe; }
     /// T_parent_keyframe, or T_world_keyframe where there is no parent.
     Pose parentToKeyframe(int id) const { return links_[static_cast<std::size_t>(id)].T_parent_camera; }
+    /// Poses of the frames. What the map found to be wrong with the tracked motion to the next keyframe was
+    /// wrong with the motions of the frames between in part: tracking errs the more the view differs from the
+    /// keyframe's.
     std::vector<StampedPose> frames() const;
 
   private:
@@ -34,6 +37,8 @@ class PoseHistory {
         double timestamp = 0;
         Link link;
     };
+    Pose finalPose(const Link& link) const;
+
     std::vector<KeyframeInfo> keyframes_;
     std::vector<Link> links_;  ///< of the keyframes
     std::vector<Frame> frames_;

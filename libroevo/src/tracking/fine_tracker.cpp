@@ -192,6 +192,21 @@ void FineTracker::countHits(Keyframe& keyframe, const PinholeCamera& camera) con
     }
 }
 
+Pose FineTracker::betterStart(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_coarse,
+                              const Pose& T_likely, const RollingShutter& shutter) {
+    const Pose between = T_coarse.inverse() * T_likely;
+    const double depth = std::max(keyframe.median_depth, 0.1);
+    const double apart = frame.camera->fx * (rotationAngle(between) + between.translation().norm() / depth);
+    if (apart < options_.final_radius) return T_coarse;
+    std::size_t found[2] = {0, 0};
+    for (int i = 0; i < 2; ++i) {
+        const Pose& pose = i == 0 ? T_coarse : T_likely;
+        associate(keyframe, frame, pose, shutter.motion(pose), options_.final_radius);
+        found[i] = matches_.size();
+    }
+    return found[1] > found[0] ? T_likely : T_coarse;
+}
+
 FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
                               const PosePrior& prior, const RollingShutter& shutter,
                               const Brightness& brightness) {
@@ -201,7 +216,8 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
     FineResult result;
     result.T_current_keyframe = T_start;
     current_depth_.assign(current.size(), kUnknown);
-    Pose pose = T_start;
+    // Moving shadows and blur lead photometry astray before they do edges
+    Pose pose = betterStart(keyframe, frame, T_start, prior.mean, shutter);
     Brightness gain = brightness;
     PoseSystem system;
     const double narrowing = std::clamp(options_.max_iterations - 1.0, 1.0, 4.0);

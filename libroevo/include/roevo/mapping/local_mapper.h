@@ -50,6 +50,7 @@ class LocalMapper {
     std::map<int, MapKeyframe> unpacked() const;
     std::vector<const MapKeyframe*> nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const;
     void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
+    double sigmasFromTracked(const WindowKeyframe& view) const;
     bool acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const;
     void addPriors();
     void keepVerdicts();

@@ -1,0 +1,82 @@
+// Fine tracking on a simulated pair of frames: which start it takes, and where it ends.
+#include <gtest/gtest.h>
+
+#include "core/support/simulated.h"
+#include "roevo/edges/edge_extractor.h"
+#include "roevo/tracking/fine_tracker.h"
+#include "roevo/tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+using namespace testing;
+
+/// Frame 0 of a small room as the keyframe, and frame 4 to be tracked against it.
+class FineTracking : public ::testing::Test {
+  protected:
+    static void SetUpTestSuite() { sequence_ = new Sequence(simulate(smallRoom(), 5)); }
+    static void TearDownTestSuite() { delete sequence_; }
+
+    void SetUp() override {
+        const auto lift = [&](const RgbdFrame& frame) {
+            OrganizedEdges edges;
+            EdgeExtractor(options_.edges).extract(frame.grey, edges);
+            return edges;
+        };
+        keyframe_.edges = liftEdges(lift(sequence_->frames[0]), sequence_->frames[0].depth, sequence_->camera,
+                                    RowMotion(), options_.edges, options_.sensor);
+        keyframe_.median_depth = static_cast<double>(keyframe_.edges.medianDepth());
+        edges_ = lift(sequence_->frames[4]);
+        grid_.build(edges_, sequence_->camera.width, sequence_->camera.height);
+        pyramid_.build(sequence_->frames[4].grey, 1);
+        truth_ = sequence_->truth[4].T_world_camera.inverse() * sequence_->truth[0].T_world_camera;
+    }
+    FineResult trackFrom(const Pose& start, const Pose& likely) {
+        FineTracker tracker(options_.fine, options_.edges, options_.sensor);
+        const FineFrame frame{
+            &edges_, &grid_, &pyramid_, &sequence_->frames[4].depth, &sequence_->camera, &sequence_->camera};
+        return tracker.track(keyframe_, frame, start, {likely, 1, 1}, RollingShutter(), Brightness());
+    }
+    double errorOf(const FineResult& result) const {
+        return (truth_.inverse() * result.T_current_keyframe).translation().norm();
+    }
+    static Pose turned(double degrees) {
+        Vector6d turn = Vector6d::Zero();
+        turn[4] = degrees * kDegree;
+        return poseIncrement(turn);
+    }
+
+    static Sequence* sequence_;
+    OdometryOptions options_;
+    Keyframe keyframe_;
+    OrganizedEdges edges_;
+    EdgeGrid grid_;
+    ImagePyramid pyramid_;
+    Pose truth_ = Pose::Identity();
+};
+Sequence* FineTracking::sequence_ = nullptr;
+
+TEST_F(FineTracking, FindsTheMotionFromNearby) {
+    ASSERT_GT(truth_.translation().norm(), 0.01);
+    const FineResult result = trackFrom(turned(0.3) * truth_, turned(0.3) * truth_);
+    ASSERT_TRUE(result.converged);
+    EXPECT_LT(errorOf(result), 0.002);
+}
+
+TEST_F(FineTracking, AGoodGuessIsTakenWhenCoarseTrackingWentAstray) {
+    const Pose astray = turned(8) * truth_;
+    const FineResult lost = trackFrom(astray, astray);
+    ASSERT_TRUE(!lost.converged || errorOf(lost) > 0.02) << "else the case tests nothing";
+    const FineResult result = trackFrom(astray, turned(0.3) * truth_);
+    ASSERT_TRUE(result.converged);
+    EXPECT_LT(errorOf(result), 0.002);
+}
+
+TEST_F(FineTracking, ABadGuessDoesNotReplaceAGoodStart) {
+    const FineResult result = trackFrom(turned(0.3) * truth_, turned(8) * truth_);
+    ASSERT_TRUE(result.converged);
+    EXPECT_LT(errorOf(result), 0.002);
+}
+
+}  // namespace
+}  // namespace roevo
