@@ -50,6 +50,8 @@ RawlogWriterOptions writerOptions(const DatasetReader& dataset, const ConvertOpt
     out.range_units = dataset.depthUnit();
     out.externalize_depth = options.externalize_depth;
     out.jpeg_quality = options.jpeg_quality;
+    if (const auto& registration = dataset.description().registration)
+        out.depth_camera = {registration->depth_camera, registration->T_colour_depth.inverse()};
     return out;
 }
 

@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 
 #include <cmath>
 #include <opencv2/core.hpp>
 
 #include "datasets/dataset_reader.h"
 #include "datasets/seven_scenes.h"
+#include "roevo_mrpt/image_conversions.h"
+#include "roevo_mrpt/observation_converter.h"
+#include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_simulator/simulator.h"
 #include "tools/small_dataset.h"
 
@@ -53,6 +57,40 @@ TEST(SevenScenes, SimulatedSequenceIsRegisteredToColour) {
         EXPECT_EQ(pose.timestamp, dataset.entry(static_cast<std::size_t>(i)).timestamp);
     }
     EXPECT_EQ(dataset.entry(0).timestamp, 1.0);
+}
+
+TEST(SevenScenes, ARawlogHoldsTheDatasetsOwnDepth) {
+    const test::TemporaryFolder parent;
+    const std::string folder = parent / "seq-01", rawlog = parent / "o.rawlog";
+    const auto made =
+        test::runProgram("rawlog-simulate", {"--scene", "livingroom", "--frames", "2", "--noise", "kinect",
+                                             "--layout", "7scenes", "--output", folder});
+    ASSERT_EQ(made.exit_code, 0) << made.all();
+    const auto there = test::runProgram("rgbd2rawlog", {"--input", folder, "--output", rawlog, "--verify"});
+    ASSERT_EQ(there.exit_code, 0) << there.all();
+    EXPECT_CONTAINS(there.out, "verified: 2 frames, 614400 depth values");
+
+    const DatasetReader dataset = openDataset(folder);
+    RawlogReader reader(rawlog);
+    for (std::size_t i = 0; i < 2; i++) {
+        const auto scan = reader.next();
+        ASSERT_TRUE(scan);
+        EXPECT_EQ(depthCameraOf(*scan), sevenScenesRegistration().depth_camera);
+        EXPECT_EQ(colourCameraOf(*scan), sevenScenesColourCamera());
+        cv::Mat file = cv::imread(dataset.entry(i).depth, cv::IMREAD_UNCHANGED);
+        ASSERT_GT(cv::countNonZero(file == 65535), 0) << "or there is no unknown depth to be told";
+        file.setTo(0, file == 65535);
+        const cv::Mat held(480, 640, CV_16UC1, &scan->rangeImage(0, 0));
+        EXPECT_EQ(cv::norm(held, file, cv::NORM_INF), 0);
+
+        const cv::Mat a = toRgbdFrame(*scan).depth, b = dataset.readFrame(i).depth;
+        EXPECT_EQ(cv::norm(a, b, cv::NORM_INF), 0) << "registered alike, to the last bit";
+        cv::Mat moved = depthToMetres(held, dataset.depthUnit());
+        EXPECT_GT(cv::norm(a, moved, cv::NORM_INF), 0.1) << "and registered at all";
+    }
+    const auto back = test::runProgram("rawlog2rgbd", {"--input", rawlog, "--output", parent / "back"});
+    ASSERT_EQ(back.exit_code, 0) << back.all();
+    EXPECT_CONTAINS(back.out, "2 frames not as in the rawlog: depth registered to the colour camera");
 }
 
 TEST(SevenScenes, TheInvalidValueIsUnknownDepth) {

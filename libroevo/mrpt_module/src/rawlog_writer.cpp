@@ -103,8 +103,7 @@ struct RawlogWriter::Impl {
         scan.cameraParamsIntensity = mrpt_camera;
         if (options.depth_camera) {
             scan.cameraParams = toMrptCamera(options.depth_camera->camera, options.sensor_label + "_depth");
-            scan.relativePoseIntensityWRTDepth =
-                toMrpt(sensorFromOptical() * options.depth_camera->T_depth_colour);
+            scan.relativePoseIntensityWRTDepth = relativePoseOfColour(options.depth_camera->T_depth_colour);
         }
         scan.hasRangeImage = true;
         scan.rangeImage_setSize(depth_u16.rows, depth_u16.cols);
