@@ -3,7 +3,7 @@ target_include_directories(roevo_test_support PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}
 target_link_libraries(roevo_test_support PUBLIC opencv_core opencv_imgproc opencv_imgcodecs PRIVATE roevo_build_flags)
 
 roevo_test(test_evaluation
-  SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_support.cpp
+  SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_support.cpp apps/test_ahead.cpp
   LIBS roevo_evaluation roevo_support roevo_test_support)
 
 roevo_test(test_programs
