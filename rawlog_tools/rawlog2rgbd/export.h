@@ -14,7 +14,8 @@ struct ExportResult {
     double depth_scale = 0;         ///< PNG units per metre
     std::string ground_truth;       ///< file it came from, or empty
     std::string warning;            ///< about the rawlog, one line, or empty
-    double seconds = 0;
+    double seconds = 0;             ///< reading and writing
+    double decode_seconds = 0;      ///< reading the rawlog and decoding its frames alone
 };
 
 /// The depth_scale (PNG units per metre) of range images in these units, such that reading the folder gives

@@ -38,6 +38,7 @@ TEST(Rawlog2rgbd, GivesTheFolderBack) {
         ASSERT_EQ(outcome.exit_code, 0) << outcome.all();
         EXPECT_CONTAINS(outcome.out, "3 frames written, 0 left out, depth_scale 5000");
         EXPECT_CONTAINS(outcome.out, "3 files as they are, 0 written as PNG");
+        EXPECT_CONTAINS(outcome.out, "frames/s; decoding the rawlog alone ");
         test::expectSameDataset(input.path(), output / "back");
         EXPECT_EQ(readFile(output / "back/groundtruth.txt"), "# t\n1 0.123456789 0 0 0 0 0 1\n");
         const auto imu = openDataset(output / "back").imu();
