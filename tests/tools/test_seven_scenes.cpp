@@ -125,10 +125,19 @@ TEST(SevenScenes, PosesThatAreNoneAreLeftOut) {
     EXPECT_EQ(dataset.size(), 4u);
     ASSERT_EQ(dataset.groundTruth().poses.size(), 1u);
     EXPECT_EQ(dataset.groundTruth().poses[0].timestamp, SmallDataset::time(3));
+    EXPECT_CONTAINS(dataset.summary(), "1 of 4 frames have no frame-N.pose.txt");
     EXPECT_CONTAINS(dataset.groundTruth().note, "2 left out, first: ");
     EXPECT_CONTAINS(dataset.groundTruth().note, "expected a 4x4 matrix, found 12 numbers");
     folder.write(SmallDataset::pose(1), "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
     EXPECT_CONTAINS(openDataset(folder.path()).groundTruth().note, "is not a rotation and a translation");
+}
+
+TEST(SevenScenes, NoPosesAtAll) {
+    const SmallDataset folder("7scenes", 3);
+    for (int i = 0; i < 3; i++) folder.remove(SmallDataset::pose(i));
+    const DatasetReader dataset = openDataset(folder.path());
+    EXPECT_CONTAINS(dataset.summary(), "3 of 3 frames have no frame-N.pose.txt: no ground truth for them");
+    EXPECT_TRUE(dataset.groundTruth().poses.empty());
 }
 
 TEST(SevenScenes, TheSceneFolderPointsToItsSequences) {
