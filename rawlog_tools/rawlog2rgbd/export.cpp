@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "datasets/depth_times.h"
 #include "rawlog2rgbd/scan_reader.h"
 #include "rawlog2rgbd/tum_writer.h"
 #include "roevo_mrpt/image_conversions.h"
@@ -40,7 +41,7 @@ cv::Mat quantised(const cv::Mat& metres, double depth_scale) {
 /// Takes the scans of one rawlog, one after the other.
 class Exporter {
   public:
-    explicit Exporter(TumWriter& writer) : writer_(writer) {}
+    Exporter(TumWriter& writer, const DepthTimes& depth_times) : writer_(writer), depth_times_(depth_times) {}
 
     void add(const DecodedScan& decoded) {
         for (const ImuSample& sample : decoded.imu)
@@ -77,7 +78,8 @@ class Exporter {
                                             CV_16UC1, const_cast<std::uint16_t*>(&range(0, 0)))
                                   : quantised(frame.depth, camera_.depth_scale);
         const bool is_file = scan.intensityImage.isExternallyStored();
-        writer_.add(timestamp, depth, frame.colour.empty() ? frame.grey : frame.colour,
+        writer_.add(timestamp, depth_times_.of(timestamp), depth,
+                    frame.colour.empty() ? frame.grey : frame.colour,
                     is_file ? scan.intensityImage.getExternalStorageFileAbsolutePath() : "");
         stamps_.insert(timestamp);
         result_.frames++;
@@ -111,6 +113,7 @@ class Exporter {
     }
 
     TumWriter& writer_;
+    const DepthTimes& depth_times_;
     TumCamera camera_;
     float range_units_ = 0;
     std::set<double> stamps_;
@@ -135,7 +138,8 @@ ExportResult exportRawlog(const std::string& rawlog, const std::string& sensor_l
     const InterruptGuard guard;
     ScanReader reader(rawlog, sensor_label);
     TumWriter writer(folder);
-    Exporter exporter(writer);
+    const DepthTimes depth_times = readDepthTimes(rawlog);
+    Exporter exporter(writer, depth_times);
     Progress progress("writing", 0);
     {
         Ahead<DecodedScan> scans([&] { return reader.next(); });
@@ -155,7 +159,13 @@ ExportResult exportRawlog(const std::string& rawlog, const std::string& sensor_l
     const std::string truth = RawlogWriter::groundTruthFile(rawlog);
     std::error_code unreadable;
     if (std::filesystem::is_regular_file(truth, unreadable)) result.ground_truth = truth;
-    writer.finish(exporter.camera(), result.ground_truth);
+    result.depth_times = depth_times.file;
+    result.depth_times_fault = depth_times.fault;
+    if (!depth_times.file.empty() && depth_times.fault.empty())
+        if (const std::string fault = writer.ownDepthTimesFault(); !fault.empty())
+            result.depth_times_fault = depth_times.file + ": " + fault;
+    writer.finish(exporter.camera(), result.ground_truth,
+                  !depth_times.file.empty() && result.depth_times_fault.empty());
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
 }

@@ -81,6 +81,7 @@ inline void expectSameDataset(const std::string& a_folder, const std::string& b_
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); i++) {
         EXPECT_EQ(a.entry(i).timestamp, b.entry(i).timestamp);
+        EXPECT_EQ(a.entry(i).depth_timestamp, b.entry(i).depth_timestamp);
         ASSERT_TRUE(sameImage(registeredDepth(a, i), registeredDepth(b, i))) << i;
         ASSERT_TRUE(readFile(a.entry(i).image) == readFile(b.entry(i).image)) << i;
     }

@@ -44,10 +44,12 @@ TEST(Rawlog2rgbd, GivesTheFolderBack) {
         const auto imu = openDataset(output / "back").imu();
         ASSERT_EQ(imu.size(), 1u);
         EXPECT_EQ(imu[0].acceleration, Eigen::Vector3d(0.1, -0.25, 9.7512345678901));
-        const std::string stamp = SmallTumFolder::stamp(0);
-        EXPECT_EQ(readFile(output / "back/associations.txt")
-                      .rfind(stamp + " rgb/" + stamp + ".png " + stamp + " depth/" + stamp + ".png\n", 0),
-                  0u);
+        const std::string stamp = SmallTumFolder::stamp(0), depth_stamp = SmallTumFolder::stamp(0, 0.004);
+        EXPECT_EQ(
+            readFile(output / "back/associations.txt")
+                .rfind(stamp + " rgb/" + stamp + ".png " + depth_stamp + " depth/" + depth_stamp + ".png\n",
+                       0),
+            0u);
         EXPECT_FALSE(fs::exists(output / "back.part"));
     }
 }

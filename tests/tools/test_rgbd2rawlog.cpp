@@ -36,7 +36,7 @@ TEST(Rgbd2rawlog, RealClip) {
     const ProgramResult outcome = convert(clip, output / "desk.rawlog", {"--verify"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.all();
     EXPECT_CONTAINS(outcome.all(), "verified: 9 frames, 2764800 depth values");
-    EXPECT_EQ(countEntries(output.path()), 3);  // rawlog, images, ground truth
+    EXPECT_EQ(countEntries(output.path()), 4);  // rawlog, images, ground truth, depth times
     expectFrames(output / "desk.rawlog", clip, {0, 1, 2, 3, 4, 5, 6, 7, 8});
 }
 
