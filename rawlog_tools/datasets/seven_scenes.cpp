@@ -156,9 +156,9 @@ DatasetDescription loadSevenScenes(const std::string& folder, const DatasetOptio
                   out);
         out.registration = sevenScenesRegistration();
         out.notes.push_back(
-            "depth is of the published depth camera f 585 c (320, 240) and registered to colour here, the "
-            "pose of "
-            "one to the other assumed from another Kinect v1 (baseline 25.6 mm)");
+            "depth is of the published depth camera f 585 c (320, 240) and registered to colour when a frame "
+            "is "
+            "read, the pose of one to the other assumed from another Kinect v1 (baseline 25.6 mm)");
     }
     readPoses(frames, out.registration ? out.registration->T_colour_depth.inverse() : Pose::Identity(), out);
     return out;

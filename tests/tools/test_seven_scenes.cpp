@@ -29,7 +29,7 @@ TEST(SevenScenes, SimulatedSequenceIsRegisteredToColour) {
     ASSERT_EQ(dataset.size(), 2u);
     EXPECT_EQ(dataset.camera(), sevenScenesColourCamera());
     EXPECT_CONTAINS(dataset.summary(), "assumed: the dataset publishes none for colour");
-    EXPECT_CONTAINS(dataset.summary(), "f 585 c (320, 240) and registered to colour here");
+    EXPECT_CONTAINS(dataset.summary(), "f 585 c (320, 240) and registered to colour when a frame is read");
 
     // What one camera for both would have seen
     simulator::SimulationOptions options;
