@@ -29,13 +29,16 @@ void checkOutputFolder(const std::string& rawlog) {
 }
 
 void warnOfForeignGroundTruth(const std::string& program, const std::string& rawlog) {
-    const std::string file = RawlogWriter::groundTruthFile(rawlog);
+    warnOfForeignFile(program, RawlogWriter::groundTruthFile(rawlog), "ground truth");
+}
+
+void warnOfForeignFile(const std::string& program, const std::string& file, const std::string& what) {
     std::error_code unreadable;
     if (!fs::exists(file, unreadable)) return;
     std::fprintf(stderr,
-                 "%s: warning: %s was there before and is not from this recording, which has no ground "
-                 "truth; move it away\n",
-                 program.c_str(), file.c_str());
+                 "%s: warning: %s was there before and is not from this recording, which has no %s; move it "
+                 "away\n",
+                 program.c_str(), file.c_str(), what.c_str());
 }
 
 }  // namespace roevo

@@ -11,4 +11,7 @@ void checkOutputFolder(const std::string& rawlog);
 /// rawlog, left there by an older one, since programs that read the rawlog would take it for its own.
 void warnOfForeignGroundTruth(const std::string& program, const std::string& rawlog);
 
+/// The same for any `file` that lies beside rawlogs. @param what  that this recording does not have
+void warnOfForeignFile(const std::string& program, const std::string& file, const std::string& what);
+
 }  // namespace roevo

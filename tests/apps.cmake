@@ -3,13 +3,13 @@ target_include_directories(roevo_test_support PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}
 target_link_libraries(roevo_test_support PUBLIC opencv_core opencv_imgproc opencv_imgcodecs PRIVATE roevo_build_flags)
 
 roevo_test(test_evaluation
-  SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_support.cpp
+  SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_support.cpp apps/test_ahead.cpp
   LIBS roevo_evaluation roevo_support roevo_test_support)
 
 roevo_test(test_programs
   SOURCES apps/test_every_program.cpp apps/test_eval_program.cpp apps/test_render_program.cpp
           apps/test_odometry_program.cpp apps/test_bad_folders.cpp apps/test_bad_rawlogs.cpp apps/test_realtime.cpp
-          apps/test_odd_rawlogs_program.cpp
+          apps/test_odd_rawlogs_program.cpp apps/test_scale_check.cpp
   LIBS roevo_test_support roevo_evaluation roevo_mrpt nlohmann_json::nlohmann_json)
 add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog rawlog2rgbd rawlog-simulate)
 

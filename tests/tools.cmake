@@ -5,7 +5,7 @@ target_include_directories(test_tools PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 add_dependencies(test_tools rgbd2rawlog)
 roevo_test(test_rawlog_tools
   SOURCES tools/test_rgbd2rawlog.cpp tools/test_rgbd2rawlog_options.cpp tools/test_verify.cpp tools/test_rawlog2rgbd.cpp
-          tools/test_rawlog2rgbd_errors.cpp tools/test_mrpt_apps.cpp tools/test_permissions.cpp tools/test_round_trip.cpp
+          tools/test_rawlog2rgbd_errors.cpp tools/test_mrpt_apps.cpp tools/test_permissions.cpp tools/test_full_disk.cpp tools/test_depth_times.cpp tools/test_round_trip.cpp
   LIBS roevo_rgbd2rawlog roevo_datasets roevo_evaluation)
 target_include_directories(test_rawlog_tools PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_include_directories(test_rawlog_tools SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "support/atomic_file.h"
+#include "support/byte_order_mark.h"
 
 namespace roevo {
 namespace {
@@ -76,6 +77,7 @@ std::vector<StampedPose> readTumTrajectory(const std::string& path) {
     std::ifstream in(path);
     if (!in) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno ? errno : ENOENT));
 
+    skipByteOrderMark(in);
     std::vector<StampedPose> poses;
     std::string text;
     for (std::size_t line = 1; std::getline(in, text); ++line) {

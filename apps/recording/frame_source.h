@@ -48,8 +48,7 @@ class FrameSource {
 /// @throws std::runtime_error in one line
 std::unique_ptr<FrameSource> openSource(const std::string& input, const std::string& sensor_label);
 
-/// Decodes ahead in a thread of its own, a few frames at most, in order; the source itself where the process
-/// may use one processor only.
+/// Decodes ahead in a thread of its own (support/ahead.h), in order.
 std::unique_ptr<FrameSource> prefetch(std::unique_ptr<FrameSource> source);
 
 /// Leaves out the first frames. @throws std::runtime_error when there are fewer

@@ -73,7 +73,8 @@ int run(int argc, char** argv) {
     cv::setNumThreads(
         1);  // decoding runs beside tracking already; more threads would blur the times per frame
     const RunReport report = runOdometry(settings);
-    if (!report.warning.empty()) std::fprintf(stderr, "%s: warning: %s\n", kName, report.warning.c_str());
+    for (const std::string& warning : {report.warning, report.scale_warning})
+        if (!warning.empty()) std::fprintf(stderr, "%s: warning: %s\n", kName, warning.c_str());
     if (!settings.quiet) printSummary(report, settings.output_dir);
     if (!report.evaluation && !settings.ground_truth.empty())
         throw std::runtime_error(settings.ground_truth + ": " + report.evaluation_fault);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "evaluation/scale_check.h"
 #include "evaluation/trajectory_io.h"
 #include "recording/frame_source.h"
 #include "roevo_mrpt/config_file.h"
@@ -100,6 +101,8 @@ void evaluateRun(RunReport& report, const GroundTruth& ground_truth) {
     }
     try {
         report.evaluation = evaluate(ground_truth.poses, report.trajectory);
+        report.scale_warning =
+            scaleContradiction(ground_truth.poses, report.trajectory, report.evaluation->pairs);
     } catch (const std::exception& e) {
         report.evaluation_fault = e.what();
     }

@@ -30,6 +30,7 @@ struct RunReport {
     std::string ground_truth;              ///< file or folder, empty when there is none
     std::optional<Evaluation> evaluation;  ///< against the ground truth
     std::string evaluation_fault;          ///< why there is none although there is a ground truth
+    std::string scale_warning;             ///< the ground truth has another scale, in one line, or empty
 
     std::size_t count(FrameStatus status) const;
 

@@ -121,10 +121,12 @@ Json mappingJson(const RunReport& report) {
 Json groundTruthJson(const RunReport& report) {
     if (report.ground_truth.empty()) return nullptr;
     Json json = {{"file", report.ground_truth}, {"max_dt_s", kDefaultMaxDt}};
-    if (report.evaluation)
+    if (report.evaluation) {
         json.update(toJson(*report.evaluation));
-    else
+        json["warning"] = report.scale_warning;
+    } else {
         json["fault"] = report.evaluation_fault;
+    }
     return json;
 }
 

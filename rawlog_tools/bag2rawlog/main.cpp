@@ -5,6 +5,7 @@
 
 #include "bag2rawlog/convert.h"
 #include "bag2rawlog/ros_home.h"
+#include "datasets/depth_times.h"
 #include "output_check.h"
 #include "support/program.h"
 
@@ -78,6 +79,7 @@ int run(int argc, char** argv) {
     std::printf("%s: %zu frames written, sensor label %s\n", output.c_str(), result.written,
                 cameras.label.c_str());
     warnOfForeignGroundTruth(kName, output);
+    warnOfForeignFile(kName, depthTimesFile(output), "depth times");
     return 0;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "datasets/text_list.h"
+#include "support/byte_order_mark.h"
 
 namespace roevo {
 namespace {
@@ -23,6 +24,7 @@ std::map<std::string, Value> readKeyValues(const std::string& file) {
     errno = 0;
     std::ifstream in(file);
     if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno ? errno : ENOENT));
+    skipByteOrderMark(in);
     std::map<std::string, Value> values;
     std::string text;
     for (int number = 1; std::getline(in, text); number++) {

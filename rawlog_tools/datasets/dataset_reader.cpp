@@ -19,6 +19,7 @@
 #include "datasets/tum.h"
 #include "roevo/camera/depth_registration.h"
 #include "roevo_mrpt/image_conversions.h"
+#include "roevo_mrpt/observation_converter.h"
 
 namespace fs = std::filesystem;
 
@@ -102,6 +103,8 @@ std::string betterFolder(const std::string& folder) {
 
 DatasetReader::DatasetReader(DatasetDescription description, bool tolerate_missing)
     : description_(std::move(description)) {
+    if (description_.registration)
+        T_colour_depth_ = colourFromDepthAsStored(description_.registration->T_colour_depth.inverse());
     checkFiles(tolerate_missing);
     checkDepthScale();
 }
@@ -174,12 +177,13 @@ cv::Mat DatasetReader::readDepth(std::size_t i) const {
     cv::Mat depth = readDepthFile(entry(i).depth);
     checkSize(depth, depthCamera(), entry(i).depth);
     if (description_.invalid_depth != 0) depth.setTo(0, depth == description_.invalid_depth);
-    if (!description_.registration) return depth;
-    const DepthRegistration& registration = *description_.registration;
-    cv::Mat registered = registerDepth(depthToMetres(depth, depthUnit()), registration.depth_camera, camera(),
-                                       registration.T_colour_depth);
-    registered.convertTo(depth, CV_16UC1, depthScale());  // rounds
     return depth;
+}
+
+cv::Mat DatasetReader::toFrameDepth(const cv::Mat& depth_u16) const {
+    const cv::Mat depth = depthToMetres(depth_u16, depthUnit());
+    if (!description_.registration) return depth;
+    return registerDepth(depth, depthCamera(), camera(), T_colour_depth_);
 }
 
 cv::Mat DatasetReader::readImage(std::size_t i) const {
@@ -194,7 +198,7 @@ RgbdFrame DatasetReader::readFrame(std::size_t i) const {
     const cv::Mat image = readImage(i);
     frame.grey = toGrey(image);
     if (image.channels() == 3) frame.colour = image;
-    frame.depth = depthToMetres(readDepth(i), depthUnit());
+    frame.depth = toFrameDepth(readDepth(i));
     return frame;
 }
 

@@ -58,6 +58,7 @@ class DatasetReader {
 
     const DatasetDescription& description() const { return description_; }
     const PinholeCamera& camera() const { return description_.camera; }
+    const PinholeCamera& depthCamera() const;  ///< of the depth images; mostly camera(), too
     double depthScale() const { return description_.depth_scale; }  ///< PNG units per metre
     float depthUnit() const;                                        ///< metres per PNG unit
     const GroundTruth& groundTruth() const { return description_.ground_truth; }
@@ -71,10 +72,14 @@ class DatasetReader {
     std::size_t size() const { return description_.frames.size(); }
     const DatasetEntry& entry(std::size_t i) const { return description_.frames.at(i); }
 
-    /// Depth in the colour image's pixels, CV_16UC1 of depthScale() units per metre, 0 where unknown: as
-    /// stored, unless the description has a registration or another value for unknown.
+    /// Depth as stored, in the depth camera's pixels: CV_16UC1 of depthScale() units per metre, 0 where
+    /// unknown (whatever the description's value for that is).
     /// @throws std::runtime_error when frame i's depth is unreadable or of another size.
     cv::Mat readDepth(std::size_t i) const;
+
+    /// What readDepth() gave, as frames have it: CV_32FC1 metres in the colour image's pixels. Where the
+    /// depth camera is another one, registered just as the frames of a rawlog with these cameras are.
+    cv::Mat toFrameDepth(const cv::Mat& depth_u16) const;
 
     /// Colour as stored, CV_8UC3 (BGR) or CV_8UC1. @throws std::runtime_error as readDepth().
     cv::Mat readImage(std::size_t i) const;
@@ -92,11 +97,11 @@ class DatasetReader {
 
   private:
     void checkSize(const cv::Mat& image, const PinholeCamera& camera, const std::string& file) const;
-    const PinholeCamera& depthCamera() const;
     void checkFiles(bool tolerate_missing);
     void checkDepthScale();
 
     DatasetDescription description_;
+    Pose T_colour_depth_ = Pose::Identity();  ///< of the registration
 };
 
 /// Opens a dataset folder. @param options.format  "auto" or one of datasetFormats()

@@ -8,6 +8,7 @@
 #include "datasets/image_lists.h"
 #include "datasets/sensor_files.h"
 #include "datasets/text_list.h"
+#include "datasets/tum.h"
 #include "roevo_mrpt/image_conversions.h"
 
 namespace fs = std::filesystem;
@@ -29,6 +30,11 @@ cv::Size imageSize(const std::vector<DatasetEntry>& frames) {
 }
 
 CameraDescription readCalibration(const std::string& file, const std::vector<DatasetEntry>& frames) {
+    if (!fs::exists(file))
+        throw std::runtime_error(
+            "no intrinsics: calibration.txt is missing, which ETH3D SLAM sequences have "
+            "beside associated.txt: one line 'fx fy cx cy': " +
+            file);
     const auto lines = readTextLines(file);
     if (lines.size() != 1 || lines[0].words.size() != 4)
         throw std::runtime_error("no intrinsics: " + file + " must have one line 'fx fy cx cy'");
@@ -49,7 +55,10 @@ CameraDescription readCalibration(const std::string& file, const std::vector<Dat
 }  // namespace
 
 bool isEth3dFolder(const std::string& folder) {
-    if (!fs::is_regular_file(fs::path(folder) / "calibration.txt")) return false;
+    // No other layout has associated.txt of its own, but users write one for sequences of TUM, too
+    if (!fs::is_regular_file(fs::path(folder) / "calibration.txt"))
+        return fs::is_regular_file(fs::path(folder) / "associated.txt") &&
+               !(isTumFolder(folder) && findTumCamera(folder));
     for (const char* list : {"associated.txt", "rgb.txt", "depth.txt"})
         if (fs::is_regular_file(fs::path(folder) / list)) return true;
     return false;

@@ -5,7 +5,8 @@
 
 namespace roevo {
 
-/// Whether the folder is a sequence of the ETH3D SLAM benchmark: calibration.txt beside a list of images.
+/// Whether the folder is a sequence of the ETH3D SLAM benchmark: calibration.txt beside a list of images,
+/// or its associated.txt where no camera is known by which TUM's reader would read it.
 bool isEth3dFolder(const std::string& folder);
 
 /// Reads an ETH3D SLAM sequence: calibration.txt ("fx fy cx cy"; the size is that of the images), pairs from

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "datasets/text_list.h"
 #include "roevo_mrpt/time_conversions.h"
@@ -27,6 +28,8 @@ void matchLists(const std::string& folder_name, const std::string& colour_list, 
     const fs::path folder(folder_name);
     const auto colours = readStampedList((folder / colour_list).string(), out.association);
     const auto depths = readStampedList((folder / depth_list).string(), out.association);
+    for (const auto& [list, name] : {std::pair(&colours, &colour_list), {&depths, &depth_list}})
+        if (list->empty()) throw std::runtime_error((folder / *name).string() + " lists no images");
     const auto colour = stamps(colours), depth = stamps(depths);
     for (const StampMatch& match : associateStamps(colour, depth, max_difference)) {
         const ListEntry &c = colours[match.first], &d = depths[match.second];

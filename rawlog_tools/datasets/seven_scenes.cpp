@@ -75,10 +75,13 @@ Pose readPose(const std::string& file) {
 void readPoses(const std::map<long long, FrameFiles>& frames, const Pose& T_depth_colour,
                DatasetDescription& out) {
     GroundTruth& truth = out.ground_truth;
-    std::size_t unusable = 0;
+    std::size_t unusable = 0, missing = 0;
     std::string first_fault;
     for (const auto& [number, files] : frames) {
-        if (files.pose.empty()) continue;
+        if (files.pose.empty()) {
+            if (!files.colour.empty() && !files.depth.empty()) missing++;
+            continue;
+        }
         truth.file = out.folder;
         try {
             const Pose T_world_depth = readPose(files.pose);
@@ -88,6 +91,9 @@ void readPoses(const std::map<long long, FrameFiles>& frames, const Pose& T_dept
             if (unusable++ == 0) first_fault = error.what();
         }
     }
+    if (missing > 0)
+        out.notes.push_back(std::to_string(missing) + " of " + std::to_string(out.frames.size()) +
+                            " frames have no frame-N.pose.txt: no ground truth for them");
     if (truth.file.empty()) return;
     truth.note = out.registration ? "KinectFusion's poses of the depth camera, moved to the colour camera"
                                   : "taken as poses of the colour camera";
@@ -150,9 +156,9 @@ DatasetDescription loadSevenScenes(const std::string& folder, const DatasetOptio
                   out);
         out.registration = sevenScenesRegistration();
         out.notes.push_back(
-            "depth is of the published depth camera f 585 c (320, 240) and registered to colour here, the "
-            "pose of "
-            "one to the other assumed from another Kinect v1 (baseline 25.6 mm)");
+            "depth is of the published depth camera f 585 c (320, 240) and registered to colour when a frame "
+            "is "
+            "read, the pose of one to the other assumed from another Kinect v1 (baseline 25.6 mm)");
     }
     readPoses(frames, out.registration ? out.registration->T_colour_depth.inverse() : Pose::Identity(), out);
     return out;

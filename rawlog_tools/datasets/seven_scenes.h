@@ -15,9 +15,9 @@ PinholeCamera sevenScenesColourCamera();
 DepthRegistration sevenScenesRegistration();
 
 /// Reads a 7-Scenes sequence: frame-N.color.png, .depth.png (mm, 65535 = unknown, of the depth camera),
-/// .pose.txt (4x4, depth camera to world), N at 30 Hz. Depth is registered to colour and the poses moved to
-/// the colour camera. A camera.txt says that depth is registered already: it overrides cameras and depth
-/// scale, and poses stay.
+/// .pose.txt (4x4, depth camera to world), N at 30 Hz. Frames have depth registered to colour, and poses are
+/// moved to the colour camera. A camera.txt says that depth is registered already: it overrides cameras and
+/// depth scale, and poses stay.
 /// @throws std::runtime_error naming the file and the fault.
 DatasetDescription loadSevenScenes(const std::string& folder, const DatasetOptions& options);
 

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "support/byte_order_mark.h"
+
 namespace roevo {
 
 std::vector<TextLine> readTextLines(const std::string& file) {
@@ -18,11 +20,10 @@ std::vector<TextLine> readTextLines(const std::string& file) {
     errno = 0;
     std::ifstream in(file);
     if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno ? errno : ENOENT));
+    skipByteOrderMark(in);
     std::vector<TextLine> lines;
     std::string text;
     for (int number = 1; std::getline(in, text); number++) {
-        if (number == 1 && text.rfind("\xEF\xBB\xBF", 0) == 0)
-            text.erase(0, 3);  // byte order mark of some editors
         TextLine line;
         line.number = number;
         std::istringstream words(text);
@@ -35,6 +36,7 @@ std::vector<TextLine> readTextLines(const std::string& file) {
 
 std::string readHeaderComments(const std::string& file) {
     std::ifstream in(file);
+    skipByteOrderMark(in);
     std::string comments;
     for (std::string text; std::getline(in, text) && !text.empty() && text[0] == '#';)
         comments += text + "\n";

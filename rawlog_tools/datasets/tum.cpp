@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "datasets/camera_file.h"
 #include "datasets/image_lists.h"
 #include "datasets/sensor_files.h"
 #include "datasets/text_list.h"
@@ -11,27 +10,21 @@
 namespace fs = std::filesystem;
 
 namespace roevo {
-namespace {
-
-CameraDescription findCamera(const fs::path& folder) {
-    if (const auto given = cameraFileIn(folder.string())) return *given;
+std::optional<CameraDescription> findTumCamera(const std::string& folder_name) {
+    const fs::path folder(folder_name);
+    if (auto given = cameraFileIn(folder_name)) return given;
     const std::string name = fs::weakly_canonical(folder).filename().string();
     if (auto found = tumCameraNamedIn(name)) {
         found->source += " (named by the folder)";
-        return *found;
+        return found;
     }
     for (const char* list : {"rgb.txt", "depth.txt", "groundtruth.txt"})
         if (auto found = tumCameraNamedIn(readHeaderComments((folder / list).string()))) {
             found->source += std::string(" (named by ") + list + ")";
-            return *found;
+            return found;
         }
-    throw std::runtime_error(
-        "no intrinsics: " + folder.string() +
-        " has no camera.txt and is not named as a freiburg1, 2 or 3 sequence; write camera.txt with width, "
-        "height, fx, fy, cx, cy, depth_scale");
+    return std::nullopt;
 }
-
-}  // namespace
 
 bool isTumFolder(const std::string& folder) {
     for (const char* list : {"rgb.txt", "depth.txt", "associations.txt"})
@@ -58,7 +51,13 @@ DatasetDescription loadTum(const std::string& folder_name, const DatasetOptions&
     }
     finishFrames(out);
 
-    setCamera(findCamera(folder), out);
+    const auto camera = findTumCamera(folder_name);
+    if (!camera)
+        throw std::runtime_error(
+            "no intrinsics: " + folder_name +
+            " has no camera.txt and is not named as a freiburg1, 2 or 3 sequence; write camera.txt with "
+            "width, height, fx, fy, cx, cy, depth_scale");
+    setCamera(*camera, out);
     out.ground_truth = readGroundTruth((folder / "groundtruth.txt").string());
     readAccelerometer((folder / "accelerometer.txt").string(), out);
     return out;

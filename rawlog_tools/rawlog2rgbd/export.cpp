@@ -1,7 +1,6 @@
 #include "rawlog2rgbd/export.h"
 
 #include <mrpt/obs/CObservation3DRangeScan.h>
-#include <mrpt/obs/CObservationIMU.h>
 
 #include <chrono>
 #include <cmath>
@@ -11,21 +10,21 @@
 #include <set>
 #include <stdexcept>
 
+#include "datasets/depth_times.h"
+#include "rawlog2rgbd/scan_reader.h"
 #include "rawlog2rgbd/tum_writer.h"
 #include "roevo_mrpt/image_conversions.h"
 #include "roevo_mrpt/observation_converter.h"
-#include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_mrpt/rawlog_writer.h"
 #include "roevo_mrpt/time_conversions.h"
+#include "support/ahead.h"
 #include "support/interrupt.h"
-#include "support/program.h"
 #include "support/progress.h"
 
 namespace roevo {
 namespace {
 
 using mrpt::obs::CObservation3DRangeScan;
-using mrpt::obs::CObservationIMU;
 
 /// Metres as 16-bit units; what does not fit is unknown.
 cv::Mat quantised(const cv::Mat& metres, double depth_scale) {
@@ -42,53 +41,36 @@ cv::Mat quantised(const cv::Mat& metres, double depth_scale) {
 /// Takes the scans of one rawlog, one after the other.
 class Exporter {
   public:
-    explicit Exporter(TumWriter& writer) : writer_(writer) {}
+    Exporter(TumWriter& writer, const DepthTimes& depth_times) : writer_(writer), depth_times_(depth_times) {}
 
-    void addFrame(const CObservation3DRangeScan& scan) {
-        const double timestamp = fromMrptTime(scan.timestamp);
-        try {
-            write(scan, timestamp);
-        } catch (const WriteError&) {
-            throw;
-        } catch (const std::runtime_error& error) {
-            char stamp[64];
-            std::snprintf(stamp, sizeof stamp, "frame at %.6f s: ", timestamp);
-            result_.left_out.push_back(stamp + firstLine(error.what()));
-        }
-    }
-
-    void addOther(const mrpt::obs::CObservation& observation) {
-        using namespace mrpt::obs;
-        const auto* imu = dynamic_cast<const CObservationIMU*>(&observation);
-        if (imu == nullptr || !imu->has(IMU_X_ACC) || !imu->has(IMU_Y_ACC) || !imu->has(IMU_Z_ACC)) return;
-        if (result_.imu_samples == 0) imu_label_ = imu->sensorLabel;
-        if (imu->sensorLabel != imu_label_) return;
-        std::optional<Eigen::Vector3d> angular_velocity;
-        if (imu->has(IMU_WX) && imu->has(IMU_WY) && imu->has(IMU_WZ))
-            angular_velocity.emplace(imu->get(IMU_WX), imu->get(IMU_WY), imu->get(IMU_WZ));
-        writer_.addImu(fromMrptTime(imu->timestamp),
-                       {imu->get(IMU_X_ACC), imu->get(IMU_Y_ACC), imu->get(IMU_Z_ACC)}, angular_velocity);
-        result_.imu_samples++;
+    void add(const DecodedScan& decoded) {
+        for (const ImuSample& sample : decoded.imu)
+            writer_.addImu(sample.timestamp, sample.acceleration, sample.angular_velocity);
+        result_.imu_samples += decoded.imu.size();
+        result_.decode_seconds += decoded.seconds;
+        if (!decoded.scan) return;
+        const double timestamp = fromMrptTime(decoded.scan->timestamp);
+        const std::string fault = decoded.fault.empty() ? write(decoded, timestamp) : decoded.fault;
+        if (fault.empty()) return;
+        char stamp[64];
+        std::snprintf(stamp, sizeof stamp, "frame at %.6f s: ", timestamp);
+        result_.left_out.push_back(stamp + fault);
     }
 
     const TumCamera& camera() const { return camera_; }
     ExportResult& result() { return result_; }
 
   private:
-    /// The disk is at fault, and not the frame.
-    struct WriteError : std::runtime_error {
-        using std::runtime_error::runtime_error;
-    };
-
-    void write(const CObservation3DRangeScan& scan, double timestamp) {
-        const RgbdFrame frame = toRgbdFrame(scan);  // finds every fault that the odometry would find
-        if (stamps_.count(timestamp) > 0) throw std::runtime_error("its time stamp was there before");
+    /// Why the frame cannot be written into this folder, or "".
+    std::string write(const DecodedScan& decoded, double timestamp) {
+        const CObservation3DRangeScan& scan = *decoded.scan;
+        const RgbdFrame& frame = decoded.frame;
+        if (stamps_.count(timestamp) > 0) return "its time stamp was there before";
         if (result_.frames == 0)
             describeCamera(scan);
         else if (colourCameraOf(scan) != camera_.camera || scan.rangeUnits != range_units_)
-            throw std::runtime_error(
-                "its intrinsics, size or range units are not those of the first frame, and a folder has one "
-                "camera.txt");
+            return "its intrinsics, size or range units are not those of the first frame, and a folder has "
+                   "one camera.txt";
         const auto& range = scan.rangeImage;
         const bool as_stored = depthIsAsStored(scan);
         const cv::Mat depth = as_stored
@@ -96,16 +78,14 @@ class Exporter {
                                             CV_16UC1, const_cast<std::uint16_t*>(&range(0, 0)))
                                   : quantised(frame.depth, camera_.depth_scale);
         const bool is_file = scan.intensityImage.isExternallyStored();
-        try {
-            writer_.add(timestamp, depth, frame.colour.empty() ? frame.grey : frame.colour,
-                        is_file ? scan.intensityImage.getExternalStorageFileAbsolutePath() : "");
-        } catch (const std::exception& error) {
-            throw WriteError(error.what());
-        }
+        writer_.add(timestamp, depth_times_.of(timestamp), depth,
+                    frame.colour.empty() ? frame.grey : frame.colour,
+                    is_file ? scan.intensityImage.getExternalStorageFileAbsolutePath() : "");
         stamps_.insert(timestamp);
         result_.frames++;
         if (is_file) result_.linked_images++;
         if (!as_stored) noteResampling(scan);
+        return "";
     }
 
     void describeCamera(const CObservation3DRangeScan& scan) {
@@ -133,10 +113,10 @@ class Exporter {
     }
 
     TumWriter& writer_;
+    const DepthTimes& depth_times_;
     TumCamera camera_;
     float range_units_ = 0;
     std::set<double> stamps_;
-    std::string imu_label_;
     ExportResult result_;
 };
 
@@ -156,15 +136,18 @@ ExportResult exportRawlog(const std::string& rawlog, const std::string& sensor_l
                           const std::string& folder) {
     const auto start = std::chrono::steady_clock::now();
     const InterruptGuard guard;
-    RawlogReader reader(rawlog, sensor_label);
+    ScanReader reader(rawlog, sensor_label);
     TumWriter writer(folder);
-    Exporter exporter(writer);
-    reader.onOther([&](const mrpt::obs::CObservation& observation) { exporter.addOther(observation); });
+    const DepthTimes depth_times = readDepthTimes(rawlog);
+    Exporter exporter(writer, depth_times);
     Progress progress("writing", 0);
-    while (const auto scan = reader.next()) {
-        InterruptGuard::check();
-        exporter.addFrame(*scan);
-        progress.update(exporter.result().frames, reader.progress());
+    {
+        Ahead<DecodedScan> scans([&] { return reader.next(); });
+        while (const auto decoded = scans.next()) {
+            InterruptGuard::check();
+            exporter.add(*decoded);
+            progress.update(exporter.result().frames, decoded->progress);
+        }
     }
     progress.finish();
 
@@ -176,7 +159,13 @@ ExportResult exportRawlog(const std::string& rawlog, const std::string& sensor_l
     const std::string truth = RawlogWriter::groundTruthFile(rawlog);
     std::error_code unreadable;
     if (std::filesystem::is_regular_file(truth, unreadable)) result.ground_truth = truth;
-    writer.finish(exporter.camera(), result.ground_truth);
+    result.depth_times = depth_times.file;
+    result.depth_times_fault = depth_times.fault;
+    if (!depth_times.file.empty() && depth_times.fault.empty())
+        if (const std::string fault = writer.ownDepthTimesFault(); !fault.empty())
+            result.depth_times_fault = depth_times.file + ": " + fault;
+    writer.finish(exporter.camera(), result.ground_truth,
+                  !depth_times.file.empty() && result.depth_times_fault.empty());
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
 }

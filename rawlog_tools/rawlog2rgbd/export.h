@@ -13,8 +13,11 @@ struct ExportResult {
     std::string depth_note;         ///< why and to what precision, when there are such frames
     double depth_scale = 0;         ///< PNG units per metre
     std::string ground_truth;       ///< file it came from, or empty
+    std::string depth_times;        ///< file with the depth images' own stamps, or empty
+    std::string depth_times_fault;  ///< why it was not used and both images have the frame's stamp, or empty
     std::string warning;            ///< about the rawlog, one line, or empty
-    double seconds = 0;
+    double seconds = 0;             ///< reading and writing
+    double decode_seconds = 0;      ///< reading the rawlog and decoding its frames alone
 };
 
 /// The depth_scale (PNG units per metre) of range images in these units, such that reading the folder gives

@@ -26,8 +26,16 @@ void print(const ExportResult& result, const std::string& output) {
                     result.depth_note.c_str());
     if (result.imu_samples > 0) std::printf("inertial samples: %zu\n", result.imu_samples);
     if (!result.ground_truth.empty()) std::printf("ground truth: from %s\n", result.ground_truth.c_str());
-    std::printf("speed: %.1f frames/s; memory at most %.0f MB\n",
-                static_cast<double>(result.frames) / result.seconds, memoryPeakMb());
+    if (const std::string& file = result.depth_times; !file.empty()) {
+        if (result.depth_times_fault.empty())
+            std::printf("times of the depth images: from %s\n", file.c_str());
+        else
+            std::printf("times of the depth images: those of colour, since %s\n",
+                        result.depth_times_fault.c_str());
+    }
+    const auto frames = static_cast<double>(result.frames);
+    std::printf("speed: %.1f frames/s; decoding the rawlog alone %.1f frames/s; memory at most %.0f MB\n",
+                frames / result.seconds, frames / result.decode_seconds, memoryPeakMb());
 }
 
 int run(int argc, char** argv) {

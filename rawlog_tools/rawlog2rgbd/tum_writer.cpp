@@ -6,6 +6,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "datasets/depth_times.h"
+#include "roevo_mrpt/file_copy.h"
+
 namespace fs = std::filesystem;
 
 namespace roevo {
@@ -83,22 +86,17 @@ TumWriter::~TumWriter() {
     fs::remove_all(temporary_, ignored);
 }
 
-void TumWriter::add(double timestamp, const cv::Mat& depth_u16, const cv::Mat& image,
-                    const std::string& image_file) {
-    const std::string stamp = stampText(timestamp);
+void TumWriter::add(double timestamp, std::optional<double> depth_timestamp, const cv::Mat& depth_u16,
+                    const cv::Mat& image, const std::string& image_file) {
     const std::string ending = image_file.empty() ? ".png" : fs::path(image_file).extension().string();
-    const Row row{timestamp, "rgb/" + stamp + ending, "depth/" + stamp + ".png"};
+    std::string depth_name = "depth/" + stampText(depth_timestamp.value_or(timestamp));
+    while (fs::exists(temporary_ / (depth_name + ".png"))) depth_name += "_";  // stamps of a foreign file
+    const Row row{timestamp, depth_timestamp, "rgb/" + stampText(timestamp) + ending, depth_name + ".png"};
     const fs::path image_target = temporary_ / row.image, depth_target = temporary_ / row.depth;
     if (image_file.empty()) {
         if (!cv::imwrite(image_target.string(), image)) failToWrite(image_target);
     } else {
-        const fs::path source = fs::canonical(image_file);  // not a link to a symbolic link
-        std::error_code error;
-        fs::create_hard_link(source, image_target, error);
-        if (error) fs::copy_file(source, image_target, error);
-        if (error)
-            throw std::runtime_error("cannot copy " + image_file + " to " + image_target.string() + ": " +
-                                     error.message());
+        linkOrCopyFile(image_file, image_target.string());
     }
     if (!cv::imwrite(depth_target.string(), depth_u16)) failToWrite(depth_target);
     rows_.push_back(row);
@@ -122,33 +120,49 @@ void TumWriter::write(const std::string& name, const std::string& text) const {
     if (!out) failToWrite(temporary_ / name);
 }
 
-void TumWriter::writeLists() {
+void TumWriter::sortRows() {
     std::sort(rows_.begin(), rows_.end(),
               [](const Row& a, const Row& b) { return a.timestamp < b.timestamp; });
+}
+
+std::string TumWriter::ownDepthTimesFault() {
+    sortRows();
+    std::vector<double> colour;
+    std::vector<std::optional<double>> depth;
+    for (const Row& row : rows_) {
+        colour.push_back(row.timestamp);
+        depth.push_back(row.depth_timestamp);
+    }
+    return depthTimesFault(colour, depth);
+}
+
+void TumWriter::writeLists(bool own_depth_times) {
+    sortRows();
     std::string rgb = "# color images\n# timestamp filename\n",
                 depth = "# depth maps\n# timestamp filename\n";
     std::string pairs;
     for (const Row& row : rows_) {
-        const std::string stamp = stampText(row.timestamp) + " ";
-        rgb += stamp + row.image + "\n";
-        depth += stamp + row.depth + "\n";
-        pairs += stamp + row.image + " " + stamp + row.depth + "\n";
+        const std::string of_colour = stampText(row.timestamp) + " " + row.image;
+        const std::string of_depth =
+            stampText(own_depth_times ? row.depth_timestamp.value() : row.timestamp) + " " + row.depth;
+        rgb += of_colour + "\n";
+        depth += of_depth + "\n";
+        pairs += of_colour + " " + of_depth + "\n";
     }
     write("rgb.txt", rgb);
     write("depth.txt", depth);
     write("associations.txt", pairs);
 }
 
-void TumWriter::finish(const TumCamera& camera, const std::string& ground_truth_file) {
-    writeLists();
+void TumWriter::finish(const TumCamera& camera, const std::string& ground_truth_file, bool own_depth_times) {
+    writeLists(own_depth_times);
     write("camera.txt", cameraText(camera));
     if (!accelerometer_.empty())
         write("accelerometer.txt", "# accelerometer data, m/s^2\n# timestamp ax ay az\n" + accelerometer_);
     if (!imu_.empty())
         write("imu.txt", "# inertial data, rad/s and m/s^2\n# timestamp wx wy wz ax ay az\n" + imu_);
+    if (!ground_truth_file.empty()) copyFile(ground_truth_file, (temporary_ / "groundtruth.txt").string());
     std::error_code error;
-    if (!ground_truth_file.empty()) fs::copy_file(ground_truth_file, temporary_ / "groundtruth.txt", error);
-    if (error) throw std::runtime_error("cannot copy " + ground_truth_file + ": " + error.message());
     fs::remove(folder_, error);  // an empty one
     fs::rename(temporary_, folder_, error);
     if (error) throw std::runtime_error("cannot write " + folder_.string() + ": " + error.message());

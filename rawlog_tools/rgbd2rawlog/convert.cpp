@@ -2,9 +2,11 @@
 
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "roevo_mrpt/rawlog_writer.h"
+#include "support/ahead.h"
 #include "support/interrupt.h"
 #include "support/progress.h"
 
@@ -50,7 +52,31 @@ RawlogWriterOptions writerOptions(const DatasetReader& dataset, const ConvertOpt
     out.range_units = dataset.depthUnit();
     out.externalize_depth = options.externalize_depth;
     out.jpeg_quality = options.jpeg_quality;
+    if (const auto& registration = dataset.description().registration)
+        out.depth_camera = {registration->depth_camera, registration->T_colour_depth.inverse()};
     return out;
+}
+
+/// A frame's images, or why there are none.
+struct DecodedFrame {
+    std::size_t index = 0;  ///< in the dataset
+    cv::Mat depth, image;
+    std::string fault;
+    double seconds = 0;  ///< spent on decoding
+};
+
+DecodedFrame decode(const DatasetReader& dataset, std::size_t index) {
+    const auto start = Clock::now();
+    DecodedFrame frame;
+    frame.index = index;
+    try {
+        frame.depth = dataset.readDepth(index);
+        frame.image = dataset.readImage(index);
+    } catch (const std::runtime_error& error) {
+        frame.fault = error.what();
+    }
+    frame.seconds = secondsSince(start);
+    return frame;
 }
 
 std::vector<std::size_t> selectFrom(const DatasetReader& dataset, const FrameSelection& selection) {
@@ -75,29 +101,27 @@ ConvertResult convertToRawlog(const DatasetReader& dataset, const std::string& r
     ImuTrack imu(dataset, options.selection, result);
     Progress progress("writing", selected.size());
     const auto start = Clock::now();
-    for (std::size_t done = 0; done < selected.size(); done++) {
+    Ahead<DecodedFrame> frames([&, next = selected.begin()]() mutable -> std::optional<DecodedFrame> {
+        if (next == selected.end()) return std::nullopt;
+        return decode(dataset, *next++);
+    });
+    for (std::size_t done = 1; const auto frame = frames.next(); done++) {
         InterruptGuard::check();
-        const std::size_t i = selected[done];
-        const DatasetEntry& entry = dataset.entry(i);
-        cv::Mat depth, image;
-        const auto decode_start = Clock::now();
-        try {
-            depth = dataset.readDepth(i);
-            image = dataset.readImage(i);
-        } catch (const std::runtime_error& error) {
+        if (!frame->fault.empty()) {
             if (!options.skip_bad)
-                throw std::runtime_error(std::string(error.what()) + " (--skip-bad leaves such frames out)");
-            result.left_out.emplace_back(error.what());
+                throw std::runtime_error(frame->fault + " (--skip-bad leaves such frames out)");
+            result.left_out.push_back(frame->fault);
             continue;
         }
-        result.decode_seconds += secondsSince(decode_start);
+        const DatasetEntry& entry = dataset.entry(frame->index);
         imu.writeUntil(entry.timestamp, writer);
         if (options.jpeg_quality > 0)
-            writer.add(entry.timestamp, depth, image);
+            writer.add(entry.timestamp, frame->depth, frame->image);
         else
-            writer.addFile(entry.timestamp, depth, entry.image);
-        result.written.push_back(i);
-        progress.update(done + 1);
+            writer.addFile(entry.timestamp, frame->depth, entry.image);
+        result.decode_seconds += frame->seconds;
+        result.written.push_back(frame->index);
+        progress.update(done);
     }
     if (result.written.empty())
         throw std::runtime_error("no usable frame in " + dataset.description().folder);

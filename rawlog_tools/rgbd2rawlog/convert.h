@@ -24,8 +24,9 @@ struct ConvertResult {
     double decode_seconds = 0;          ///< decoding the images alone, which no converter can do without
 };
 
-/// Writes the dataset as a rawlog. Every image is decoded once, so that a damaged one is found now and not by
-/// the odometry. Inertial samples between the limits of time go between the frames, in the order of time.
+/// Writes the dataset as a rawlog. Every image is decoded once, ahead in a thread of its own, so that a
+/// damaged one is found now and not by the odometry. Inertial samples between the limits of time go between
+/// the frames, in the order of time.
 /// @param check  called with the result and the path of the finished rawlog before it appears under its name;
 ///               what it throws leaves nothing behind
 /// @throws std::runtime_error; Interrupted after a signal

@@ -6,9 +6,11 @@
 #include <memory>
 
 #include "datasets/dataset_reader.h"
+#include "datasets/depth_times.h"
 #include "output_check.h"
 #include "rgbd2rawlog/convert.h"
 #include "rgbd2rawlog/verify.h"
+#include "roevo_mrpt/file_copy.h"
 #include "roevo_mrpt/rawlog_writer.h"
 #include "support/atomic_file.h"
 #include "support/memory_peak.h"
@@ -24,7 +26,9 @@ constexpr char kName[] = "rgbd2rawlog";
 constexpr char kFooter[] =
     "T is either seconds after the first frame (--from 12.5) or, with @ before it, a time stamp of the\n"
     "dataset (--from @1305031453.36); both limits are inclusive.\n"
-    "Ground truth goes to <stem>_groundtruth.txt beside the rawlog, inertial samples into it.\n"
+    "Ground truth goes to <stem>_groundtruth.txt beside the rawlog, time stamps of depth images that are "
+    "not\n"
+    "those of the colour images to <stem>_depth_times.txt, inertial samples into the rawlog.\n"
     "Example:\n"
     "  rgbd2rawlog --input rgbd_dataset_freiburg1_desk --output fr1_desk.rawlog --verify";
 
@@ -91,11 +95,7 @@ std::unique_ptr<AtomicFile> prepareGroundTruth(const GroundTruth& truth, const s
     if (truth.poses.empty()) return nullptr;
     auto file = std::make_unique<AtomicFile>(path);
     if (truth.copyable) {
-        std::error_code error;
-        fs::copy_file(truth.file, file->temporaryPath(), fs::copy_options::overwrite_existing, error);
-        if (error)
-            throw std::runtime_error("cannot copy " + truth.file + " to " + path + ": " + error.message());
-        fs::permissions(file->temporaryPath(), fs::perms::owner_write, fs::perm_options::add);
+        copyFile(truth.file, file->temporaryPath());
         return file;
     }
     for (const StampedPose& pose : truth.poses) file->stream() << exactTumLine(pose);
@@ -138,16 +138,28 @@ int run(int argc, char** argv) {
     std::printf("%s\n", dataset.summary().c_str());
     const std::string truth_path = RawlogWriter::groundTruthFile(settings.output);
     const auto truth = prepareGroundTruth(dataset.groundTruth(), truth_path);
+    std::unique_ptr<AtomicFile> depth_times;
     const auto check = [&](const ConvertResult& result, const std::string& rawlog) {
         if (settings.verify) printVerified(verifyRawlog(dataset, settings.convert, result, rawlog));
+        const std::string text = depthTimesText(dataset, result.written);
+        if (text.empty()) return;
+        depth_times = std::make_unique<AtomicFile>(depthTimesFile(settings.output));
+        depth_times->stream() << text << std::flush;
+        if (!depth_times->stream())
+            throw std::runtime_error("cannot write " + depth_times->path() + ": disk full?");
     };
     const ConvertResult result = convertToRawlog(dataset, settings.output, settings.convert, check);
-    if (truth) truth->commit();
+    for (AtomicFile* file : {truth.get(), depth_times.get()})
+        if (file != nullptr) file->commit();
     printConverted(settings, result);
     if (truth)
         std::printf("ground truth: %s\n", truth_path.c_str());
     else
         warnOfForeignGroundTruth(kName, settings.output);
+    if (depth_times)
+        std::printf("times of the depth images: %s\n", depth_times->path().c_str());
+    else
+        warnOfForeignFile(kName, depthTimesFile(settings.output), "depth times");
     printSpeed(result);
     return 0;
 }

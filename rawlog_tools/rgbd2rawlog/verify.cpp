@@ -110,12 +110,13 @@ class Verifier {
         const RgbdFrame stored = toRgbdFrame(scan);
         if (stored.timestamp != dataset_.entry(i).timestamp) return "time stamp";
         if (colourCameraOf(scan) != dataset_.camera()) return "intrinsics";
+        if (depthCameraOf(scan) != dataset_.depthCamera()) return "intrinsics of the depth camera";
         if (scan.rangeImage_isExternallyStored() != options_.externalize_depth) return "where its depth is";
         const cv::Mat raw = dataset_.readDepth(i);
         const auto& range = scan.rangeImage;
         if (range.rows() != raw.rows || range.cols() != raw.cols) return "depth image size";
         if (std::memcmp(&range(0, 0), raw.ptr(), raw.total() * raw.elemSize()) != 0) return "depth values";
-        if (!sameBytes(stored.depth, depthToMetres(raw, dataset_.depthUnit()))) return "depth in metres";
+        if (!sameBytes(stored.depth, dataset_.toFrameDepth(raw))) return "depth in metres";
         return imageDifference(stored, dataset_.readImage(i));
     }
 

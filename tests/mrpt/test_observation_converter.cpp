@@ -9,6 +9,7 @@
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/rawlog_reader.h"
+#include "roevo_mrpt/rawlog_writer.h"
 
 namespace roevo {
 namespace {
@@ -172,6 +173,28 @@ TEST(ObservationConverter, ReadsTheKinectRawlogThatMrptShips) {
     scan->cameraParamsIntensity.distortion =
         mrpt::img::DistortionModel::none;  // MRPT leaves the colour lens out
     expectSameRegistrationAsMrpt(*scan, 0.95);
+}
+
+TEST(ObservationConverter, APoseOfTheColourCameraIsTheStoredOneToTheLastBit) {
+    const test::TemporaryFolder folder;
+    const PinholeCamera camera = smallCamera();
+    int changed = 0;
+    for (int i = 0; i < 10; i++) {
+        Pose T_depth_colour(Eigen::Translation3d(0.01 * i, -0.02, 0.003 * i) *
+                            Eigen::AngleAxisd(0.1 + 0.3 * i, Eigen::Vector3d(1, i, -0.5).normalized()));
+        RawlogWriterOptions options;
+        options.depth_camera = DepthCamera{camera, T_depth_colour};
+        const std::string rawlog = folder / (std::to_string(i) + ".rawlog");
+        RawlogWriter writer(rawlog, camera, options);
+        writer.add(1, flatDepth(camera, 2000), patternColour(camera, 0));
+        writer.finish();
+        RawlogReader reader(rawlog);
+        const Pose read = colourFromDepth(reader.next()->relativePoseIntensityWRTDepth);
+        EXPECT_EQ((colourFromDepthAsStored(T_depth_colour).matrix() - read.matrix()).norm(), 0) << i;
+        EXPECT_LT((T_depth_colour.inverse().matrix() - read.matrix()).norm(), 1e-14);
+        if (T_depth_colour.inverse().matrix() != read.matrix()) changed++;
+    }
+    EXPECT_GT(changed, 0) << "or there is nothing to it";
 }
 
 }  // namespace

@@ -28,6 +28,27 @@ TEST(Eth3d, CalibrationIsOneLineOfFourNumbersAndTheSizeIsThatOfTheImages) {
     EXPECT_CONTAINS(openError(folder), "no intrinsics");
 }
 
+TEST(Eth3d, WithoutCalibrationItIsStillRecognised) {
+    const SmallDataset folder("eth3d");
+    folder.remove("calibration.txt");
+    EXPECT_CONTAINS(openError(folder), "calibration.txt is missing");
+    EXPECT_CONTAINS(openError(folder), "one line 'fx fy cx cy'");
+    folder.remove("rgb.txt");
+    folder.remove("depth.txt");
+    EXPECT_CONTAINS(openError(folder), "calibration.txt is missing");
+    folder.writeCamera("5000");  // the user's word
+    EXPECT_EQ(openDataset(folder.path()).description().format, "eth3d");
+}
+
+TEST(Eth3d, AUsersAssociatedListDoesNotTakeASequenceFromTum) {
+    const SmallDataset named("eth3d", 3, "rgbd_dataset_freiburg1_desk"), described("eth3d");
+    named.remove("calibration.txt");
+    EXPECT_CONTAINS(openError(named), "64x48, but the camera is 640x480") << "that of freiburg1";
+    described.remove("calibration.txt");
+    described.writeCamera("5000");
+    EXPECT_EQ(openDataset(described.path()).description().format, "tum");
+}
+
 TEST(Eth3d, SizeIsTakenFromTheFirstImageThatCanBeRead) {
     const SmallDataset folder("eth3d");
     std::filesystem::resize_file(folder / folder.colour(0), 40);

@@ -85,7 +85,8 @@ TEST_P(AnyLayout, CommentsBlankLinesAndWindowsLineEnds) {
     files.push_back(layout() == "7scenes" ? SmallDataset::pose(1) : folder.truthFile());
     files.push_back(layout() == "eth3d" ? "calibration.txt" : "camera.txt");
     for (const std::string& file : files) {
-        std::string text = "# head\r\n\r\n";
+        const bool key_first = file == "camera.txt";  // the mark must not become a part of the key
+        std::string text = std::string("\xEF\xBB\xBF") + (key_first ? "" : "# head\r\n\r\n");
         std::istringstream lines(folder.read(file));
         for (std::string line; std::getline(lines, line);)
             text += "  " + line + "  \t # note\r\n   \r\n# between: 7\r\n";
@@ -240,7 +241,7 @@ TEST_P(ListLayout, LinesThatAreNone) {
     folder.write(list, "soon rgb/a.png 2 depth/a.png\n");
     EXPECT_CONTAINS(openError(folder, layout()), list + ":1: 'soon' is not a number");
     folder.write(list, "# nothing\n");
-    EXPECT_NE(openError(folder, layout()), "");
+    EXPECT_CONTAINS(openError(folder, layout()), (folder / list) + " lists no images");
 }
 
 }  // namespace

@@ -16,18 +16,8 @@ using test::countEntries;
 using test::expectFrames;
 using test::SmallTumFolder;
 
-/// Rawlogs of five frames and two inertial samples, depth inside or in files.
-class MrptApps : public ::testing::TestWithParam<bool> {
+class RawlogEdit : public ::testing::Test {
   protected:
-    void SetUp() override {
-        input_.write("accelerometer.txt", SmallTumFolder::stamp(0, 0.01) + " 0 0 9.8\n" +
-                                              SmallTumFolder::stamp(2, 0.01) + " 0 0 9.8\n");
-        const auto outcome = convert(
-            input_.path(), output_ / "a.rawlog",
-            GetParam() ? std::vector<std::string>{"--externalize-depth"} : std::vector<std::string>{});
-        ASSERT_EQ(outcome.exit_code, 0) << outcome.all();
-    }
-
     static bool rawlogEditIsMissing() { return std::system("command -v rawlog-edit >/dev/null 2>&1") != 0; }
 
     /// Runs rawlog-edit in the rawlog's own folder: MRPT 2.5 looks for the images in the wrong place when the
@@ -41,8 +31,22 @@ class MrptApps : public ::testing::TestWithParam<bool> {
         return said;
     }
 
-    SmallTumFolder input_{5};
     test::TemporaryFolder output_;
+};
+
+/// Rawlogs of five frames and two inertial samples, depth inside or in files.
+class MrptApps : public RawlogEdit, public ::testing::WithParamInterface<bool> {
+  protected:
+    void SetUp() override {
+        input_.write("accelerometer.txt", SmallTumFolder::stamp(0, 0.01) + " 0 0 9.8\n" +
+                                              SmallTumFolder::stamp(2, 0.01) + " 0 0 9.8\n");
+        const auto outcome = convert(
+            input_.path(), output_ / "a.rawlog",
+            GetParam() ? std::vector<std::string>{"--externalize-depth"} : std::vector<std::string>{});
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.all();
+    }
+
+    SmallTumFolder input_{5};
 };
 
 TEST_P(MrptApps, InfoCountsFramesAndSamples) {
@@ -100,6 +104,33 @@ TEST_P(MrptApps, TheLoaderOfRawLogViewerTakesThem) {
     }
     EXPECT_EQ(frames, 5u);
     EXPECT_EQ(samples, 2u);
+}
+
+/// 7-Scenes: depth and colour are of two cameras, in the rawlog as well.
+class MrptAppsTwoCameras : public RawlogEdit {
+  protected:
+    void SetUp() override {
+        if (rawlogEditIsMissing()) GTEST_SKIP() << "rawlog-edit (package mrpt-apps) not installed";
+        const auto made =
+            test::runProgram("rawlog-simulate", {"--scene", "livingroom", "--frames", "3", "--layout",
+                                                 "7scenes", "--output", output_ / "seq-01"});
+        ASSERT_EQ(made.exit_code, 0) << made.all();
+        const auto outcome = convert(output_ / "seq-01", output_ / "a.rawlog");
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.all();
+    }
+};
+
+TEST_F(MrptAppsTwoCameras, InfoExternalizeAndCut) {
+    const std::string info = rawlogEdit("--info -i a.rawlog");
+    EXPECT_CONTAINS(info, "Overall number of objects         : 3");
+    EXPECT_CONTAINS(info, "RGBD /      3");
+    rawlogEdit("--externalize -i a.rawlog -o b.rawlog --image-format png");
+    for (const auto& file : fs::directory_iterator(output_ / "a_Images"))
+        fs::copy(file.path(), output_ / ("b_Images/" + file.path().filename().string()));
+    expectFrames(output_ / "b.rawlog", output_ / "seq-01", {0, 1, 2});
+    rawlogEdit("--cut --from-index 1 --to-index 2 -i a.rawlog -o c.rawlog");
+    fs::create_directory_symlink("a_Images", output_ / "c_Images");
+    expectFrames(output_ / "c.rawlog", output_ / "seq-01", {1, 2});
 }
 
 INSTANTIATE_TEST_SUITE_P(Depth, MrptApps, ::testing::Bool(),

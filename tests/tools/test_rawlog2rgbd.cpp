@@ -38,15 +38,18 @@ TEST(Rawlog2rgbd, GivesTheFolderBack) {
         ASSERT_EQ(outcome.exit_code, 0) << outcome.all();
         EXPECT_CONTAINS(outcome.out, "3 frames written, 0 left out, depth_scale 5000");
         EXPECT_CONTAINS(outcome.out, "3 files as they are, 0 written as PNG");
+        EXPECT_CONTAINS(outcome.out, "frames/s; decoding the rawlog alone ");
         test::expectSameDataset(input.path(), output / "back");
         EXPECT_EQ(readFile(output / "back/groundtruth.txt"), "# t\n1 0.123456789 0 0 0 0 0 1\n");
         const auto imu = openDataset(output / "back").imu();
         ASSERT_EQ(imu.size(), 1u);
         EXPECT_EQ(imu[0].acceleration, Eigen::Vector3d(0.1, -0.25, 9.7512345678901));
-        const std::string stamp = SmallTumFolder::stamp(0);
-        EXPECT_EQ(readFile(output / "back/associations.txt")
-                      .rfind(stamp + " rgb/" + stamp + ".png " + stamp + " depth/" + stamp + ".png\n", 0),
-                  0u);
+        const std::string stamp = SmallTumFolder::stamp(0), depth_stamp = SmallTumFolder::stamp(0, 0.004);
+        EXPECT_EQ(
+            readFile(output / "back/associations.txt")
+                .rfind(stamp + " rgb/" + stamp + ".png " + depth_stamp + " depth/" + depth_stamp + ".png\n",
+                       0),
+            0u);
         EXPECT_FALSE(fs::exists(output / "back.part"));
     }
 }

@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 
 #include <cmath>
 #include <opencv2/core.hpp>
 
 #include "datasets/dataset_reader.h"
 #include "datasets/seven_scenes.h"
+#include "roevo_mrpt/image_conversions.h"
+#include "roevo_mrpt/observation_converter.h"
+#include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_simulator/simulator.h"
 #include "tools/small_dataset.h"
 
@@ -25,7 +29,7 @@ TEST(SevenScenes, SimulatedSequenceIsRegisteredToColour) {
     ASSERT_EQ(dataset.size(), 2u);
     EXPECT_EQ(dataset.camera(), sevenScenesColourCamera());
     EXPECT_CONTAINS(dataset.summary(), "assumed: the dataset publishes none for colour");
-    EXPECT_CONTAINS(dataset.summary(), "f 585 c (320, 240) and registered to colour here");
+    EXPECT_CONTAINS(dataset.summary(), "f 585 c (320, 240) and registered to colour when a frame is read");
 
     // What one camera for both would have seen
     simulator::SimulationOptions options;
@@ -53,6 +57,40 @@ TEST(SevenScenes, SimulatedSequenceIsRegisteredToColour) {
         EXPECT_EQ(pose.timestamp, dataset.entry(static_cast<std::size_t>(i)).timestamp);
     }
     EXPECT_EQ(dataset.entry(0).timestamp, 1.0);
+}
+
+TEST(SevenScenes, ARawlogHoldsTheDatasetsOwnDepth) {
+    const test::TemporaryFolder parent;
+    const std::string folder = parent / "seq-01", rawlog = parent / "o.rawlog";
+    const auto made =
+        test::runProgram("rawlog-simulate", {"--scene", "livingroom", "--frames", "2", "--noise", "kinect",
+                                             "--layout", "7scenes", "--output", folder});
+    ASSERT_EQ(made.exit_code, 0) << made.all();
+    const auto there = test::runProgram("rgbd2rawlog", {"--input", folder, "--output", rawlog, "--verify"});
+    ASSERT_EQ(there.exit_code, 0) << there.all();
+    EXPECT_CONTAINS(there.out, "verified: 2 frames, 614400 depth values");
+
+    const DatasetReader dataset = openDataset(folder);
+    RawlogReader reader(rawlog);
+    for (std::size_t i = 0; i < 2; i++) {
+        const auto scan = reader.next();
+        ASSERT_TRUE(scan);
+        EXPECT_EQ(depthCameraOf(*scan), sevenScenesRegistration().depth_camera);
+        EXPECT_EQ(colourCameraOf(*scan), sevenScenesColourCamera());
+        cv::Mat file = cv::imread(dataset.entry(i).depth, cv::IMREAD_UNCHANGED);
+        ASSERT_GT(cv::countNonZero(file == 65535), 0) << "or there is no unknown depth to be told";
+        file.setTo(0, file == 65535);
+        const cv::Mat held(480, 640, CV_16UC1, &scan->rangeImage(0, 0));
+        EXPECT_EQ(cv::norm(held, file, cv::NORM_INF), 0);
+
+        const cv::Mat a = toRgbdFrame(*scan).depth, b = dataset.readFrame(i).depth;
+        EXPECT_EQ(cv::norm(a, b, cv::NORM_INF), 0) << "registered alike, to the last bit";
+        cv::Mat moved = depthToMetres(held, dataset.depthUnit());
+        EXPECT_GT(cv::norm(a, moved, cv::NORM_INF), 0.1) << "and registered at all";
+    }
+    const auto back = test::runProgram("rawlog2rgbd", {"--input", rawlog, "--output", parent / "back"});
+    ASSERT_EQ(back.exit_code, 0) << back.all();
+    EXPECT_CONTAINS(back.out, "2 frames not as in the rawlog: depth registered to the colour camera");
 }
 
 TEST(SevenScenes, TheInvalidValueIsUnknownDepth) {
@@ -87,10 +125,19 @@ TEST(SevenScenes, PosesThatAreNoneAreLeftOut) {
     EXPECT_EQ(dataset.size(), 4u);
     ASSERT_EQ(dataset.groundTruth().poses.size(), 1u);
     EXPECT_EQ(dataset.groundTruth().poses[0].timestamp, SmallDataset::time(3));
+    EXPECT_CONTAINS(dataset.summary(), "1 of 4 frames have no frame-N.pose.txt");
     EXPECT_CONTAINS(dataset.groundTruth().note, "2 left out, first: ");
     EXPECT_CONTAINS(dataset.groundTruth().note, "expected a 4x4 matrix, found 12 numbers");
     folder.write(SmallDataset::pose(1), "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
     EXPECT_CONTAINS(openDataset(folder.path()).groundTruth().note, "is not a rotation and a translation");
+}
+
+TEST(SevenScenes, NoPosesAtAll) {
+    const SmallDataset folder("7scenes", 3);
+    for (int i = 0; i < 3; i++) folder.remove(SmallDataset::pose(i));
+    const DatasetReader dataset = openDataset(folder.path());
+    EXPECT_CONTAINS(dataset.summary(), "3 of 3 frames have no frame-N.pose.txt: no ground truth for them");
+    EXPECT_TRUE(dataset.groundTruth().poses.empty());
 }
 
 TEST(SevenScenes, TheSceneFolderPointsToItsSequences) {

@@ -199,7 +199,12 @@ TEST(Tum, WrongFoldersAndLists) {
                     "unknown dataset format 'oni' (known: auto, 7scenes, eth3d, icl, tum, plain)");
     EXPECT_CONTAINS(openError(folder, {"tum", 0.001}), "closest pair 0.004 s apart");
     folder.write("rgb.txt", "# nothing\n");
-    EXPECT_CONTAINS(openError(folder), "0 colour, 3 depth images");
+    EXPECT_CONTAINS(openError(folder), (folder / "rgb.txt") + " lists no images");
+    const std::string depths = test::readFile(folder / "depth.txt");
+    folder.write("rgb.txt", depths);
+    folder.write("depth.txt", "");
+    EXPECT_CONTAINS(openError(folder), (folder / "depth.txt") + " lists no images");
+    folder.write("depth.txt", depths);
     folder.write("rgb.txt", "soon rgb/x.png\n");
     EXPECT_CONTAINS(openError(folder), "rgb.txt:1: 'soon' is not a number");
     folder.write("rgb.txt", "# c\n1.0\n");

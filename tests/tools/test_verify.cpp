@@ -88,6 +88,26 @@ TEST_F(Verify, Intrinsics) {
                     "intrinsics");
 }
 
+TEST_F(Verify, TheDepthCamera) {
+    DatasetDescription description = openDataset(input_.path()).description();
+    description.registration.emplace();
+    description.registration->depth_camera = description.camera;
+    description.registration->depth_camera.fx += 10;
+    description.registration->T_colour_depth.translation().x() = 0.1;
+    const DatasetReader dataset(description);
+    const ConvertResult converted =
+        convertToRawlog(dataset, input_ / "o.rawlog", {}, [](const auto&, const auto&) {});
+    const auto faultAgainst = [&](const DatasetReader& other) {
+        return errorOf([&] { verifyRawlog(other, {}, converted, input_ / "o.rawlog"); });
+    };
+    EXPECT_EQ(faultAgainst(dataset), "");
+    description.registration->depth_camera.cy += 1e-6;
+    EXPECT_CONTAINS(faultAgainst(DatasetReader(description)), "differs in intrinsics of the depth camera");
+    description.registration->depth_camera.cy -= 1e-6;
+    description.registration->T_colour_depth.translation().z() = 1e-3;
+    EXPECT_CONTAINS(faultAgainst(DatasetReader(description)), "differs in depth in metres");
+}
+
 TEST_F(Verify, DepthScale) {
     EXPECT_CONTAINS(fault([&](auto&, auto&) { input_.writeCamera("5000.01"); }), "depth in metres");
 }

@@ -1,28 +1,21 @@
 #include "roevo_mrpt/image_conversions.h"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+
+#include "image_file.h"
 
 namespace roevo {
 namespace {
 
 cv::Mat decode(const std::string& file, int flags) {
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    // Behind a folder that may not be entered nobody knows: access() says why
-    if (std::filesystem::status_known(status) && !std::filesystem::is_regular_file(status))
-        throw std::runtime_error("image file not found: " + file);
-    if (access(file.c_str(), R_OK) != 0)
-        throw std::runtime_error("cannot read image (" + std::string(std::strerror(errno)) + "): " + file);
+    const std::vector<std::uint8_t> bytes = readImageFile(file);
+    if (const std::string damage = imageDamage(bytes); !damage.empty())
+        throw std::runtime_error("cannot decode image (" + damage + "): " + file);
     cv::Mat image;
     try {
-        image = cv::imread(file, flags);
+        image = cv::imdecode(bytes, flags);
     } catch (const cv::Exception&) {
         image.release();
     }

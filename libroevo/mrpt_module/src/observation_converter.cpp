@@ -1,6 +1,8 @@
 #include "roevo_mrpt/observation_converter.h"
 
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/serialization/CArchive.h>
 
 #include <filesystem>
 #include <iterator>
@@ -75,9 +77,22 @@ PinholeCamera colourCameraOf(const CObservation3DRangeScan& scan) {
     return fromMrptCamera(scan.cameraParamsIntensity, "colour camera");
 }
 
+PinholeCamera depthCameraOf(const CObservation3DRangeScan& scan) {
+    return fromMrptCamera(scan.cameraParams, "depth camera");
+}
+
 bool depthIsAsStored(const CObservation3DRangeScan& scan) {
-    return scan.range_is_depth &&
-           camerasCoincide(scan, fromMrptCamera(scan.cameraParams, "depth camera"), colourCameraOf(scan));
+    return scan.range_is_depth && camerasCoincide(scan, depthCameraOf(scan), colourCameraOf(scan));
+}
+
+Pose colourFromDepthAsStored(const Pose& T_depth_colour) {
+    mrpt::io::CMemoryStream memory;
+    auto archive = mrpt::serialization::archiveFrom(memory);
+    archive << relativePoseOfColour(T_depth_colour);
+    memory.Seek(0);
+    mrpt::poses::CPose3D stored;
+    archive >> stored;
+    return colourFromDepth(stored);
 }
 
 bool isMountedOnRobot(const CObservation3DRangeScan& scan) {
@@ -103,7 +118,7 @@ std::vector<StampedPose> robotTrajectory(const std::vector<StampedPose>& camera_
 
 RgbdFrame toRgbdFrame(const CObservation3DRangeScan& scan) {
     const PinholeCamera colour_camera = colourCameraOf(scan);
-    const PinholeCamera depth_camera = fromMrptCamera(scan.cameraParams, "depth camera");
+    const PinholeCamera depth_camera = depthCameraOf(scan);
 
     RgbdFrame frame;
     frame.timestamp = fromMrptTime(scan.timestamp);
@@ -113,11 +128,9 @@ RgbdFrame toRgbdFrame(const CObservation3DRangeScan& scan) {
     if (image.channels() == 3) frame.colour = image;
 
     frame.depth = depthOf(scan, depth_camera);
-    if (!camerasCoincide(scan, depth_camera, colour_camera)) {
-        const Pose T_depthsensor_colour = toEigen(scan.relativePoseIntensityWRTDepth);
+    if (!camerasCoincide(scan, depth_camera, colour_camera))
         frame.depth = registerDepth(frame.depth, depth_camera, colour_camera,
-                                    T_depthsensor_colour.inverse() * sensorFromOptical());
-    }
+                                    colourFromDepth(scan.relativePoseIntensityWRTDepth));
     return frame;
 }
 

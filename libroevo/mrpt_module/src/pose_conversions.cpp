@@ -37,6 +37,14 @@ Pose opticalPoseFromSensor(const mrpt::poses::CPose3D& T_world_sensor) {
     return toEigen(T_world_sensor) * sensorFromOptical();
 }
 
+mrpt::poses::CPose3D relativePoseOfColour(const Pose& T_depth_colour) {
+    return toMrpt(sensorFromOptical() * T_depth_colour);
+}
+
+Pose colourFromDepth(const mrpt::poses::CPose3D& relative_pose_of_colour) {
+    return toEigen(relative_pose_of_colour).inverse() * sensorFromOptical();
+}
+
 mrpt::poses::CPose3DPDFGaussian toMrptGaussian(const Pose& T_world_camera, const Matrix6d& covariance,
                                                const Pose& T_camera_body) {
     const mrpt::poses::CPose3D mean = toMrpt(T_world_camera * T_camera_body);

@@ -16,6 +16,7 @@
 #include <stdexcept>
 
 #include "roevo_mrpt/camera_conversions.h"
+#include "roevo_mrpt/file_copy.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/time_conversions.h"
 
@@ -103,8 +104,7 @@ struct RawlogWriter::Impl {
         scan.cameraParamsIntensity = mrpt_camera;
         if (options.depth_camera) {
             scan.cameraParams = toMrptCamera(options.depth_camera->camera, options.sensor_label + "_depth");
-            scan.relativePoseIntensityWRTDepth =
-                toMrpt(sensorFromOptical() * options.depth_camera->T_depth_colour);
+            scan.relativePoseIntensityWRTDepth = relativePoseOfColour(options.depth_camera->T_depth_colour);
         }
         scan.hasRangeImage = true;
         scan.rangeImage_setSize(depth_u16.rows, depth_u16.cols);
@@ -121,9 +121,14 @@ struct RawlogWriter::Impl {
     void externalizeDepth(mrpt::obs::CObservation3DRangeScan& scan, const std::string& name) const {
         const std::size_t values = static_cast<std::size_t>(scan.rangeImage.rows()) *
                                    static_cast<std::size_t>(scan.rangeImage.cols());
-        scan.rangeImage_convertToExternalStorage(name, (temporary_images / "").string());
+        bool whole = true;
+        try {
+            scan.rangeImage_convertToExternalStorage(name, (temporary_images / "").string());
+        } catch (const std::exception&) {
+            whole = false;  // MRPT's own words go over several lines
+        }
         const std::size_t head = 2 * sizeof(std::uint32_t);  // rows, columns
-        if (gzTrailerLength(temporary_images / name) != head + sizeof(std::uint16_t) * values)
+        if (!whole || gzTrailerLength(temporary_images / name) != head + sizeof(std::uint16_t) * values)
             throw std::runtime_error("cannot write " + (temporary_images / name).string() + ": disk full?");
     }
 
@@ -211,14 +216,7 @@ void RawlogWriter::addFile(double timestamp, const cv::Mat& depth_u16, const std
     m.checkDepth(depth_u16);
     if (!fs::is_regular_file(image_file)) throw std::runtime_error("image file not found: " + image_file);
     const std::string name = m.nextName(timestamp, fs::path(image_file).extension().string());
-    const fs::path target = m.temporary_images / name;
-    const fs::path source = fs::canonical(image_file);  // a link to a symbolic link would dangle when moved
-    std::error_code error;
-    fs::create_hard_link(source, target, error);
-    if (error) fs::copy_file(source, target, error);
-    if (error)
-        throw std::runtime_error("cannot copy " + image_file + " to " + target.string() + ": " +
-                                 error.message());
+    linkOrCopyFile(image_file, (m.temporary_images / name).string());
     m.write(timestamp, depth_u16, name);
 }
 

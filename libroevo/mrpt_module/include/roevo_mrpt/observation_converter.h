@@ -15,6 +15,14 @@ namespace roevo {
 /// @throws std::runtime_error "no intrinsics …" when it is empty, or when its size is not the image's.
 PinholeCamera colourCameraOf(const mrpt::obs::CObservation3DRangeScan& scan);
 
+/// The camera of a scan's range image, which may be another one. @throws std::runtime_error as
+/// colourCameraOf()
+PinholeCamera depthCameraOf(const mrpt::obs::CObservation3DRangeScan& scan);
+
+/// T_colour_depth as toRgbdFrame() finds it in a scan that was written with `T_depth_colour`: rawlogs hold
+/// rotations as quaternions, which changes the last bits.
+Pose colourFromDepthAsStored(const Pose& T_depth_colour);
+
 /// Turns a scan into a frame for the odometry: depth in metres registered to the colour camera (untouched
 /// when both cameras coincide), ranges along the ray turned into depth, 8-bit grey. External images are
 /// decoded here and not kept by the scan.

@@ -20,6 +20,11 @@ Pose sensorFromOptical();
 mrpt::poses::CPose3D sensorPoseFromOptical(const Pose& T_world_optical);
 Pose opticalPoseFromSensor(const mrpt::poses::CPose3D& T_world_sensor);
 
+/// CObservation3DRangeScan::relativePoseIntensityWRTDepth of a colour camera, and back to T_colour_depth
+/// (optical frames).
+mrpt::poses::CPose3D relativePoseOfColour(const Pose& T_depth_colour);
+Pose colourFromDepth(const mrpt::poses::CPose3D& relative_pose_of_colour);
+
 /// Pose of a body fixed to the camera, with its covariance as MRPT's Gaussian over x y z yaw pitch roll.
 /// @param T_camera_body  where the body sits in the optical frame (the inverse of the sensor's pose on a
 /// robot)
