@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "evaluation/evaluate.h"
-#include "method_run.h"
+#include "roevo-compare/method_run.h"
 #include "roevo/types.h"
 
 namespace roevo {

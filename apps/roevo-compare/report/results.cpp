@@ -1,0 +1,89 @@
+#include "roevo-compare/report/results.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
+#include "support/program.h"
+
+namespace roevo {
+namespace {
+
+EvaluatedRun evaluateRun(const SequenceComparison& sequence, const MethodRun& run) {
+    EvaluatedRun result;
+    if (!run.ok()) {
+        result.fault = run.skipped.empty() ? run.failure : run.skipped;
+        return result;
+    }
+    if (sequence.reference.empty()) {
+        result.fault = sequence.ground_truth_fault.empty() ? "no ground truth" : sequence.ground_truth_fault;
+        return result;
+    }
+    if (run.trajectory.empty()) {
+        result.fault = "the method gave no pose";
+        return result;
+    }
+    for (const StampedPose& pose : run.trajectory)
+        if (!pose.T_world_camera.matrix().allFinite()) {
+            char text[80];
+            std::snprintf(text, sizeof text, "the pose at %.6f s is not a number", pose.timestamp);
+            result.fault = text;
+            return result;
+        }
+    try {
+        result.evaluation = evaluate(sequence.reference, run.trajectory);
+    } catch (const std::exception& e) {
+        result.fault = firstLine(e.what());
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<EvaluatedRun> evaluateRuns(const SequenceComparison& sequence) {
+    std::vector<EvaluatedRun> results;
+    for (const MethodRun& run : sequence.runs) results.push_back(evaluateRun(sequence, run));
+    return results;
+}
+
+std::vector<SequenceResults> evaluateAll(const std::vector<SequenceComparison>& sequences) {
+    std::vector<SequenceResults> all;
+    for (const SequenceComparison& sequence : sequences) all.push_back({&sequence, evaluateRuns(sequence)});
+    return all;
+}
+
+std::optional<double> trackedShare(const MethodRun& run) {
+    if (!run.ok() || run.frames <= run.rejected) return std::nullopt;
+    return static_cast<double>(run.tracked) / static_cast<double>(run.frames - run.rejected);
+}
+
+bool isComplete(const MethodRun& run) {
+    return trackedShare(run).value_or(0) >= kCompleteShare;
+}
+
+std::vector<TableMethod> tableMethods(const std::vector<SequenceResults>& results) {
+    std::vector<TableMethod> methods;
+    for (const SequenceResults& result : results)
+        for (const MethodRun& run : result.sequence->runs)
+            if (std::none_of(methods.begin(), methods.end(),
+                             [&](const TableMethod& m) { return m.name == run.method; }))
+                methods.push_back({run.method, run.label.empty() ? run.method : run.label, run.note});
+    return methods;
+}
+
+std::optional<std::size_t> findRun(const SequenceComparison& sequence, const std::string& method) {
+    for (std::size_t i = 0; i < sequence.runs.size(); ++i)
+        if (sequence.runs[i].method == method) return i;
+    return std::nullopt;
+}
+
+std::string whyNoErrors(const SequenceComparison& sequence, const MethodRun& run,
+                        const EvaluatedRun& evaluated) {
+    if (evaluated.evaluation) return {};
+    if (!sequence.failure.empty()) return sequence.failure;
+    if (!run.skipped.empty()) return "skipped: " + run.skipped;
+    if (!run.failure.empty()) return "failed: " + run.failure;
+    return evaluated.fault;
+}
+
+}  // namespace roevo
