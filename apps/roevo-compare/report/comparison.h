@@ -14,6 +14,7 @@ struct SequenceComparison {
     std::string name;          ///< of the table's row, e.g. "fr1_xyz"
     std::string input;         ///< as given
     std::string failure;       ///< why nothing could be run on it (unreadable, …); empty otherwise
+    std::string note;          ///< what a reader must know of it: damage, frames left out; may be empty
     std::string ground_truth;  ///< file or folder, empty when there is none
     std::vector<StampedPose> reference;    ///< the ground truth's poses; may be empty
     std::string ground_truth_fault;        ///< why there is none although one was named
@@ -28,6 +29,9 @@ struct ComparisonInfo {
     std::string date;                                           ///< ISO, UTC
     std::string machine;                                        ///< processor, cores, memory, system
     std::vector<std::pair<std::string, std::string>> versions;  ///< roevo, mrpt, opencv, eigen, compiler, …
+    /// What a reader must know of this comparison, a sentence each: runs side by side, sequences that were
+    /// not there, an interrupt. To be printed with the protocol.
+    std::vector<std::string> notes;
 };
 
 /// Errors of each run against the sequence's reference, computed once; absent with the reason in words.
