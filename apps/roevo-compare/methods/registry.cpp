@@ -1,5 +1,6 @@
 #include <stdexcept>
 
+#include "distance_field_method.h"
 #include "method.h"
 #include "roevo_method.h"
 
@@ -16,6 +17,7 @@ struct Family {
 // In the order of the tables.
 constexpr Family kFamilies[] = {
     {roevoMethods, makeRoevo},
+    {distanceFieldMethods, makeDistanceField},
 };
 
 }  // namespace
