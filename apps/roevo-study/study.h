@@ -29,8 +29,8 @@ struct StudyInput {
 struct StudyReport {
     std::string summary;             ///< one line for the terminal, with the figures that matter
     std::vector<std::string> files;  ///< names in the folder: CSV and SVG, in the order of the index
-    std::vector<std::string>
-        notes;  ///< what a reader must know: no ground truth, frames left out, no gnuplot
+    std::vector<std::string> notes;  ///< what a reader must know: no ground truth, frames left out
+    std::string plot_fault;          ///< why a plot is missing; empty when all were drawn
 };
 
 /// Runs over the inputs and writes its CSV and SVG files into the folder, which exists.
@@ -71,9 +71,18 @@ class CsvTable {
     std::string text_;
 };
 
-/// Draws `folder`/`name` with gnuplot and lists it in the report; what hinders it becomes a note there,
+/// Draws `folder`/`name` with gnuplot and lists it in the report; what hinders it goes into plot_fault,
 /// because the tables are worth having without it.
 void addPlot(StudyReport& report, const std::string& folder, const std::string& name,
              const std::string& script, int width = 860, int height = 500);
+
+/// Writes the table to `folder`/`name` and lists it in the report. @throws std::runtime_error
+void addTable(StudyReport& report, const std::string& folder, const std::string& name, const CsvTable& table);
+
+/// Middle value, the mean of the two in the middle where their number is even; none of an empty list.
+std::optional<double> median(std::vector<double> values);
+
+/// As printf.
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
 }  // namespace roevo
