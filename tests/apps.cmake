@@ -21,3 +21,8 @@ if(NOT ROEVO_SANITIZE)
                    -P ${CMAKE_CURRENT_SOURCE_DIR}/apps/install_test.cmake)
   set_tests_properties(Install.LibrariesCanBeFoundAndUsed PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endif()
+
+roevo_test(test_distance_field
+  SOURCES apps/test_distance_field.cpp
+  LIBS roevo_methods roevo_simulator roevo_evaluation)
+target_include_directories(test_distance_field PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
