@@ -50,55 +50,76 @@ std::vector<double> factorsWith(double configured) {
     return factors;
 }
 
-// One panel: a thin line for each recording, a thick one for their median.
-std::string panel(const std::string& title, const std::string& y_label,
-                  const std::vector<std::vector<double>>& rows, const std::vector<std::string>& names,
-                  const std::string& block, bool key) {
-    std::string script = gnuplotData(block, rows) + "set title " + gnuplotText(title) + "\nset ylabel " +
-                         gnuplotText(y_label) + '\n' +
-                         (key ? "set key outside right center Left reverse\n" : "unset key\n") + "plot ";
+const Errors& atOtsu(const std::vector<Row>& rows) {
+    return std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.factor == kReference; })
+        ->errors;
+}
+
+// Over the recordings, of the ratio to the error at Otsu; a run that failed has an infinite error.
+double medianRatio(const std::vector<std::vector<Row>>& rows, std::size_t factor,
+                   std::optional<double> Errors::*member) {
+    std::vector<double> values;
+    for (const std::vector<Row>& of_input : rows)
+        values.push_back(ratio(of_input[factor].errors.*member, atOtsu(of_input).*member)
+                             .value_or(std::numeric_limits<double>::infinity()));
+    return median(values).value_or(std::numeric_limits<double>::infinity());
+}
+
+struct Panel {
+    std::string block, title, y_label;
+    std::optional<double> Errors::*member;
+    double left = 0, right = 0;  // of the axes, shares of the width
+};
+
+// One thin line for each recording, a thick one for their median.
+std::string draw(const Panel& panel, const std::vector<double>& factors,
+                 const std::vector<std::string>& names, const std::vector<std::vector<Row>>& rows) {
+    double low = 0.8, high = 1.25;
+    std::vector<std::vector<double>> lines;
+    for (std::size_t f = 0; f < factors.size(); ++f) {
+        std::vector<double> line{factors[f], medianRatio(rows, f, panel.member)};
+        for (const std::vector<Row>& of_input : rows) {
+            const auto value = ratio(of_input[f].errors.*panel.member, atOtsu(of_input).*panel.member);
+            line.push_back(value.value_or(kMissing));
+            if (!value) continue;
+            low = std::min(low, *value);
+            high = std::max(high, *value);
+        }
+        lines.push_back(std::move(line));
+    }
+    std::string script =
+        gnuplotData(panel.block, lines) + "set title " + gnuplotText(panel.title) + "\nset ylabel " +
+        gnuplotText(panel.y_label) +
+        format("\nset yrange [%g:%g]\nset lmargin at screen %g\nset rmargin at screen %g\nplot ", low / 1.2,
+               high * 1.2, panel.left, panel.right);
     for (std::size_t i = 0; i < names.size(); ++i)
-        script += format("$%s using 1:%zu with linespoints lt %zu lw 1.5 ps 0.6 title ", block.c_str(), i + 3,
-                         i % 8 + 1) +
+        script += format("$%s using 1:%zu with linespoints lt %zu lw 1.5 ps 0.6 title ", panel.block.c_str(),
+                         i + 3, i % 8 + 1) +
                   gnuplotText(names[i]) + ", ";
-    return script + "$" + block +
+    return script + "$" + panel.block +
            " using 1:2 with lines lw 4 lc rgb '#222222' title 'median', 1/0 with lines lw 1.5 dt 2 lc rgb "
-           "'#888888' title 'our default'\n";
+           "'#888888' title 'our default'\nunset key\n";
 }
 
 void plot(StudyReport& report, const std::string& folder, const std::vector<double>& factors,
           double configured, const std::vector<std::string>& names,
           const std::vector<std::vector<Row>>& rows) {
-    using Member = std::optional<double> Errors::*;
-    const auto table = [&](Member member) {
-        std::vector<std::vector<double>> lines;
-        for (std::size_t f = 0; f < factors.size(); ++f) {
-            std::vector<double> values, line;
-            for (const std::vector<Row>& of_input : rows) {
-                const auto reference = std::find_if(of_input.begin(), of_input.end(),
-                                                    [](const Row& row) { return row.factor == kReference; });
-                const auto value = ratio(of_input[f].errors.*member, reference->errors.*member);
-                line.push_back(value.value_or(kMissing));
-                if (value) values.push_back(*value);
-            }
-            line.insert(line.begin(), {factors[f], median(values).value_or(kMissing)});
-            lines.push_back(std::move(line));
-        }
-        return lines;
-    };
     const std::string script =
         "set logscale xy\nset xrange [0.22:4.5]\nset xtics (0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 2.8, 4)\n"
-        "set ytics (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)\nset yrange [0.5<*<0.8:2<*<100]\n"
-        "set xlabel 'high threshold / Otsu'\n" +
+        "set ytics (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)\n"
+        "set xlabel 'high threshold / Otsu threshold'\nset tmargin at screen 0.9\nset bmargin at screen "
+        "0.15\n"
+        "set key at screen 0.785, 0.85 left top Left reverse\n" +
         format("set arrow from %g, graph 0 to %g, graph 1 nohead lw 1.5 dt 2 lc rgb '#888888'\n", configured,
                configured) +
-        "set multiplot\nset size 0.41, 1\nset origin 0, 0\n" +
-        panel("Absolute trajectory error", "ATE / ATE at Otsu", table(&Errors::ate), names, "ate", false) +
-        "set size 0.59, 1\nset origin 0.41, 0\n" +
-        panel("Relative pose error, translation", "RPE / RPE at Otsu", table(&Errors::rpe_translation), names,
-              "rpe", true) +
+        "set multiplot\n" +
+        draw({"ate", "Absolute trajectory error", "ATE / ATE at Otsu", &Errors::ate, 0.06, 0.39}, factors,
+             names, rows) +
+        draw({"rpe", "Relative pose error over 1 s, translation", "RPE / RPE at Otsu",
+              &Errors::rpe_translation, 0.445, 0.775},
+             factors, names, rows) +
         "unset multiplot";
-    addPlot(report, folder, "canny.svg", script, 1180, 460);
+    addPlot(report, folder, "canny.svg", script, 1280, 460);
 }
 
 }  // namespace
@@ -109,7 +130,7 @@ StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std
     const std::vector<double> factors = factorsWith(configured);
     CsvTable table({"recording", "mode", "factor", "configured", "ate_m", "ate_ratio",
                     "rpe_translation_m_per_s", "rpe_translation_ratio", "rpe_rotation_deg_per_s",
-                    "rpe_rotation_ratio", "frames", "tracked", "note"});
+                    "rpe_rotation_ratio", "points_per_frame", "ms_per_frame", "frames", "tracked", "note"});
     std::vector<std::vector<Row>> plotted;
     std::vector<std::string> names;
     Progress progress("canny", inputs.size() * factors.size());
@@ -129,9 +150,7 @@ StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std
             rows.push_back(std::move(row));
             progress.update(++done);
         }
-        const Errors reference = std::find_if(rows.begin(), rows.end(), [](const Row& row) {
-                                     return row.factor == kReference;
-                                 })->errors;
+        const Errors reference = atOtsu(rows);
         for (const Row& row : rows)
             table.add({input.name, toString(input.options.mode), CsvTable::number(row.factor),
                        row.factor == configured ? "yes" : "no", CsvTable::number(row.errors.ate),
@@ -140,6 +159,7 @@ StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std
                        CsvTable::number(ratio(row.errors.rpe_translation, reference.rpe_translation)),
                        CsvTable::number(row.errors.rpe_rotation),
                        CsvTable::number(ratio(row.errors.rpe_rotation, reference.rpe_rotation)),
+                       CsvTable::number(row.run.points), CsvTable::number(row.run.milliseconds, 4),
                        std::to_string(row.run.frames), std::to_string(row.run.tracked), row.run.fault});
         if (reference.ate) {
             names.push_back(input.name);
@@ -152,8 +172,7 @@ StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std
     addTable(report, folder, "canny.csv", table);
     report.notes.push_back(
         format("The low threshold is half the high one; min_high_threshold is out of force, so that the "
-               "factor alone decides. "
-               "Configured: %g x Otsu.",
+               "factor alone decides. Configured: %g x Otsu.",
                configured));
     if (plotted.empty()) {
         report.summary = "no recording with ground truth: no errors, no plot";
@@ -161,25 +180,16 @@ StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std
     }
     plot(report, folder, factors, configured, names, plotted);
 
-    double best = 0, least = std::numeric_limits<double>::infinity(), at_configured = 0;
+    std::size_t best = 0, at_configured = 0;
     for (std::size_t f = 0; f < factors.size(); ++f) {
-        std::vector<double> ratios;
-        for (const auto& rows : plotted) {
-            const auto at_otsu = std::find_if(rows.begin(), rows.end(),
-                                              [](const Row& row) { return row.factor == kReference; });
-            if (const auto value = ratio(rows[f].errors.ate, at_otsu->errors.ate)) ratios.push_back(*value);
-        }
-        const auto middle = median(ratios);
-        if (middle && *middle < least) {
-            least = *middle;
-            best = factors[f];
-        }
-        if (factors[f] == configured) at_configured = middle.value_or(0);
+        if (medianRatio(plotted, f, &Errors::ate) < medianRatio(plotted, best, &Errors::ate)) best = f;
+        if (factors[f] == configured) at_configured = f;
     }
     report.summary = format(
-        "%zu recordings: least ATE (median of ratios) at %g x Otsu, %.2f of that at Otsu; configured: "
-        "%g x Otsu, %.2f",
-        plotted.size(), best, least, configured, at_configured);
+        "%zu recordings, median of ATE / ATE at Otsu: least at %g x Otsu (%.2f); configured: %g x Otsu "
+        "(%.2f)",
+        plotted.size(), factors[best], medianRatio(plotted, best, &Errors::ate), configured,
+        medianRatio(plotted, at_configured, &Errors::ate));
     return report;
 }
 

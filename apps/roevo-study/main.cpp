@@ -39,9 +39,7 @@ constexpr Study kStudies[] = {
 #ifdef ROEVO_STUDY_ablation
     {"ablation", "Ablation of coarse tracking", studyAblation},
 #endif
-#ifdef ROEVO_STUDY_repeatability
     {"repeatability", "Repeatability", studyRepeatability},
-#endif
 #ifdef ROEVO_STUDY_efficiency
     {"efficiency", "Efficiency", studyEfficiency},
 #endif

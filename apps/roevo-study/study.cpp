@@ -16,14 +16,20 @@ namespace roevo {
 StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options) {
     Odometry odometry(input.camera, options);
     StudyRun run;
+    std::vector<double> milliseconds;
     const auto source = input.open();
     for (SourceFrame frame; source->next(frame);) {
         ++run.frames;
         if (!frame.fault.empty()) continue;
-        const FrameStatus status = odometry.processFrame(frame.frame).status;
-        run.tracked += status == FrameStatus::kOk || status == FrameStatus::kInitialised;
+        const FrameResult result = odometry.processFrame(frame.frame);
+        run.tracked += result.status == FrameStatus::kOk || result.status == FrameStatus::kInitialised;
+        run.points += result.num_points;
+        milliseconds.push_back(result.ms.total);
     }
+    if (!milliseconds.empty()) run.points /= static_cast<double>(milliseconds.size());
+    run.milliseconds = median(milliseconds).value_or(0);
     run.trajectory = odometry.trajectory();
+    for (const KeyframeInfo& keyframe : odometry.keyframes()) run.keyframe_times.push_back(keyframe.timestamp);
     if (input.ground_truth.empty()) {
         run.fault = input.ground_truth_note;
         return run;
