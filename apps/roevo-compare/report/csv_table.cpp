@@ -2,9 +2,10 @@
 #include <functional>
 #include <utility>
 
+#include "roevo-compare/report/documents.h"
 #include "roevo-compare/report/metrics.h"
+#include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
-#include "roevo-compare/report/tables.h"
 #include "roevo-compare/report/text.h"
 
 namespace roevo {
@@ -68,16 +69,6 @@ void addTimes(Row& row, const std::string& name, const StageStatistics* s) {
     row.number(name + "_median_ms", value(&StageStatistics::median));
     row.number(name + "_p95_ms", value(&StageStatistics::p95));
     row.number(name + "_mean_ms", value(&StageStatistics::mean));
-}
-
-std::vector<std::string> allStages(const std::vector<SequenceResults>& results) {
-    std::vector<std::string> names;
-    for (const SequenceResults& result : results)
-        for (const MethodRun& run : result.sequence->runs)
-            for (const StageStatistics& stage : run.stages)
-                if (std::find(names.begin(), names.end(), stage.name) == names.end())
-                    names.push_back(stage.name);
-    return names;
 }
 
 void addCosts(Row& row, const MethodRun* run, const std::vector<std::string>& stages) {
@@ -159,13 +150,17 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
     row.text("ground_truth", sequence.ground_truth);
     row.text("run_folder", index && *index < sequence.run_folders.size() ? sequence.run_folders[*index] : "");
     row.text("note", run ? run->note : "");
+    row.text("sequence_note", sequence.note);
+    row.text("warning", run ? run->warning : "");
+    row.count("jobs_side_by_side", counted(&MethodRun::jobs));
+    row.text("protocol", errorProtocol() + " " + costProtocol());
     return row;
 }
 
 }  // namespace
 
 std::string csvTable(const std::vector<SequenceResults>& results) {
-    const auto stages = allStages(results);
+    const auto stages = stageNames(results);
     std::string head, rows;
     for (const SequenceResults& result : results) {
         const auto ranks = allRanks(result);

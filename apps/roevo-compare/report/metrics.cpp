@@ -88,8 +88,8 @@ std::vector<bool> bestRuns(const Metric& metric, const SequenceResults& results)
     std::vector<Value> values(count);
     for (std::size_t i = 0; i < count; ++i) values[i] = metricOf(metric, results, i);
     std::vector<bool> best(count, false);
-    if (count - static_cast<std::size_t>(std::count(values.begin(), values.end(), std::nullopt)) < 2)
-        return best;
+    const auto missing = std::count(values.begin(), values.end(), std::nullopt);
+    if (metric.is_share || count - static_cast<std::size_t>(missing) < 2) return best;
 
     const auto complete = [&](std::size_t i) { return values[i] && isComplete(results.sequence->runs[i]); };
     bool any_complete = false;
@@ -97,9 +97,7 @@ std::vector<bool> bestRuns(const Metric& metric, const SequenceResults& results)
     const auto counts = [&](std::size_t i) { return any_complete ? complete(i) : values[i].has_value(); };
     Value extreme;
     for (std::size_t i = 0; i < count; ++i)
-        if (counts(i) &&
-            (!extreme || (metric.greater_is_better ? *values[i] > *extreme : *values[i] < *extreme)))
-            extreme = values[i];
+        if (counts(i) && (!extreme || *values[i] < *extreme)) extreme = values[i];
     for (std::size_t i = 0; i < count; ++i)
         best[i] =
             counts(i) && shownNumber(values[i], metric.decimals) == shownNumber(extreme, metric.decimals);

@@ -13,7 +13,7 @@ struct Metric {
     std::string unit;   ///< as shown, e.g. "cm"; `value` is in it
     int decimals = 0;
     bool is_error = false;  ///< needs ground truth, and is ranked
-    bool greater_is_better = false;
+    bool is_share = false;  ///< of frames tracked: says what the errors are worth, and has no best
     std::optional<double> (*value)(const MethodRun& run, const EvaluatedRun& evaluated) = nullptr;
 };
 

@@ -11,9 +11,7 @@ std::vector<std::optional<int>> rankRuns(const Metric& metric, const SequenceRes
     std::vector<std::optional<Key>> keys(results.evaluated.size());
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const auto value = metricOf(metric, results, i);
-        if (takes_part[i] && value)
-            keys[i] =
-                Key(!isComplete(results.sequence->runs[i]), metric.greater_is_better ? -*value : *value);
+        if (takes_part[i] && value) keys[i] = Key(!isComplete(results.sequence->runs[i]), *value);
     }
     std::vector<std::optional<int>> ranks(keys.size());
     for (std::size_t i = 0; i < keys.size(); ++i)

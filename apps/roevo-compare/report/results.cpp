@@ -1,7 +1,7 @@
 #include "roevo-compare/report/results.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 #include <exception>
 
 #include "support/program.h"
@@ -23,13 +23,10 @@ EvaluatedRun evaluateRun(const SequenceComparison& sequence, const MethodRun& ru
         result.fault = "the method gave no pose";
         return result;
     }
-    for (const StampedPose& pose : run.trajectory)
-        if (!pose.T_world_camera.matrix().allFinite()) {
-            char text[80];
-            std::snprintf(text, sizeof text, "the pose at %.6f s is not a number", pose.timestamp);
-            result.fault = text;
-            return result;
-        }
+    if (!allFinite(run.trajectory)) {
+        result.fault = "a pose is not a number";
+        return result;
+    }
     try {
         result.evaluation = evaluate(sequence.reference, run.trajectory);
     } catch (const std::exception& e) {
@@ -61,20 +58,40 @@ bool isComplete(const MethodRun& run) {
     return trackedShare(run).value_or(0) >= kCompleteShare;
 }
 
+const std::string& labelOf(const MethodRun& run) {
+    return run.label.empty() ? run.method : run.label;
+}
+
 std::vector<TableMethod> tableMethods(const std::vector<SequenceResults>& results) {
     std::vector<TableMethod> methods;
     for (const SequenceResults& result : results)
         for (const MethodRun& run : result.sequence->runs)
             if (std::none_of(methods.begin(), methods.end(),
                              [&](const TableMethod& m) { return m.name == run.method; }))
-                methods.push_back({run.method, run.label.empty() ? run.method : run.label, run.note});
+                methods.push_back({run.method, labelOf(run), run.note});
     return methods;
+}
+
+std::vector<std::string> stageNames(const std::vector<SequenceResults>& results) {
+    std::vector<std::string> names;
+    for (const SequenceResults& result : results)
+        for (const MethodRun& run : result.sequence->runs)
+            for (const StageStatistics& stage : run.stages)
+                if (run.ok() && std::find(names.begin(), names.end(), stage.name) == names.end())
+                    names.push_back(stage.name);
+    return names;
 }
 
 std::optional<std::size_t> findRun(const SequenceComparison& sequence, const std::string& method) {
     for (std::size_t i = 0; i < sequence.runs.size(); ++i)
         if (sequence.runs[i].method == method) return i;
     return std::nullopt;
+}
+
+bool allFinite(const std::vector<StampedPose>& trajectory) {
+    return std::all_of(trajectory.begin(), trajectory.end(), [](const StampedPose& pose) {
+        return std::isfinite(pose.timestamp) && pose.T_world_camera.matrix().allFinite();
+    });
 }
 
 std::string whyNoErrors(const SequenceComparison& sequence, const MethodRun& run,

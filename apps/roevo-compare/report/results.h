@@ -25,6 +25,9 @@ std::optional<double> trackedShare(const MethodRun& run);
 /// Enough frames tracked to be compared with the others.
 bool isComplete(const MethodRun& run);
 
+/// Name of a run's method in tables.
+const std::string& labelOf(const MethodRun& run);
+
 /// A method as a row of the tables over all sequences.
 struct TableMethod {
     std::string name, label, note;
@@ -33,8 +36,14 @@ struct TableMethod {
 /// Every method that has a run somewhere, in the order in which they come first.
 std::vector<TableMethod> tableMethods(const std::vector<SequenceResults>& results);
 
+/// Names of the stages of all runs, in the order in which they come first.
+std::vector<std::string> stageNames(const std::vector<SequenceResults>& results);
+
 /// Index of the method's run in the sequence, if it has one.
 std::optional<std::size_t> findRun(const SequenceComparison& sequence, const std::string& method);
+
+/// No pose with a number that is none.
+bool allFinite(const std::vector<StampedPose>& trajectory);
 
 /// Why a run has no errors, in words: skipped, failed, no ground truth, …; empty when it has.
 std::string whyNoErrors(const SequenceComparison& sequence, const MethodRun& run,

@@ -1,5 +1,6 @@
 #include "roevo-compare/report/text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -102,6 +103,23 @@ std::string exactNumber(std::optional<double> value) {
     if (!value || !std::isfinite(*value)) return {};
     char text[64];
     return {text, std::to_chars(text, text + sizeof text, *value).ptr};
+}
+
+std::size_t countCharacters(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string shortened(const std::string& text, std::size_t limit) {
+    if (countCharacters(text) <= limit) return text;
+    std::string start;
+    std::size_t count = 0;
+    for (const char c : text) {
+        count += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+        if (count == limit) break;
+        start += c;
+    }
+    return start + "…";
 }
 
 std::string replaceAll(std::string text, const std::string& from, const std::string& to) {

@@ -23,6 +23,12 @@ std::string shownNumber(std::optional<double> value, int decimals);
 /// The shortest digits that give the same number again, and nothing when there is none or it is not finite.
 std::string exactNumber(std::optional<double> value);
 
+/// Number of characters of a text in UTF-8.
+std::size_t countCharacters(const std::string& text);
+
+/// At most so many characters, the rest an ellipsis.
+std::string shortened(const std::string& text, std::size_t limit);
+
 /// All of `text` with `from` replaced by `to`.
 std::string replaceAll(std::string text, const std::string& from, const std::string& to);
 

@@ -1,7 +1,7 @@
 #include <filesystem>
 
 #include "roevo-compare/report/comparison.h"
-#include "roevo-compare/report/tables.h"
+#include "roevo-compare/report/documents.h"
 #include "support/atomic_file.h"
 
 namespace roevo {
@@ -12,6 +12,7 @@ void writeComparison(const std::string& folder, const std::vector<SequenceCompar
     const auto file = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
     writeTextAtomically(file("table.csv"), csvTable(results));
     writeTextAtomically(file("table.md"), markdownTables(results, info));
+    writeTextAtomically(file("report.html"), htmlReport(results, info, folder));
 }
 
 }  // namespace roevo
