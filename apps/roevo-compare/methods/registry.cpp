@@ -1,7 +1,10 @@
 #include <stdexcept>
 
+#include "difodo.h"
 #include "distance_field_method.h"
+#include "icp.h"
 #include "method.h"
+#include "opencv_rgbd.h"
 #include "roevo_method.h"
 
 namespace roevo {
@@ -18,6 +21,9 @@ struct Family {
 constexpr Family kFamilies[] = {
     {roevoMethods, makeRoevo},
     {distanceFieldMethods, makeDistanceField},
+    {difodoMethods, makeDifodo},
+    {icpMethods, makeIcp},
+    {opencvRgbdMethods, makeOpencvRgbd},
 };
 
 }  // namespace
