@@ -137,7 +137,7 @@ std::vector<StampedPose> coveredReference(const SequenceResults& results) {
             first = std::min(first, run.evaluation->pairs.front().reference);
             last = std::max(last, run.evaluation->pairs.back().reference);
         }
-    if (first > last) return {};
+    if (reference.empty() || first > last) return {};
     return {reference.begin() + static_cast<std::ptrdiff_t>(first),
             reference.begin() + static_cast<std::ptrdiff_t>(last) + 1};
 }
