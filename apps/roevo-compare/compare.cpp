@@ -23,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kDisturbed = 0.05;  // share of a run without the core from which on its times are in doubt
 constexpr char kConfigFile[] = "config_used.ini";
 
 std::string inOutput(const CompareSettings& settings, const fs::path& name) {
@@ -60,10 +61,11 @@ std::vector<SequenceComparison> openAll(const CompareSettings& settings) {
             std::fprintf(stderr, "%s: cannot be used: %s\n", opened.name.c_str(), opened.failure.c_str());
     }
     const auto usable = [](const SequenceComparison& s) { return s.failure.empty(); };
-    if (std::none_of(all.begin(), all.end(), usable))
-        throw std::runtime_error(all.front().input + ": " + all.front().failure +
-                                 (all.size() > 1 ? " (and no other recording can be used)" : ""));
-    return all;
+    if (std::any_of(all.begin(), all.end(), usable)) return all;
+    const SequenceComparison& first = all.front();
+    const bool named = first.failure.find(first.input) != std::string::npos;
+    throw std::runtime_error((named ? "" : first.input + ": ") + first.failure +
+                             (all.size() > 1 ? " (and no other recording can be used)" : ""));
 }
 
 // All that a run depends on but the method itself.
@@ -71,13 +73,15 @@ std::map<std::string, std::string> runSettings(const CompareSettings& settings, 
                                                const std::string& program) {
     OdometryOptions options = settings.options;
     options.mode = OdometryOptions().mode;  // each method has its own
-    std::string versions;
+    std::string values, versions;
+    for (const OptionField& field : optionFields(options))
+        values += field.name() + "=" + field.toText() + "; ";
     for (const auto& [name, version] : softwareVersions()) versions += name + " " + version + "; ";
     std::map<std::string, std::string> all{{"recording", recordingState(sequence.input)},
                                            {"sensor_label", sequence.sensor_label},
                                            {"skip", std::to_string(sequence.skip)},
                                            {"first", std::to_string(sequence.first)},
-                                           {"options", toConfigText(options)},
+                                           {"options", values},
                                            {"program", program},
                                            {"versions", versions},
                                            {"processor", processorName()}};
@@ -213,9 +217,23 @@ void Runs::deliver() {
 
 std::vector<std::string> notesOf(const CompareSettings& settings, const CompareResult& result) {
     std::vector<std::string> notes;
-    std::size_t jobs = 1;
+    std::size_t jobs = 1, disturbed = 0;
+    double most_lost = 0;
     for (const SequenceComparison& sequence : result.sequences)
-        for (const MethodRun& run : sequence.runs) jobs = std::max(jobs, run.jobs);
+        for (const MethodRun& run : sequence.runs) {
+            jobs = std::max(jobs, run.jobs);
+            disturbed += run.core_lost > kDisturbed;
+            most_lost = std::max(most_lost, run.core_lost);
+        }
+    if (disturbed > 0) {
+        char text[256];
+        std::snprintf(text, sizeof text,
+                      "The machine was busy: in %zu of %zu runs other programs had the core for more than "
+                      "%.0f %% of the time (up to %.0f %%), so that times per frame are too long there; "
+                      "processor times hold.",
+                      disturbed, result.runs, 100 * kDisturbed, 100 * most_lost);
+        notes.push_back(text);
+    }
     if (jobs > 1)
         notes.push_back(
             "Up to " + std::to_string(jobs) +

@@ -51,8 +51,10 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--config", a.config, "Options of ROEVO (.ini), see config_ini/roevo.ini");
     app.add_option("--set", a.sets, "section.key=value: one option on top of the config; may be repeated")
         ->allow_extra_args(false);
-    app.add_option("--first", a.first, "Process at most so many frames of each recording");
-    app.add_option("--skip", a.skip, "Leave out so many frames at the start of each recording");
+    app.add_option("--first", a.first, "Process at most so many frames of each recording")
+        ->check(CLI::NonNegativeNumber);
+    app.add_option("--skip", a.skip, "Leave out so many frames at the start of each recording")
+        ->check(CLI::NonNegativeNumber);
     app.add_option("--sensor-label", a.sensor_label, "Rawlogs with several cameras: which one");
     app.add_option("--timeout", a.timeout, "Seconds after which a run is ended as a failure")
         ->capture_default_str();
@@ -60,7 +62,8 @@ void addOptions(CLI::App& app, Arguments& a) {
                  "Keep the runs in the output folder that were made with the same settings");
     app.add_option("--jobs", a.jobs,
                    "So many runs side by side, each on a core of its own (times are noisier then)")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
     app.add_flag("--quiet", a.quiet, "Print errors only");
     app.add_option("--run-method", a.run_method)->group("");  // how this program starts itself for a run
     app.add_option("--run-folder", a.run_folder)->group("");
@@ -97,7 +100,6 @@ std::vector<MethodInfo> chosenMethods(const std::vector<std::string>& names) {
 // One core for each job, the last ones: the first is often the busiest with the system's own work.
 std::vector<int> chosenCores(std::size_t jobs) {
     std::vector<int> cores = allowedCores();
-    if (jobs < 1) throw UsageError("--jobs must be at least 1");
     if (cores.empty()) cores = {-1};  // the system does not tell
     if (jobs > cores.size())
         throw UsageError("--jobs " + std::to_string(jobs) + ": each takes a core of its own, and there " +

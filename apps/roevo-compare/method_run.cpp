@@ -62,6 +62,7 @@ Json toJson(const MethodRun& run) {
             {"total_ms", toJson(run.total)},
             {"decode_ms", toJson(run.decode)},
             {"cpu_ms_per_frame", finite(run.cpu_ms_per_frame, "the processor time")},
+            {"core_lost", finite(run.core_lost, "the share of the core that was lost")},
             {"background", run.background},
             {"background_ms", finite(run.background_ms, "the time of the background work")},
             {"memory_peak_mb", finite(run.memory_peak_mb, "the memory")},
@@ -86,6 +87,7 @@ MethodRun toRun(const Json& json) {
     run.total = toStage(json.at("total_ms"));
     run.decode = toStage(json.at("decode_ms"));
     json.at("cpu_ms_per_frame").get_to(run.cpu_ms_per_frame);
+    json.at("core_lost").get_to(run.core_lost);
     json.at("background").get_to(run.background);
     json.at("background_ms").get_to(run.background_ms);
     json.at("memory_peak_mb").get_to(run.memory_peak_mb);

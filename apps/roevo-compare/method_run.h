@@ -27,6 +27,7 @@ struct MethodRun {
     StageStatistics total;                              ///< of tracked frames, decoding apart
     StageStatistics decode;
     double cpu_ms_per_frame = 0;  ///< processor time of all threads by frame, decoding apart
+    double core_lost = 0;         ///< share (0 to 1) of the run's time in which other programs had its core
     std::string background;       ///< name of the work beside the frames, e.g. "mapping"; may be empty
     double background_ms = 0;     ///< mean of one piece of it
     double memory_peak_mb = 0;    ///< of the process

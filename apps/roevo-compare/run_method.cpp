@@ -4,13 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <new>
 #include <numeric>
 #include <stdexcept>
 
+#include "core_contention.h"
 #include "evaluation/error_statistics.h"
 #include "roevo-compare/report/text.h"
 #include "support/atomic_file.h"
@@ -30,13 +30,6 @@ struct FrameRow {
     double ms_decode = 0, ms_total = 0;
     MethodFrame result;
 };
-
-// Processor time so far, ms: of all threads, or of this one.
-double processorTime(clockid_t clock) {
-    timespec time{};
-    clock_gettime(clock, &time);
-    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-}
 
 std::string stampText(double timestamp) {
     char text[48];
@@ -220,11 +213,13 @@ std::string poseFault(const Pose& pose) {
 MethodRun runMethod(Method& method, const MethodInfo& info, FrameSource& source, std::size_t first,
                     const std::string& folder, const RunProgress& progress) {
     Runner runner(method, source);
+    const CoreContention contention;
     const double start = processorTime(CLOCK_PROCESS_CPUTIME_ID);
     runner.processAll(first, progress);
     // Work that was put off till the end is the method's, too: its time counts from before the trajectory.
     std::vector<StampedPose> trajectory = runner.trajectory();
     const double cpu_ms = processorTime(CLOCK_PROCESS_CPUTIME_ID) - start - runner.decode_cpu_ms;
+    const double core_lost = contention.shareLost();
 
     MethodRun run = runner.summary();
     run.method = info.name;
@@ -233,6 +228,7 @@ MethodRun runMethod(Method& method, const MethodInfo& info, FrameSource& source,
     run.trajectory = std::move(trajectory);
     // Some frame has a pose, so that some frame was not rejected
     run.cpu_ms_per_frame = cpu_ms / static_cast<double>(run.frames - run.rejected);
+    run.core_lost = core_lost;
     run.memory_peak_mb = memoryPeakMb();  // before the scene is made, which no odometry needs
 
     writeTextAtomically((fs::path(folder) / "frames.csv").string(), runner.csv());

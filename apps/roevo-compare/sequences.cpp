@@ -111,6 +111,7 @@ std::string recordingState(const std::string& input) {
     std::set<std::string> files;  // in an order that does not depend on the file system
     const auto add = [&](const fs::path& file) {
         std::error_code fault;
+        if (!fs::exists(file, fault)) return;
         const auto time = fs::last_write_time(file, fault).time_since_epoch().count();
         const bool regular = fs::is_regular_file(file, fault);
         files.insert(file.filename().string() + " " + std::to_string(time) + " " +
@@ -120,7 +121,8 @@ std::string recordingState(const std::string& input) {
     if (fs::is_directory(path, fault))
         for (const auto& entry : fs::directory_iterator(path, fault)) add(entry.path());
     else
-        add(path);
+        for (const fs::path& file : {path, fs::path(path).replace_filename(path.stem().string() + "_Images")})
+            add(file);
     std::string all;
     for (const std::string& file : files) all += file + "\n";
     return path.string() + " (state " + std::to_string(std::hash<std::string>()(all)) + ")";

@@ -30,8 +30,8 @@ std::vector<std::string> sequenceNames(const std::vector<std::string>& inputs);
 /// was named and cannot be read
 SequenceComparison openSequence(const SequenceInput& sequence);
 
-/// Changes when the recording's files on disk change: path, size and time of the file, or of the files of a
-/// folder's top level.
+/// Changes when the recording's files on disk change: its path, and size and time of the rawlog (and time of
+/// its folder of images), or of the files of the folder's top level.
 std::string recordingState(const std::string& input);
 
 }  // namespace roevo
