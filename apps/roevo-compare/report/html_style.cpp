@@ -56,7 +56,6 @@ figure { margin: 0; min-width: 0; }
 figcaption { font-size: 13px; color: var(--muted); margin: 2px 0 0; overflow-wrap: anywhere; }
 .plot { display: block; width: 100%; height: auto; }
 .pair, .maps { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 14px 20px; align-items: start; }
-.maps { grid-template-columns: repeat(3, minmax(0, 1fr)); }
 .maps img { display: block; width: 100%; height: auto; }
 .methods { margin: 0; }
 .methods dt { font-weight: 600; display: flex; align-items: center; gap: 9px; margin-top: 10px; }
@@ -65,7 +64,6 @@ ul.lines { padding-left: 20px; max-width: 90ch; }
 ul.lines li { margin: 3px 0; }
 @media (max-width: 900px) {
   body { padding: 22px 18px 48px; }
-  .maps { grid-template-columns: repeat(2, minmax(0, 1fr)); }
 }
 @media (max-width: 560px) { .pair, .maps { grid-template-columns: minmax(0, 1fr); } }
 @page { size: A4; margin: 14mm 13mm; }

@@ -45,9 +45,10 @@ LineStyle groundTruthStyle() {
 }
 
 unsigned stageRgb(std::size_t index) {
-    // Paul Tol's light scheme, made for areas
-    static constexpr std::array<unsigned, 8> colours{0x77AADD, 0xEE8866, 0xEEDD88, 0xFFAABB,
-                                                     0x99DDFF, 0x44BB99, 0xBBCC33, 0xAAAA00};
+    // Paul Tol's light scheme, made for areas; four more, darker, for when the methods have many stages
+    static constexpr std::array<unsigned, 12> colours{0x77AADD, 0xEE8866, 0xEEDD88, 0xFFAABB,
+                                                      0x99DDFF, 0x44BB99, 0xBBCC33, 0xAAAA00,
+                                                      0xB58BC4, 0x5C7FA3, 0xB07A5B, 0x8C8C8C};
     return index == kNoStage ? 0xDDDDDD : colours[index % colours.size()];
 }
 
