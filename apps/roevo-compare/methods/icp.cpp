@@ -24,8 +24,11 @@ namespace {
 
 constexpr char kUnavailable[] = "";
 
-constexpr int kColumns = 160, kRows = 120;  ///< grid on which the depth image is sampled
-constexpr std::size_t kLeastPoints = 300;   ///< fewer cannot carry a pose
+/// Grid on which the depth image of a reference is sampled, and that of a frame which is registered to it.
+/// They must not fit into each other: each point would find the one at its own pixel, and surfaces seem to
+/// stand still.
+constexpr int kReferenceColumns = 160, kReferenceRows = 120, kFrameColumns = 83, kFrameRows = 62;
+constexpr std::size_t kLeastPoints = 200;  ///< fewer cannot carry a pose
 constexpr double kLeastMatched = 0.3;  ///< share of points with a neighbour, below which nothing was found
 // Of the keyframe method: the next keyframe is due.
 constexpr double kKeyframeMatched = 0.7, kKeyframeTranslation = 0.2, kKeyframeRotation = 15 * kDegree;
@@ -67,22 +70,37 @@ mrpt::slam::CICP::TConfigParams parameters() {
     icp.maxIterations = 40;
     icp.thresholdDist = 0.1;
     icp.thresholdAng = 0;
+    icp.onlyUniqueRobust = true;
     icp.ALFA = 0.5;
     icp.smallestThresholdDist = 0.04;
     icp.minAbsStep_trans = 1e-4;
     icp.minAbsStep_rot = 1e-4;
-    icp.corresponding_points_decimation = 5;
+    icp.corresponding_points_decimation = 1;  // the frame is sparse already
     icp.skip_cov_calculation = true;
     return icp;
 }
+
+/// Samples depth images on a grid.
+class Sampler {
+  public:
+    Sampler(const PinholeCamera& camera, int columns, int rows, const SensorOptions& sensor)
+        : grid_(centredCamera(camera, columns, rows)), resampler_(camera, grid_, sensor) {}
+
+    Cloud cloud(const cv::Mat& depth) { return makeCloud(resampler_.apply(depth, buffer_), grid_); }
+
+  private:
+    PinholeCamera grid_;
+    DepthResampler resampler_;
+    cv::Mat buffer_;
+};
 
 class Icp : public RegistrationMethod {
   public:
     Icp(const PinholeCamera& camera, const OdometryOptions& options, bool keyframes)
         : RegistrationMethod(camera, options),
           keyframes_(keyframes),
-          grid_(centredCamera(camera, kColumns, kRows)),
-          resampler_(camera, grid_, options.sensor),
+          dense_(camera, kReferenceColumns, kReferenceRows, options.sensor),
+          sparse_(camera, kFrameColumns, kFrameRows, options.sensor),
           icp_(parameters()) {}
 
     std::vector<std::string> stages() const override { return {"points", "solve"}; }
@@ -90,7 +108,7 @@ class Icp : public RegistrationMethod {
   protected:
     Registration start(const RgbdFrame& frame) override {
         Registration first;
-        if (auto cloud = load(frame, first)) reference_ = *cloud;
+        if (load(frame, first)) refer(frame, first);
         return first;
     }
 
@@ -105,6 +123,7 @@ class Icp : public RegistrationMethod {
         const auto result = icp_.Align3D(reference_.points.get(), cloud->points.get(), toMrpt(guess), info);
         const Pose T_reference_frame =
             reference_.T_camera_cloud * toEigen(result->getMeanVal()) * cloud->T_camera_cloud.inverse();
+        found.stage_ms[1] = watch.milliseconds();
         if (info.goodness < kLeastMatched) {
             found.reason = "only " + std::to_string(static_cast<int>(100 * info.goodness)) +
                            " % of the points found a neighbour";
@@ -114,8 +133,7 @@ class Icp : public RegistrationMethod {
                                       T_reference_frame.translation().norm() > kKeyframeTranslation ||
                                       rotationAngle(T_reference_frame) > kKeyframeRotation;
         }
-        if (found.becomes_reference) reference_ = *cloud;
-        found.stage_ms[1] = watch.milliseconds();
+        if (found.becomes_reference) refer(frame, found);
         return found;
     }
 
@@ -123,20 +141,24 @@ class Icp : public RegistrationMethod {
     /// None: the image has too little depth, and is left out as if it had not been taken.
     std::optional<Cloud> load(const RgbdFrame& frame, Registration& result) {
         const Stopwatch watch;
-        Cloud cloud = makeCloud(resampler_.apply(frame.depth, buffer_), grid_);
-        result.becomes_reference = cloud.points->size() >= kLeastPoints;
-        if (!result.becomes_reference) result.reason = "too little depth";
+        Cloud cloud = sparse_.cloud(frame.depth);
         result.stage_ms = {watch.milliseconds(), 0};
-        if (!result.becomes_reference) return std::nullopt;
-        return cloud;
+        result.becomes_reference = cloud.points->size() >= kLeastPoints;
+        if (result.becomes_reference) return cloud;
+        result.reason = "too little depth";
+        return std::nullopt;
+    }
+
+    void refer(const RgbdFrame& frame, Registration& result) {
+        const Stopwatch watch;
+        reference_ = dense_.cloud(frame.depth);
+        result.stage_ms[0] += watch.milliseconds();
     }
 
     bool keyframes_;
-    PinholeCamera grid_;
-    DepthResampler resampler_;
+    Sampler dense_, sparse_;
     mrpt::slam::CICP icp_;
     Cloud reference_;
-    cv::Mat buffer_;
 };
 
 std::unique_ptr<Method> make(const PinholeCamera& camera, const OdometryOptions& options, bool keyframes) {

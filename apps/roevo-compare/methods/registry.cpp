@@ -19,11 +19,8 @@ struct Family {
 
 // In the order of the tables.
 constexpr Family kFamilies[] = {
-    {roevoMethods, makeRoevo},
-    {distanceFieldMethods, makeDistanceField},
-    {difodoMethods, makeDifodo},
-    {icpMethods, makeIcp},
-    {opencvRgbdMethods, makeOpencvRgbd},
+    {roevoMethods, makeRoevo}, {distanceFieldMethods, makeDistanceField}, {difodoMethods, makeDifodo},
+    {icpMethods, makeIcp},     {opencvRgbdMethods, makeOpencvRgbd},
 };
 
 }  // namespace
