@@ -1,5 +1,6 @@
 #include "queue_display.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -7,6 +8,16 @@
 #include "support/progress.h"
 
 namespace roevo {
+namespace {
+
+// A line that wraps could not be written over.
+std::string cutToTerminal(const std::string& line) {
+    winsize size{};
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return line;
+    return line.substr(0, size.ws_col - 1u);
+}
+
+}  // namespace
 
 QueueDisplay::QueueDisplay(const std::vector<RunTask>& tasks, bool enabled)
     : tasks_(tasks), enabled_(enabled), terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -49,8 +60,9 @@ void QueueDisplay::going(const std::map<std::size_t, double>& running) {
             (line.empty() ? "" : "; ") + tasks_[index].sequence + ", " + tasks_[index].method.name + percent;
     }
     if (!enabled_ || !terminal_) return;
-    std::fprintf(stderr, "\r[%zu of %zu done] %s%s\033[K", finished_, tasks_.size(), line.c_str(),
-                 timeLeft(static_cast<double>(finished_) + running_share_).c_str());
+    line = "[" + std::to_string(finished_) + " of " + std::to_string(tasks_.size()) + " done] " + line +
+           timeLeft(static_cast<double>(finished_) + running_share_);
+    std::fprintf(stderr, "\r%s\033[K", cutToTerminal(line).c_str());
     std::fflush(stderr);
     line_open_ = true;
 }

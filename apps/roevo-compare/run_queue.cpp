@@ -1,5 +1,7 @@
 #include "run_queue.h"
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -31,6 +33,17 @@ void createFolder(const fs::path& folder) {
     std::error_code fault;
     fs::create_directories(folder, fault);
     if (fault) throw std::runtime_error("cannot create " + folder.string() + ": " + fault.message());
+}
+
+// Puts a folder into the place of another one, if there is one; `from` may still be there afterwards, as
+// that.
+void moveTo(const fs::path& from, const fs::path& to) {
+    // In one step, so that a run is not lost if the power goes right now
+    if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
+    removeFolder(to);
+    std::error_code fault;
+    fs::rename(from, to, fault);
+    if (fault) throw std::runtime_error("cannot create " + to.string() + ": " + fault.message());
 }
 
 // What a child has told of its progress.
@@ -105,10 +118,7 @@ class ActiveRun {
         run.settings = task_.settings;
         if (process_->end().timed_out) run.settings[kTimeoutSetting] = std::to_string(timeout_s_);
         writeMethodRun(partial_.string(), run);
-        removeFolder(task_.folder);
-        std::error_code fault;
-        fs::rename(partial_, task_.folder, fault);
-        if (fault) throw std::runtime_error("cannot create " + task_.folder + ": " + fault.message());
+        moveTo(partial_, task_.folder);
         return run;
     }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <set>
 
 #include "report/results.h"
 #include "report/text.h"
@@ -40,6 +41,8 @@ const Column kColumns[] = {
      }},
     {"ms", 2, [](const MethodRun& run, const EvaluatedRun&) { return std::optional(run.total.median); }},
     {"ms 95 %", 2, [](const MethodRun& run, const EvaluatedRun&) { return std::optional(run.total.p95); }},
+    {"CPU ms", 2,
+     [](const MethodRun& run, const EvaluatedRun&) { return std::optional(run.cpu_ms_per_frame); }},
     {"MB", 0, [](const MethodRun& run, const EvaluatedRun&) { return std::optional(run.memory_peak_mb); }},
 };
 
@@ -72,6 +75,7 @@ std::string terminalTable(const std::vector<SequenceComparison>& sequences) {
         }
         for (const Column& column : kColumns) text += rightAligned(column.head, kWidth);
         text += '\n';
+        std::set<std::string> faults;  // mostly one for all methods
         for (std::size_t i = 0; i < sequence.runs.size(); ++i) {
             const MethodRun& run = sequence.runs[i];
             const EvaluatedRun& evaluated = results.evaluated[i];
@@ -84,9 +88,10 @@ std::string terminalTable(const std::vector<SequenceComparison>& sequences) {
                 const auto value = column.value(run, evaluated);
                 text += rightAligned(value ? shownNumber(value, column.decimals) : "-", kWidth);
             }
-            if (!evaluated.evaluation) text += "  " + whyNoErrors(sequence, run, evaluated);
             text += '\n';
+            if (!evaluated.evaluation) faults.insert(whyNoErrors(sequence, run, evaluated));
         }
+        for (const std::string& fault : faults) text += "  no errors: " + fault + "\n";
         if (!sequence.note.empty()) text += "  " + sequence.note + "\n";
     }
     return text;

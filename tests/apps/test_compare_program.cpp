@@ -6,7 +6,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "roevo-compare/method_run.h"
+#include "roevo-compare/compare.h"
+#include "roevo-compare/terminal_table.h"
 #include "support/run_program.h"
 #include "support/tum_folder.h"
 
@@ -148,10 +149,7 @@ TEST_F(Compare, ResumeTakesFinishedRunsAgainUnlessSomethingChanged) {
         EXPECT_NE(madeAt("clip", "roevo-ct"), ct) << why;
         ct = madeAt("clip", "roevo-ct");
     };
-    expectMadeAgain({}, "without --resume");
     expectMadeAgain({"--resume", "--set", "edges.min_length=15"}, "an option has changed");
-    expectMadeAgain({"--resume"}, "and back");
-    expectMadeAgain({"--resume", "--first", "5"}, "fewer frames");
     expectMadeAgain({"--resume", "--skip", "1", "--first", "5"}, "other frames");
     writeTumFolder(input, slidingRecording(7));
     expectMadeAgain({"--resume", "--skip", "1", "--first", "5"}, "another recording");
@@ -209,7 +207,7 @@ TEST_F(Compare, NoGroundTruthLeavesEverythingButErrors) {
     const auto result = run({input}, {"--methods", "roevo-ct"});
     ASSERT_EQ(result.exit_code, 0) << result.all();
     expectRow("clip,roevo-ct,");
-    EXPECT_NE(result.out.find("no ground truth"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("no errors: no ground truth"), std::string::npos) << result.out;
     EXPECT_EQ(result.out.find("nan"), std::string::npos);
     EXPECT_TRUE(kept("clip", "roevo-ct").ok());
 }
@@ -273,13 +271,39 @@ TEST_F(Compare, WrongUsage) {
 }
 
 TEST_F(Compare, RunsThatTakeTooLongAreFailuresInTheTable) {
-    const std::string input = clip("clip", 60);
+    const std::string input = clip("clip", 30);
     const auto result = run({input}, {"--methods", "roevo-tr", "--timeout", "0.05"});
     expectError(result, 1, kName, {"no method gave a result", "0.05 s"});
     expectRow("clip,roevo-tr,");
     EXPECT_NE(table().find("not done within 0.05 s"), std::string::npos) << table();
     ASSERT_EQ(run({input}, {"--methods", "roevo-tr", "--resume"}).exit_code, 0) << "given more time";
     EXPECT_TRUE(kept("clip", "roevo-tr").ok());
+}
+
+TEST_F(Compare, MethodsThatAreNotAvailableAreSkippedWithTheReason) {
+    CompareSettings settings;
+    SequenceInput sequence;
+    sequence.name = "clip";
+    sequence.input = clip("clip", 3);
+    settings.sequences = {sequence};
+    MethodInfo method;
+    method.name = "lacking";
+    method.label = "Lacking";
+    method.unavailable = "this build has no such library";
+    settings.methods = {method};
+    settings.output = output();
+    settings.queue = {{-1}, 10};
+    settings.quiet = true;
+    const CompareResult result = compare(settings);
+    ASSERT_EQ(result.sequences.size(), 1u);
+    ASSERT_EQ(result.sequences[0].runs.size(), 1u);
+    EXPECT_EQ(result.sequences[0].runs[0].skipped, method.unavailable);
+    EXPECT_FALSE(result.sequences[0].runs[0].ok());
+    expectRow("clip,lacking,");
+    EXPECT_NE(table().find(method.unavailable), std::string::npos) << table();
+    EXPECT_NE(terminalTable(result.sequences).find("skipped: " + method.unavailable), std::string::npos)
+        << terminalTable(result.sequences);
+    EXPECT_FALSE(fs::exists(runFolder("clip", "lacking")));
 }
 
 TEST_F(Compare, TwoProgramsDoNotShareAnOutputFolder) {
@@ -294,7 +318,7 @@ TEST_F(Compare, TwoProgramsDoNotShareAnOutputFolder) {
 
 // Interrupts the program as soon as the first run is there. The second takes long enough for that.
 TEST_F(Compare, AnInterruptLeavesWhatIsFinishedAndResumeGoesOn) {
-    const std::string quick = clip("quick", 3), slow = clip("slow", 150);
+    const std::string quick = clip("quick", 3), slow = clip("slow", 80);
     const auto all = arguments({quick, slow}, {"--methods", "roevo-tr"});
     const std::string first = runFolder("quick", "roevo-tr") + "/run.json";
     test::ProgramResult result;

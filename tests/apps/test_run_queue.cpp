@@ -115,6 +115,7 @@ TEST(Process, StaysOnItsCoreAndAwayFromCtrlC) {
 }
 
 TEST(Contention, WaitingForOtherProgramsIsSeen) {
+    if (!fs::exists("/proc/thread-self/schedstat")) GTEST_SKIP() << "the system does not tell";
     const int core = allowedCores().back();
     cpu_set_t before, only;
     ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
@@ -199,6 +200,17 @@ TEST_F(Queue, AGoodRunIsKeptWithWhatItWasMadeFrom) {
     EXPECT_EQ(kept.trajectory.size(), 3u);
     EXPECT_EQ(kept.jobs, 1u);
     EXPECT_EQ(done.at(0).trajectory.size(), 3u);
+}
+
+TEST_F(Queue, ANewRunTakesThePlaceOfTheOldOne) {
+    failure("exit 1");
+    writeFile(task("m0").folder + "/old", "");
+    runAll({success()});
+    EXPECT_TRUE(readMethodRun(task("m0").folder).ok());
+    EXPECT_FALSE(fs::exists(task("m0").folder + "/old"));
+    std::size_t entries = 0;
+    for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder / "runs/clip")) ++entries;
+    EXPECT_EQ(entries, 1u);
 }
 
 TEST_F(Queue, FailuresAreKeptInWords) {
