@@ -75,6 +75,19 @@ void checkFrames(FrameSource& source, const std::string& path) {
     }
 }
 
+void setGroundTruth(StudyInput& input, const InputSettings& settings, const FrameSource& source) {
+    if (settings.ignore_ground_truth) {
+        input.ground_truth_note = "no ground truth, as asked";
+        return;
+    }
+    GroundTruth truth = groundTruthFor(settings.ground_truth, source);
+    input.ground_truth = std::move(truth.poses);
+    if (!input.ground_truth.empty())
+        input.ground_truth_note = "ground truth: " + truth.file;
+    else
+        input.ground_truth_note = truth.note.empty() ? "no ground truth" : "no ground truth: " + truth.note;
+}
+
 }  // namespace
 
 std::vector<StudyInput> openInputs(const InputSettings& settings) {
@@ -86,12 +99,7 @@ std::vector<StudyInput> openInputs(const InputSettings& settings) {
         input.path = path;
         input.camera = source->camera();
         input.options = settings.options;
-        GroundTruth truth = groundTruthFor(settings.ground_truth, *source);
-        input.ground_truth = std::move(truth.poses);
-        input.ground_truth_note =
-            input.ground_truth.empty()
-                ? (truth.note.empty() ? "no ground truth" : "no ground truth: " + truth.note)
-                : "ground truth: " + truth.file;
+        setGroundTruth(input, settings, *source);
         checkFrames(*source, path);
         input.open = [path, settings] { return prefetch(openFrames(path, settings)); };
         inputs.push_back(std::move(input));

@@ -8,10 +8,11 @@ namespace roevo {
 
 /// What the command line says of the recordings.
 struct InputSettings {
-    std::vector<std::string> paths;   ///< rawlogs or dataset folders
-    std::string ground_truth;         ///< for a single recording; empty: what is found beside each
-    std::string sensor_label;         ///< rawlogs with several cameras
-    std::size_t first = 0, skip = 0;  ///< first 0: all frames
+    std::vector<std::string> paths;    ///< rawlogs or dataset folders
+    std::string ground_truth;          ///< for a single recording; empty: what is found beside each
+    bool ignore_ground_truth = false;  ///< even where some is beside a recording
+    std::string sensor_label;          ///< rawlogs with several cameras
+    std::size_t first = 0, skip = 0;   ///< first 0: all frames
     OdometryOptions options;
 };
 

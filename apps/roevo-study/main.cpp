@@ -105,6 +105,10 @@ int run(int argc, char** argv) {
                    "Of the odometry, where the experiment does not choose it: ct, tr or ba (default)");
     app.add_option("--ground-truth", settings.ground_truth,
                    "TUM trajectory to compare with, for a single input (default: what is found beside each)");
+    app.add_flag(
+        "--no-ground-truth", settings.ignore_ground_truth,
+        "Do without, even where some is beside a recording: repeatability is then judged by the odometry's "
+        "own poses");
     app.add_option("--first", settings.first, "Use at most so many frames of each recording");
     app.add_option("--skip", settings.skip, "Leave out so many frames at the start of each");
     app.add_option("--sensor-label", settings.sensor_label, "Rawlogs with several cameras: which one");
@@ -115,6 +119,8 @@ int run(int argc, char** argv) {
     if (!settings.ground_truth.empty() && settings.paths.size() > 1)
         throw UsageError("--ground-truth is for a single --input, and there are " +
                          std::to_string(settings.paths.size()));
+    if (!settings.ground_truth.empty() && settings.ignore_ground_truth)
+        throw UsageError("--ground-truth and --no-ground-truth exclude each other");
     if (settings.first > 0 && settings.first < kFewestFrames)
         throw UsageError("--first " + std::to_string(settings.first) + ": a study needs at least " +
                          std::to_string(kFewestFrames) + " frames");

@@ -29,7 +29,8 @@ StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options)
     if (!milliseconds.empty()) run.points /= static_cast<double>(milliseconds.size());
     run.milliseconds = median(milliseconds).value_or(0);
     run.trajectory = odometry.trajectory();
-    for (const KeyframeInfo& keyframe : odometry.keyframes()) run.keyframe_times.push_back(keyframe.timestamp);
+    for (const KeyframeInfo& keyframe : odometry.keyframes())
+        run.keyframe_times.push_back(keyframe.timestamp);
     if (input.ground_truth.empty()) {
         run.fault = input.ground_truth_note;
         return run;

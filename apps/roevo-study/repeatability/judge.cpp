@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "roevo/edges/canny.h"
 
@@ -22,6 +23,54 @@ bool surfaceSeen(const cv::Mat& depth, const Eigen::Vector2d& pixel, double z) {
     }
     return false;
 }
+
+// Where the visible part of a reference edge truly runs.
+class TrueCurve {
+  public:
+    TrueCurve(const OrganizedEdges& edges, const TrueView& view, std::size_t edge) : view_(view) {
+        const int first = edges.begin[edge], last = edges.begin[edge + 1] - 1;
+        for (int i = first; i <= last; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            if (view.visible[at] == 0) continue;
+            points_.push_back(at);
+            const auto before = static_cast<std::size_t>(std::max(first, i - kTangentSpan));
+            const auto after = static_cast<std::size_t>(std::min(last, i + kTangentSpan));
+            const float tx = view.u[after] - view.u[before], ty = view.v[after] - view.v[before];
+            const float length = std::hypot(tx, ty);
+            normals_.push_back(length > 0 ? cv::Point2f(-ty / length, tx / length) : cv::Point2f(0, 0));
+            left_ = std::min(left_, view.u[at]);
+            right_ = std::max(right_, view.u[at]);
+            top_ = std::min(top_, view.v[at]);
+            bottom_ = std::max(bottom_, view.v[at]);
+        }
+    }
+    bool empty() const { return points_.empty(); }
+    const std::vector<std::size_t>& points() const { return points_; }
+
+    /// px from the tangent at the nearest point of the curve; none beyond kNeighbourhood.
+    std::optional<float> normalDistance(float x, float y) const {
+        if (x < left_ - kNeighbourhood || x > right_ + kNeighbourhood || y < top_ - kNeighbourhood ||
+            y > bottom_ + kNeighbourhood)
+            return std::nullopt;
+        float best = kNeighbourhood * kNeighbourhood;
+        std::optional<float> distance;
+        for (std::size_t k = 0; k < points_.size(); ++k) {
+            const float dx = x - view_.u[points_[k]], dy = y - view_.v[points_[k]];
+            if (dx * dx + dy * dy >= best) continue;
+            best = dx * dx + dy * dy;
+            distance = std::abs(dx * normals_[k].x + dy * normals_[k].y);
+        }
+        return distance;
+    }
+
+  private:
+    static constexpr int kTangentSpan = 4;  // points before and after
+
+    const TrueView& view_;
+    std::vector<std::size_t> points_;
+    std::vector<cv::Point2f> normals_;
+    float left_ = std::numeric_limits<float>::max(), right_ = -left_, top_ = left_, bottom_ = -left_;  // px
+};
 
 }  // namespace
 
@@ -77,35 +126,28 @@ Verdict judgeEdges(const OrganizedEdges& reference, const TrueView& view, const 
                    const OrganizedEdges& current, const EdgeGrid& grid) {
     Verdict verdict;
     verdict.visible = view.num_visible;
-    std::vector<char> covered;
     for (std::size_t e = 0; e < links.size(); ++e) {
-        const auto first = static_cast<std::size_t>(reference.begin[e]);
-        const auto end = static_cast<std::size_t>(reference.begin[e + 1]);
-        const auto visible = static_cast<std::size_t>(std::count(
-            view.visible.begin() + reference.begin[e], view.visible.begin() + reference.begin[e + 1], 1));
-        if (visible == 0) continue;
-        covered.assign(end - first, 0);
-        std::size_t length = 0, right_length = 0;  // of the partners, points
+        if (links[e].empty()) continue;
+        const TrueCurve curve(reference, view, e);
+        if (curve.empty()) continue;
+        std::size_t near = 0, right = 0;
         for (const int partner : links[e]) {
             const auto other = static_cast<std::size_t>(partner);
-            const auto size = static_cast<std::size_t>(current.begin[other + 1] - current.begin[other]);
-            std::vector<std::size_t> near;
-            for (std::size_t i = first; i < end; ++i) {
-                if (view.visible[i] == 0) continue;
-                if (grid.nearest(view.u[i], view.v[i], kTolerance,
-                                 [&](std::size_t point) { return current.edge_of[point] == partner; }) >= 0)
-                    near.push_back(i);
+            for (auto i = static_cast<std::size_t>(current.begin[other]);
+                 i < static_cast<std::size_t>(current.begin[other + 1]); ++i) {
+                const auto distance = curve.normalDistance(current.x[i], current.y[i]);
+                if (!distance) continue;
+                ++near;
+                right += *distance <= kTolerance;
             }
-            ++verdict.associated;
-            length += size;
-            if (static_cast<double>(near.size()) < kHalf * static_cast<double>(std::min(visible, size)))
-                continue;
-            ++verdict.right;
-            right_length += size;
-            for (const std::size_t i : near) covered[i - first] = 1;
         }
-        if (static_cast<double>(right_length) >= kHalf * static_cast<double>(length))
-            verdict.correct += static_cast<std::size_t>(std::count(covered.begin(), covered.end(), 1));
+        verdict.associated += near;
+        verdict.right += right;
+        if (near == 0 || static_cast<double>(right) < kHalf * static_cast<double>(near)) continue;
+        for (const std::size_t i : curve.points())
+            verdict.correct += grid.nearest(view.u[i], view.v[i], kTolerance, [&](std::size_t point) {
+                return std::binary_search(links[e].begin(), links[e].end(), current.edge_of[point]);
+            }) >= 0;
     }
     return verdict;
 }

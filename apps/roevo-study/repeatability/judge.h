@@ -11,6 +11,8 @@ namespace roevo {
 
 /// An association is right when it is within so many pixels of where the feature truly is.
 inline constexpr float kTolerance = 3;
+/// What an edge is associated with farther away (px) than this confuses nobody.
+inline constexpr float kNeighbourhood = 30;
 
 /// Where reference points truly are in a later frame.
 struct TrueView {
@@ -31,12 +33,12 @@ TrueView trueView(const std::vector<Eigen::Vector3d>& points, const Pose& T_fram
 struct Verdict {
     std::size_t visible = 0;     ///< reference points that could be found
     std::size_t correct = 0;     ///< of them, those that were associated rightly
-    std::size_t associated = 0;  ///< associations of visible features
-    std::size_t right = 0;       ///< of them, those that are right
+    std::size_t associated = 0;  ///< points that features were associated with, near them
+    std::size_t right = 0;       ///< of them, those that lie where they should
 
     /// Share of the visible features that were rightly associated; none when too few are visible to tell.
     std::optional<double> share() const;
-    /// Share of the associations that are right; none without any.
+    /// Share of what features were associated with that is right; none without any.
     std::optional<double> precision() const;
 };
 
@@ -46,12 +48,14 @@ Verdict judgePoints(const TrueView& view, const std::vector<std::optional<cv::Po
 /// Edges of the current frame that a method associates with each reference edge.
 using EdgeLinks = std::vector<std::vector<int>>;
 
-/// Judges edge-wise associations by the reference edges' true curves. A pair of edges is right when at least
-/// half of the shorter one (visible points of the reference, all points of the other) lies within kTolerance.
-/// A reference edge is rightly associated when right pairs make up at least half of the length it was
-/// associated with; then each of its visible points that a right partner passes within kTolerance counts as
-/// correct. So edges count by their visible length, one that is only partly found again counts in part, and
-/// one that is lumped together with everything does not count.
+/// Judges edge-wise associations by the reference edges' true curves. The points of all edges associated with
+/// a reference edge, as far as they are within kNeighbourhood of it, should lie on its curve or its straight
+/// continuation (distance along the normal at most kTolerance; fragments of one edge are the same edge).
+/// Where most of them do, the reference edge is rightly associated, and each of its visible points that one
+/// of these edges passes within kTolerance counts as correct. So edges count by their visible length, one
+/// that is only partly found again counts in part, and one lumped together with its neighbours does not
+/// count.
+/// @param grid  of `current`
 Verdict judgeEdges(const OrganizedEdges& reference, const TrueView& view, const EdgeLinks& links,
                    const OrganizedEdges& current, const EdgeGrid& grid);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <deque>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -27,12 +26,15 @@ std::vector<Eigen::Vector3d> pointsOf(const EdgePoints3D& edges) {
 // A reference frame and what each method has made of its features since.
 struct Reference {
     Reference(std::shared_ptr<FeatureFrame> of, const PinholeCamera& camera, const OdometryOptions& options)
-        : frame(std::move(of)), corners(*frame, camera, options), edge_points(pointsOf(frame->lifted)) {}
+        : frame(std::move(of)), corners(*frame, camera, options), edge_points(pointsOf(frame->lifted)) {
+        for (int e = 0; e < frame->lifted.image.numEdges(); ++e) nearest.push_back({e});
+        normals = nearest;
+    }
 
     std::shared_ptr<FeatureFrame> frame;
     CornerTracks corners;
     std::vector<Eigen::Vector3d> edge_points;
-    EdgeLinks nearest;  // to the edges of the last frame; empty: it is the reference itself
+    EdgeLinks nearest, normals;  // chained to the edges of the last frame
 };
 
 class Measurement {
@@ -88,9 +90,14 @@ class Measurement {
             references_.pop_front();
         sets_.insert(*current, reference || isKeyframe(current->timestamp));
         if (previous_) {
-            const EdgeLinks step =
-                nearestNeighbours(previous_->edges, *current, input_.camera, input_.options);
-            for (Reference& one : references_) compare(one, step, *current);
+            const EdgeLinks nearest = step(*previous_, *current, EdgeRule::kNearest);
+            const EdgeLinks normals = step(*previous_, *current, EdgeRule::kNormals);
+            for (Reference& one : references_) {
+                one.corners.advance(*previous_, *current);
+                one.nearest = chain(one.nearest, nearest);
+                one.normals = chain(one.normals, normals);
+                compare(one, *current);
+            }
         }
         if (reference) {
             references_.emplace_back(current, input_.camera, input_.options);
@@ -100,29 +107,29 @@ class Measurement {
         previous_ = std::move(current);
     }
 
-    void compare(Reference& reference, const EdgeLinks& step, const FeatureFrame& current) {
+    EdgeLinks step(const FeatureFrame& from, const FeatureFrame& to, EdgeRule rule) const {
+        return associateEdges(from, to, rule, input_.camera, input_.options);
+    }
+
+    void compare(const Reference& reference, const FeatureFrame& current) {
         const FeatureFrame& from = *reference.frame;
-        reference.corners.advance(*previous_, current);
-        // The reference's edges are those with depth, the chain's all
-        reference.nearest = reference.nearest.empty()
-                                ? nearestNeighbours(from.lifted.image, current, input_.camera, input_.options)
-                                : chain(reference.nearest, step);
         const Pose T_current_reference = current.T_world_camera.inverse() * from.T_world_camera;
         const TrueView corners =
             trueView(reference.corners.points(), T_current_reference, current, input_.camera);
         const TrueView edges = trueView(reference.edge_points, T_current_reference, current, input_.camera);
-        const OrganizedEdges& image = from.lifted.image;
-        const Verdict verdicts[] = {
-            judgePoints(corners, reference.corners.positions()),
-            judgeEdges(image, edges, reference.nearest, current.edges, current.grid),
-            judgeEdges(image, edges, byNormals(from, current, input_.camera, input_.options), current.edges,
-                       current.grid),
-            judgeEdges(image, edges, sets_.links(from.number), current.lifted.image, current.lifted_grid)};
+        const auto judged = [&](const EdgeLinks& links) {
+            return judgeEdges(from.lifted.image, edges, links, current.lifted.image, current.lifted_grid);
+        };
+        const Verdict verdicts[] = {judgePoints(corners, reference.corners.positions()),
+                                    judged(reference.nearest), judged(reference.normals),
+                                    judged(step(from, current, EdgeRule::kNormals)),
+                                    judged(sets_.links(from.number))};
         RepeatabilityRow row;
         row.reference = from.number;
         row.frame = current.number;
         row.rotation_deg = rotationAngle(T_current_reference) / kDegree;
         row.translation = T_current_reference.translation().norm();
+        row.disagreement = disagreement(reference, current, edges);
         row.visible_corners = corners.num_visible;
         row.visible_points = edges.num_visible;
         for (std::size_t m = 0; m < kNumAssociationMethods; ++m) {
@@ -130,6 +137,22 @@ class Measurement {
             row.precision[m] = verdicts[m].precision();
         }
         result_.rows.push_back(row);
+    }
+
+    double disagreement(const Reference& reference, const FeatureFrame& current,
+                        const TrueView& judged) const {
+        const Pose T_estimated = current.T_world_estimated.inverse() * reference.frame->T_world_estimated;
+        const PinholeCamera ideal = input_.camera.undistorted();
+        std::vector<double> distances;
+        for (std::size_t i = 0; i < judged.visible.size(); ++i) {
+            if (judged.visible[i] == 0) continue;
+            const Eigen::Vector3d point = T_estimated * reference.edge_points[i];
+            if (point.z() > 0)
+                distances.push_back((ideal.project(point) - Eigen::Vector2d(static_cast<double>(judged.u[i]),
+                                                                            static_cast<double>(judged.v[i])))
+                                        .norm());
+        }
+        return median(std::move(distances)).value_or(0);
     }
 
     bool isKeyframe(double time) const {

@@ -9,14 +9,16 @@
 namespace roevo {
 
 /// Methods in the order of the tables.
-enum class AssociationMethod { kOpticalFlow, kNearest, kNormals, kDisjointSet };
-inline constexpr std::size_t kNumAssociationMethods = 4;
+enum class AssociationMethod { kOpticalFlow, kNearest, kNormals, kKeyframe, kDisjointSet };
+inline constexpr std::size_t kNumAssociationMethods = 5;
 
 /// One frame, seen from one reference frame.
 struct RepeatabilityRow {
     std::size_t reference = 0, frame = 0;  ///< numbers in the recording under study, counted from 0
     double rotation_deg = 0;               ///< between the two cameras
     double translation = 0;                ///< m
+    double disagreement = 0;  ///< px, median over the visible edge points, between the judging poses and
+                              ///< the odometry's: more than kTolerance, and it is the poses that fail
     std::size_t visible_corners = 0, visible_points = 0;  ///< of the reference's features
     /// Share of them that is rightly associated, and of the associations that is right, by method.
     std::array<std::optional<double>, kNumAssociationMethods> share, precision;

@@ -62,28 +62,32 @@ void CornerTracks::advance(const FeatureFrame& previous, const FeatureFrame& cur
     }
 }
 
-EdgeLinks associateEdges(const OrganizedEdges& reference, const std::vector<float>& u,
-                         const std::vector<float>& v, const Eigen::Vector2f& turn, int span,
-                         const OrganizedEdges& current, const EdgeGrid& grid, const PinholeCamera& camera,
-                         const FineOptions& fine, double radius) {
+EdgeLinks associateEdges(const FeatureFrame& from, const FeatureFrame& current, EdgeRule rule,
+                         const PinholeCamera& camera, const OdometryOptions& options) {
+    const EdgePoints3D& edges = from.lifted;
+    const Pose T_current_from = current.T_world_estimated.inverse() * from.T_world_estimated;
+    const std::size_t padded = edges.x.size();
+    std::vector<float> x(padded), y(padded), z(padded), u(padded), v(padded);
+    kernels::best().project(makeProjection(T_current_from, camera.undistorted(), RowMotion()), edges.x.data(),
+                            edges.y.data(), edges.z.data(), padded,
+                            {x.data(), y.data(), z.data(), u.data(), v.data()});
+    FineOptions fine = options.fine;
+    if (rule == EdgeRule::kNearest) {
+        fine.normal_angle_deg = kAnyDirection;
+        fine.vote_ratio = 0;
+        fine.min_votes = 1;
+    }
     EdgeAssociator associator(fine);
     EdgeMatches matches;
-    associator.associate(reference, u.data(), v.data(), turn, span, current, grid, camera.width,
-                         camera.height, radius, matches);
-    EdgeLinks links(static_cast<std::size_t>(reference.numEdges()));
+    associator.associate(edges.image, u.data(), v.data(), imageRotation(T_current_from),
+                         options.edges.tangent_span, current.lifted.image, current.lifted_grid, camera.width,
+                         camera.height, fine.final_radius, matches);
+    EdgeLinks links(static_cast<std::size_t>(edges.image.numEdges()));
     for (std::size_t k = 0; k < matches.size(); ++k)
-        links[static_cast<std::size_t>(reference.edge_of[static_cast<std::size_t>(matches.reference[k])])]
-            .push_back(current.edge_of[static_cast<std::size_t>(matches.current[k])]);
+        links[static_cast<std::size_t>(edges.image.edge_of[static_cast<std::size_t>(matches.reference[k])])]
+            .push_back(current.lifted.image.edge_of[static_cast<std::size_t>(matches.current[k])]);
     for (std::vector<int>& partners : links) sortUnique(partners);
     return links;
-}
-
-EdgeLinks nearestNeighbours(const OrganizedEdges& previous, const FeatureFrame& current,
-                            const PinholeCamera& camera, const OdometryOptions& options) {
-    FineOptions fine = options.fine;
-    fine.normal_angle_deg = kAnyDirection;
-    return associateEdges(previous, previous.x, previous.y, {1, 0}, options.edges.tangent_span, current.edges,
-                          current.grid, camera, fine, fine.search_radius);
 }
 
 EdgeLinks chain(const EdgeLinks& first, const EdgeLinks& second) {
@@ -96,19 +100,6 @@ EdgeLinks chain(const EdgeLinks& first, const EdgeLinks& second) {
         sortUnique(links[e]);
     }
     return links;
-}
-
-EdgeLinks byNormals(const FeatureFrame& reference, const FeatureFrame& current, const PinholeCamera& camera,
-                    const OdometryOptions& options) {
-    const EdgePoints3D& edges = reference.lifted;
-    const Pose T_current_reference = current.T_world_estimated.inverse() * reference.T_world_estimated;
-    const std::size_t padded = edges.x.size();
-    std::vector<float> x(padded), y(padded), z(padded), u(padded), v(padded);
-    kernels::best().project(makeProjection(T_current_reference, camera.undistorted(), RowMotion()),
-                            edges.x.data(), edges.y.data(), edges.z.data(), padded,
-                            {x.data(), y.data(), z.data(), u.data(), v.data()});
-    return associateEdges(edges.image, u, v, imageRotation(T_current_reference), options.edges.tangent_span,
-                          current.edges, current.grid, camera, options.fine, options.fine.final_radius);
 }
 
 DisjointSets::DisjointSets(const PinholeCamera& camera, const OdometryOptions& options)

@@ -1,7 +1,6 @@
 #pragma once
 #include <opencv2/core/mat.hpp>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "frame.h"
@@ -28,25 +27,17 @@ class CornerTracks {
     std::vector<std::optional<cv::Point2f>> positions_;
 };
 
-/// Edge-wise association of `reference`, whose points are looked for at (u, v), with `current`.
-/// @param turn  see EdgeAssociator
-EdgeLinks associateEdges(const OrganizedEdges& reference, const std::vector<float>& u,
-                         const std::vector<float>& v, const Eigen::Vector2f& turn, int span,
-                         const OrganizedEdges& current, const EdgeGrid& grid, const PinholeCamera& camera,
-                         const FineOptions& fine, double radius);
+/// kNormals: as the tracker does it (Sec. V-C), only points of a like normal, and a vote of an edge's points.
+/// kNearest: every edge that is the nearest neighbour of some point.
+enum class EdgeRule { kNearest, kNormals };
 
-/// Nearest neighbour alone, between frames that follow each other: edges are looked for where they were, and
-/// any point within the first search radius will do, whatever its direction.
-EdgeLinks nearestNeighbours(const OrganizedEdges& previous, const FeatureFrame& current,
-                            const PinholeCamera& camera, const OdometryOptions& options);
+/// Edges of `current` (those with depth) associated with those of `from`, which are reprojected at the
+/// odometry's poses and looked for within the last search radius.
+EdgeLinks associateEdges(const FeatureFrame& from, const FeatureFrame& current, EdgeRule rule,
+                         const PinholeCamera& camera, const OdometryOptions& options);
 
 /// `first` then `second`: links from the edges of the one to those of the other.
 EdgeLinks chain(const EdgeLinks& first, const EdgeLinks& second);
-
-/// Frame to frame with edge normals (Sec. V-C), as the tracker does it with its keyframe: reprojected at the
-/// odometry's pose, nearest point of a like normal, vote.
-EdgeLinks byNormals(const FeatureFrame& reference, const FeatureFrame& current, const PinholeCamera& camera,
-                    const OdometryOptions& options);
 
 /// The disjoint sets of the co-visibility graph (Sec. VI-A, Algorithms 1 and 2) over a growing list of
 /// keyframes, asked about frames that are not keyframes, too.

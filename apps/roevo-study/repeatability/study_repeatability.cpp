@@ -16,10 +16,11 @@ struct MethodLook {
     const char *key, *label, *colour;  // colours as in the paper's figure
 };
 constexpr MethodLook kMethods[kNumAssociationMethods] = {
-    {"lk", "Shi-Tomasi + LK optical flow", "#E69F00"},
-    {"nearest", "organized edges, nearest neighbour", "#D62728"},
-    {"normals", "organized edges, frame to frame with normals", "#0072B2"},
-    {"disjoint_set", "organized edges, disjoint set", "#009E73"},
+    {"lk", "Shi-Tomasi, LK optical flow", "#E69F00"},
+    {"nearest", "edges, nearest neighbour", "#D62728"},
+    {"normals", "edges, frame to frame, normals", "#0072B2"},
+    {"keyframe", "edges, keyframe to frame, normals", "#56B4E9"},
+    {"disjoint_set", "edges, disjoint set", "#009E73"},
 };
 
 struct DistanceLook {
@@ -51,9 +52,9 @@ void append(std::vector<std::string>& fields,
 }
 
 CsvTable rowsTable() {
-    std::vector<std::string> head{"recording",     "judged_by",       "reference",
-                                  "frame",         "frames",          "rotation_deg",
-                                  "translation_m", "visible_corners", "visible_edge_points"};
+    std::vector<std::string> head{"recording",       "judged_by",          "reference",     "frame",
+                                  "frames",          "rotation_deg",       "translation_m", "disagreement_px",
+                                  "visible_corners", "visible_edge_points"};
     append(head, columns("_share"));
     append(head, columns("_precision"));
     return CsvTable(head);
@@ -68,6 +69,7 @@ void addRows(CsvTable& table, const std::string& recording, const Repeatability&
                                         std::to_string(row.frame - row.reference),
                                         CsvTable::number(row.rotation_deg),
                                         CsvTable::number(row.translation),
+                                        CsvTable::number(row.disagreement, 4),
                                         std::to_string(row.visible_corners),
                                         std::to_string(row.visible_points)};
         append(fields, row.share);
@@ -92,7 +94,7 @@ void addBins(CsvTable& table, const std::string& recording, const std::vector<Re
         }
 }
 
-// One panel of four curves.
+// One panel, a curve for each method.
 std::string panel(const std::string& block, const std::vector<RepeatabilityRow>& rows,
                   const DistanceLook& look) {
     constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
@@ -113,48 +115,61 @@ std::string panel(const std::string& block, const std::vector<RepeatabilityRow>&
     return script + '\n';
 }
 
-constexpr char kAxes[] = "set yrange [0:100]\nset ytics 20\nset xtics autofreq\n";
+struct Sheet {
+    int columns = 1, lines = 1, width = 0, height = 0, key_rows = 1;  // panels; px
+
+    // A panel's axes, px left of, below, right of and above them.
+    static constexpr int kLeft = 80, kBelow = 60, kRight = 15, kAbove = 40, kKeyRow = 24;
+
+    int keyHeight() const { return key_rows * kKeyRow + 16; }
+    std::string head() const {
+        return format(
+            "set yrange [0:100]\nset ytics 20\nset ylabel offset 0.5\nset xlabel offset 0, 0.3\nset "
+            "multiplot\n"
+            "set key at screen 0.5, %g center center maxrows %d Left reverse width -3\n",
+            0.5 * keyHeight() / height, key_rows);
+    }
+    std::string place(std::size_t number) const {
+        const int column = static_cast<int>(number) % columns, line = static_cast<int>(number) / columns;
+        const double w = static_cast<double>(width) / columns,
+                     h = static_cast<double>(height - keyHeight()) / lines;
+        const double left = w * column, bottom = height - h * (line + 1);
+        return format(
+            "set lmargin at screen %g\nset rmargin at screen %g\nset bmargin at screen %g\nset tmargin at "
+            "screen %g\n",
+            (left + kLeft) / width, (left + w - kRight) / width, (bottom + kBelow) / height,
+            (bottom + h - kAbove) / height);
+    }
+};
 
 // All recordings pooled, over the three kinds of distance.
 void drawPooled(StudyReport& report, const std::string& folder, const std::vector<RepeatabilityRow>& rows) {
-    std::string script = std::string(kAxes) +
-                         "set multiplot\nset tmargin at screen 0.95\nset bmargin at screen 0.27\n"
-                         "set ylabel 'rightly associated features (%)'\n"
-                         "set key at screen 0.5, 0.11 center maxrows 2 Left reverse width 2\n";
-    const double left[] = {0.06, 0.385, 0.71}, width = 0.275;
-    for (std::size_t i = 0; i < std::size(kDistances); ++i) {
-        script += format("set lmargin at screen %g\nset rmargin at screen %g\n", left[i], left[i] + width);
-        if (i > 0) script += "unset key\nunset ylabel\n";
-        script += panel("pooled" + std::to_string(i), rows, kDistances[i]);
-    }
-    addPlot(report, folder, "repeatability.svg", script + "unset multiplot", 1180, 460);
+    const Sheet sheet{3, 1, 1200, 470, 2};
+    std::string script = sheet.head() + "set ylabel 'rightly associated features (%)'\n";
+    for (std::size_t i = 0; i < std::size(kDistances); ++i)
+        script += sheet.place(i) + panel("pooled" + std::to_string(i), rows, kDistances[i]) +
+                  "unset key\nunset ylabel\n";
+    addPlot(report, folder, "repeatability.svg", script + "unset multiplot", sheet.width, sheet.height);
 }
 
 // A panel for each recording.
 void drawRecordings(StudyReport& report, const std::string& folder, const std::vector<std::string>& names,
                     const std::vector<Repeatability>& measured) {
-    const int columns = names.size() < 3 ? static_cast<int>(names.size()) : names.size() == 4 ? 2 : 3;
-    const int lines = (static_cast<int>(names.size()) + columns - 1) / columns;
-    const int key_height = 70, panel_height = 300, height = key_height + panel_height * lines;
-    const int width = std::max(640, 400 * columns);
-    const double floor = static_cast<double>(key_height) / height;
-    const double w = 1.0 / columns, h = (1 - floor) / lines;
-    std::string script = std::string(kAxes) + "set multiplot\n" +
-                         format("set key at screen 0.5, %g center maxrows %d Left reverse width 2\n",
-                                0.5 * floor, columns > 2 ? 2 : 2);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const double left = w * static_cast<double>(static_cast<int>(i) % columns);
-        const double bottom = 1 - h * static_cast<double>(static_cast<int>(i) / columns + 1);
-        script += format(
-            "set lmargin at screen %g\nset rmargin at screen %g\nset bmargin at screen %g\nset tmargin at "
-            "screen %g\n",
-            left + 70.0 / width, left + w - 20.0 / width, bottom + 55.0 / height, bottom + h - 40.0 / height);
-        script += "set title " + gnuplotText(names[i]) + "\nset ylabel " +
-                  gnuplotText(i % static_cast<std::size_t>(columns) == 0 ? "rightly associated (%)" : "") +
-                  '\n';
-        script += panel("recording" + std::to_string(i), measured[i].rows, kDistances[0]) + "unset key\n";
-    }
-    addPlot(report, folder, "repeatability_recordings.svg", script + "unset multiplot", width, height);
+    const int count = static_cast<int>(names.size());
+    Sheet sheet;
+    sheet.columns = count == 4 ? 2 : std::min(count, 3);
+    sheet.lines = (count + sheet.columns - 1) / sheet.columns;
+    sheet.width = std::max(600, 400 * sheet.columns);
+    sheet.key_rows = sheet.columns == 3 ? 2 : sheet.columns == 2 ? 3 : 5;
+    sheet.height = sheet.keyHeight() + 320 * sheet.lines;
+    std::string script = sheet.head();
+    for (std::size_t i = 0; i < names.size(); ++i)
+        script +=
+            sheet.place(i) + "set title " + gnuplotText(names[i]) + "\nset ylabel " +
+            gnuplotText(i % static_cast<std::size_t>(sheet.columns) == 0 ? "rightly associated (%)" : "") +
+            '\n' + panel("recording" + std::to_string(i), measured[i].rows, kDistances[0]) + "unset key\n";
+    addPlot(report, folder, "repeatability_recordings.svg", script + "unset multiplot", sheet.width,
+            sheet.height);
 }
 
 std::string percentages(const std::array<std::optional<double>, kNumAssociationMethods>& shares) {
@@ -183,6 +198,14 @@ StudyReport studyRepeatability(const std::vector<StudyInput>& inputs, const std:
         pooled.insert(pooled.end(), of_input.rows.begin(), of_input.rows.end());
         std::string note = format("%s: judged by %s; %zu references", input.name.c_str(),
                                   of_input.judged_by.c_str(), of_input.references);
+        std::vector<double> disagreements;
+        for (const RepeatabilityRow& row : of_input.rows) disagreements.push_back(row.disagreement);
+        if (const double typical = median(disagreements).value_or(0);
+            typical > 0.5 * static_cast<double>(kTolerance))
+            note += format(
+                "; its poses and the odometry's put the same edge %.1f px apart (median), so that all shares "
+                "are lower than they would be by exact poses",
+                typical);
         if (of_input.left_out > 0)
             note += format("; %zu frames left out (unreadable or without a pose)", of_input.left_out);
         report.notes.push_back(note);
