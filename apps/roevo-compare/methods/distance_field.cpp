@@ -102,16 +102,18 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
     return system;
 }
 
+void DistanceFieldTracker::prepare(const FineFrame& frame) {
+    if (field_timestamp_ == frame.timestamp) return;
+    const Clock::time_point begin = Clock::now();
+    field_.build(frame.mask->mask);
+    field_timestamp_ = frame.timestamp;
+    times_.field += millisecondsSince(begin);
+}
+
 FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
                                        const PosePrior& prior, const RollingShutter& shutter,
                                        const Brightness& brightness) {
-    const Clock::time_point field_begin = Clock::now();
-    if (field_timestamp_ != frame.timestamp) {
-        field_.build(frame.mask->mask);
-        field_timestamp_ = frame.timestamp;
-    }
-    times_.field += millisecondsSince(field_begin);
-
+    prepare(frame);
     const Clock::time_point begin = Clock::now();
     const PinholeCamera& camera = *frame.camera;
     const double depth = std::max(keyframe.median_depth, 0.1);

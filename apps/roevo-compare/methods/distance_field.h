@@ -37,7 +37,10 @@ class DistanceFieldTracker {
     DistanceFieldTracker(const FineOptions& options, double photometric_weight)
         : options_(options), photometric_weight_(photometric_weight) {}
 
-    /// As FineTracker::track(); builds the field of a frame when it is new. FineResult::inliers counts points
+    /// Builds the field of a frame when it is new; track() does so, too.
+    void prepare(const FineFrame& frame);
+
+    /// As FineTracker::track(). FineResult::inliers counts points
     /// near an edge, matched_ratio their share of those that are looked up and visible.
     FineResult track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
                      const PosePrior& prior, const RollingShutter& shutter, const Brightness& brightness);
