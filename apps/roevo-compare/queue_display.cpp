@@ -60,8 +60,8 @@ void QueueDisplay::going(const std::map<std::size_t, double>& running) {
             (line.empty() ? "" : "; ") + tasks_[index].sequence + ", " + tasks_[index].method.name + percent;
     }
     if (!enabled_ || !terminal_) return;
-    line = "[" + std::to_string(finished_) + " of " + std::to_string(tasks_.size()) + " done] " + line +
-           timeLeft(static_cast<double>(finished_) + running_share_);
+    line = "[" + std::to_string(finished_) + " of " + std::to_string(tasks_.size()) + " done" +
+           timeLeft(static_cast<double>(finished_) + running_share_) + "] " + line;
     std::fprintf(stderr, "\r%s\033[K", cutToTerminal(line).c_str());
     std::fflush(stderr);
     line_open_ = true;

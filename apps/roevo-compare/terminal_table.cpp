@@ -73,6 +73,10 @@ std::string terminalTable(const std::vector<SequenceComparison>& sequences) {
             text += " failed: " + sequence.failure + "\n";
             continue;
         }
+        if (sequence.runs.empty()) {
+            text += " not run\n";
+            continue;
+        }
         for (const Column& column : kColumns) text += rightAligned(column.head, kWidth);
         text += '\n';
         std::set<std::string> faults;  // mostly one for all methods

@@ -336,6 +336,7 @@ TEST_F(Compare, AnInterruptLeavesWhatIsFinishedAndResumeGoesOn) {
     expectError(result, 1, kName, {"interrupted", "1 runs are missing", "--resume"});
     expectRow("quick,roevo-tr,");
     expectNoRow("slow,roevo-tr,");
+    EXPECT_NE(result.out.find(" not run"), std::string::npos) << result.out;
     EXPECT_NE(readFile(output() + "/table.md").find("interrupted"), std::string::npos);
     EXPECT_FALSE(fs::exists(runFolder("slow", "roevo-tr")));
     for (const auto& entry : fs::recursive_directory_iterator(output()))
