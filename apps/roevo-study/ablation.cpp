@@ -173,7 +173,7 @@ void draw(StudyReport& report, const std::string& folder, const std::vector<std:
     std::string script = gnuplotData("bars", bars) + gnuplotData("dots", dots) +
                          "set multiplot layout 2,1\nset xtics rotate by -15 (" + tics + ")\n" +
                          format("set xrange [-0.6:%g]\n", static_cast<double>(names.size()) - 0.4) +
-                         "set boxwidth 0.18\nset grid noxtics\nset yrange [0:*]\n"
+                         "set boxwidth 0.18\nset lmargin 9\nset grid noxtics\nset yrange [0:*]\n"
                          "set key outside center top horizontal Left reverse maxrows 2\n";
     for (int quantity = 0; quantity < 2; ++quantity) {
         script += quantity == 0

@@ -36,13 +36,9 @@ struct Study {
 constexpr Study kStudies[] = {
     {"canny", "Canny threshold", studyCannyThreshold},
     {"depth-weight", "Depth weight", studyDepthWeight},
-#ifdef ROEVO_STUDY_ablation
     {"ablation", "Ablation of coarse tracking", studyAblation},
-#endif
     {"repeatability", "Repeatability", studyRepeatability},
-#ifdef ROEVO_STUDY_efficiency
     {"efficiency", "Efficiency", studyEfficiency},
-#endif
 };
 
 std::vector<Study> chosenStudies(const std::vector<std::string>& names) {
