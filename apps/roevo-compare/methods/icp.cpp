@@ -27,7 +27,7 @@ constexpr char kUnavailable[] = "";
 /// Grid on which the depth image of a reference is sampled, and that of a frame which is registered to it.
 /// They must not fit into each other: each point would find the one at its own pixel, and surfaces seem to
 /// stand still.
-constexpr int kReferenceColumns = 160, kReferenceRows = 120, kFrameColumns = 83, kFrameRows = 62;
+constexpr int kReferenceColumns = 160, kReferenceRows = 120, kFrameColumns = 131, kFrameRows = 98;
 constexpr std::size_t kLeastPoints = 200;  ///< fewer cannot carry a pose
 constexpr double kLeastMatched = 0.3;  ///< share of points with a neighbour, below which nothing was found
 // Of the keyframe method: the next keyframe is due.

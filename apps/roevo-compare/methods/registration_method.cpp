@@ -8,7 +8,9 @@
 namespace roevo {
 namespace {
 
-constexpr double kLongestGap = 0.5;  ///< s between frames; nobody moves on evenly for longer
+/// Seconds between two frames that make a velocity: nobody moves on evenly for longer, and what moved in a
+/// shorter time is mostly an error of the stamps.
+constexpr double kShortestGap = 0.005, kLongestGap = 0.5;
 
 /// The nearest rotation, so that rounding does not build up in a chain of poses.
 Pose normalised(const Pose& pose) {
@@ -64,8 +66,11 @@ MethodFrame RegistrationMethod::processFrame(const RgbdFrame& frame) {
     out.T_world_camera =
         normalised(T_world_reference_ * found.T_reference_frame.value_or(expected.T_reference_frame));
     if (out.tracked) {
-        motion_.measure(frame.timestamp, *out.T_world_camera);
-        velocity_known_ = true;
+        velocity_known_ = gap >= kShortestGap && gap <= kLongestGap;
+        if (velocity_known_)
+            motion_.measure(frame.timestamp, *out.T_world_camera);
+        else
+            motion_.anchor(frame.timestamp, *out.T_world_camera);
         out.reason.clear();
     }
     if (found.becomes_reference) {
