@@ -129,16 +129,16 @@ StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::s
     std::string script =
         gnuplotData("bars", bars) +
         "set title 'Error of the trajectory under the depth weight'\n"
-        "set ylabel 'ATE / ATE without weight'\nset yrange [0:*<1.5]\nset xtics rotate by -20 (" +
+        "set ylabel 'ATE / ATE without weight'\nset yrange [0:*]\nset xtics rotate by -15 (" +
         tics + ")\n" + format("set xrange [-0.6:%g]\n", static_cast<double>(names.size()) - 0.4) +
         "set key outside right center Left reverse title 'k (1/m), d_{min} (m), d_{max} (m)'\n"
-        "set boxwidth 0.18\nset bmargin 5\nset grid noxtics\nplot 1 with lines lt 7 dt 2 lw 1.5 title 'none "
+        "set boxwidth 0.18\nset bmargin 6\nset grid noxtics\nplot 1 with lines lt 7 dt 2 lw 1.5 title 'none "
         "(k = 0)'";
     for (std::size_t s = 1; s < sets.size(); ++s)
         script += format(", $bars using ($1%+.2f):%zu with boxes lt %zu title ",
                          0.2 * (static_cast<double>(s) - 2.5), s + 2, s) +
                   gnuplotText(label(sets[s]));
-    addPlot(report, folder, "depth_weight.svg", script, 980, 440);
+    addPlot(report, folder, "depth_weight.svg", script, 1000, 440);
 
     report.summary = format("%zu recordings, ATE relative to no weight (median):", names.size());
     for (std::size_t s = 1; s < sets.size(); ++s)

@@ -16,7 +16,7 @@ namespace roevo {
 StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options) {
     Odometry odometry(input.camera, options);
     StudyRun run;
-    std::vector<double> milliseconds;
+    std::size_t processed = 0;
     const auto source = input.open();
     for (SourceFrame frame; source->next(frame);) {
         ++run.frames;
@@ -24,10 +24,9 @@ StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options)
         const FrameResult result = odometry.processFrame(frame.frame);
         run.tracked += result.status == FrameStatus::kOk || result.status == FrameStatus::kInitialised;
         run.points += result.num_points;
-        milliseconds.push_back(result.ms.total);
+        ++processed;
     }
-    if (!milliseconds.empty()) run.points /= static_cast<double>(milliseconds.size());
-    run.milliseconds = median(milliseconds).value_or(0);
+    if (processed > 0) run.points /= static_cast<double>(processed);
     run.trajectory = odometry.trajectory();
     for (const KeyframeInfo& keyframe : odometry.keyframes())
         run.keyframe_times.push_back(keyframe.timestamp);

@@ -49,7 +49,6 @@ struct StudyRun {
     std::vector<double> keyframe_times;    ///< s, ascending
     std::size_t frames = 0, tracked = 0;   ///< tracked: measured, or the first; the others are not
     double points = 0;                     ///< on organized edges, mean over the frames
-    double milliseconds = 0;               ///< of a frame, median, decoding apart
     std::optional<Evaluation> evaluation;  ///< none without ground truth, see `fault`
     std::string fault;                     ///< why there is no evaluation, in words
 };

@@ -124,7 +124,8 @@ struct Sheet {
     int keyHeight() const { return key_rows * kKeyRow + 16; }
     std::string head() const {
         return format(
-            "set yrange [0:100]\nset ytics 20\nset ylabel offset 0.5\nset xlabel offset 0, 0.3\nset "
+            "set yrange [0:100]\nset ytics 20\nset ylabel offset 0.5\nset xlabel offset 0, 0.3\nset title "
+            "offset 0, -0.6\nset "
             "multiplot\n"
             "set key at screen 0.5, %g center center maxrows %d Left reverse width -3\n",
             0.5 * keyHeight() / height, key_rows);
@@ -216,15 +217,20 @@ StudyReport studyRepeatability(const std::vector<StudyInput>& inputs, const std:
     drawPooled(report, folder, pooled);
     drawRecordings(report, folder, names, measured);
 
-    report.notes.insert(report.notes.begin(),
-                        format("Every %zu-th frame is a reference whose features are looked for in the %zu "
-                               "frames after it. Of features "
-                               "that are visible (inside the image, their surface shown by the depth) it "
-                               "counts those associated within "
-                               "%g px of their true place; edges count by their visible length. Precision: "
-                               "share of the associations "
-                               "that is right.",
-                               plan.every, plan.follow, static_cast<double>(kTolerance)));
+    const std::string notes[] = {
+        format("Every %zu-th frame is a reference whose features are looked for in the %zu frames after it.",
+               plan.every, plan.follow),
+        format("Of features that are visible (inside the image, their surface shown by the depth) those "
+               "count that are "
+               "associated within %g px of their true place; edges count by their visible length. Precision: "
+               "share of "
+               "the associations that is right.",
+               static_cast<double>(kTolerance)),
+        "Nearest neighbour and frame to frame are chained: as with optical flow, what is lost in one frame "
+        "stays lost. "
+        "Keyframe to frame is what the tracker does. Edges are reprojected at the odometry's poses.",
+        "Pooled curves mix recordings that move differently; each has a panel of its own."};
+    report.notes.insert(report.notes.begin(), std::begin(notes), std::end(notes));
     double farthest = 0;
     for (const RepeatabilityRow& row : pooled)
         farthest = std::max(farthest, distanceOf(row, Distance::kFrames));
