@@ -27,6 +27,14 @@ std::string headOf(const Table::Row& row) {
     return "<th scope=\"row\"" + std::string(kind) + ">" + head + "</th>";
 }
 
+std::string groupHeads(const Table& table) {
+    if (table.groups.empty()) return {};
+    std::string html = "<tr><td></td>";
+    for (const auto& [name, size] : table.groups)
+        html += "<th scope=\"colgroup\" colspan=\"" + std::to_string(size) + "\">" + htmlText(name) + "</th>";
+    return html + "</tr>\n";
+}
+
 }  // namespace
 
 std::string element(const std::string& tag, const std::string& text) {
@@ -50,12 +58,12 @@ std::string setTable(const Table& table, const std::string& id, bool titled) {
     const auto words = [&](const Table::Row& row) { return table.text_last ? &row.cells.back() : nullptr; };
     std::string html = "<div class=\"tablebox\" id=\"" + id + "\">\n";
     if (titled) html += element("h3", table.title) + "\n";
-    html += "<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr><th scope=\"col\">" +
-            htmlText(table.corner) + "</th>";
+    html += "<div class=\"scroll\" tabindex=\"0\"><table>\n<thead>" + groupHeads(table) +
+            "<tr><th scope=\"col\">" + htmlText(table.corner) + "</th>";
     for (const std::string& column : table.columns)
         html += (table.text_last && &column == &table.columns.back() ? "<th scope=\"col\" class=\"text\">"
                                                                      : "<th scope=\"col\">") +
-                breakable(column) + "</th>";
+                replaceAll(htmlText(column), "_", "_<wbr/>") + "</th>";
     html += "</tr></thead>\n<tbody>\n";
     for (const Table::Row& row : table.rows) {
         html += "<tr>" + headOf(row);

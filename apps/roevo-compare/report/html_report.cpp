@@ -53,29 +53,18 @@ std::string summary(const std::vector<SequenceResults>& results, const Legend& l
     return html + "</section>\n";
 }
 
-std::string rankingTables(const std::vector<SequenceResults>& results,
-                          const std::vector<TableMethod>& methods, const std::string& id) {
-    std::string html;
-    for (std::size_t m = 0; m < shownMetrics().size(); ++m)
-        if (shownMetrics()[m].is_error)
-            html += setTable(rankingTable(shownMetrics()[m], results, methods), id + std::to_string(m));
-    return html;
-}
-
 std::string ranking(const std::vector<SequenceResults>& results, const Legend& legend) {
     std::string html =
         "<section id=\"Ranking\">\n<h2>Ranking</h2>\n<p>Number of sequences on which a method is among the "
-        "first "
-        "1, 2 and 3, and its mean rank.</p>\n";
+        "first 1, 2 and 3, and its mean rank.</p>\n";
     const auto one = oneRoevo(legend.methods);
     if (one.size() != legend.methods.size())
         html +=
-            "<h3>One ROEVO against the others</h3>\n<p>As in the paper’s table: the fullest of its modes "
-            "only, "
-            "so that they do not take places from each other.</p>\n<div class=\"ranks\">" +
-            rankingTables(results, one, "rank_one") + "</div>\n<h3>All methods</h3>\n";
-    return html + "<div class=\"ranks\">" + rankingTables(results, legend.methods, "rank_all") +
-           "</div>\n</section>\n";
+            "<div class=\"block\"><h3>One ROEVO against the others</h3>\n<p>As in the paper’s table: the "
+            "fullest of its modes "
+            "only, so that they do not take places from each other.</p>\n" +
+            setTable(rankingTable(results, one), "rank_one", false) + "</div>\n<h3>All methods</h3>\n";
+    return html + setTable(rankingTable(results, legend.methods), "rank_all", false) + "</section>\n";
 }
 
 std::string methodList(const Legend& legend) {

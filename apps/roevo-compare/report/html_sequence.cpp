@@ -96,21 +96,22 @@ std::string SequenceWriter::plots(const SequenceResults& results) {
                                         [](const EvaluatedRun& run) { return run.evaluation.has_value(); });
     std::string html = drawn([&] {
         std::string part =
-            "<h3>Trajectories" +
+            "<div class=\"block\"><h3>Trajectories" +
             std::string(referenced ? ", aligned with the ground truth" : ", each from its own first pose") +
             "</h3>\n" + lineLegend(results, legend_, true) + "<div class=\"pair\">\n";
         for (const Figure& figure : trajectoryFigures(results, legend_)) part += setFigure(figure);
-        return part + "</div>\n";
+        return part + "</div>\n</div>\n";
     });
     if (referenced)
         html += drawn([&] {
-            return "<h3>Position error over time, after the alignment</h3>\n" +
-                   lineLegend(results, legend_, false) + setFigure(errorFigure(results, legend_));
+            return "<div class=\"block\"><h3>Position error over time, after the alignment</h3>\n" +
+                   lineLegend(results, legend_, false) + setFigure(errorFigure(results, legend_)) +
+                   "</div>\n";
         });
     return html + drawn([&] {
                const Figure figure = stageFigure(results, stages_);
-               return "<h3>Mean time per tracked frame by stage</h3>\n" +
-                      (figure.svg.empty() ? "" : stageLegend(figure)) + setFigure(figure);
+               return "<div class=\"block\"><h3>Mean time per tracked frame by stage</h3>\n" +
+                      (figure.svg.empty() ? "" : stageLegend(figure)) + setFigure(figure) + "</div>\n";
            });
 }
 

@@ -30,9 +30,10 @@ table { border-collapse: collapse; border-top: 2px solid var(--ink); border-bott
   font-size: 14px; font-variant-numeric: tabular-nums lining-nums; }
 thead th { border-bottom: 1px solid var(--ink); vertical-align: bottom; font-weight: 600; line-height: 1.3; }
 th, td { padding: 4px 16px 4px 8px; text-align: right; }
-th[scope=col] { min-width: 76px; max-width: 150px; }
+th[scope=col] { min-width: 72px; max-width: 190px; }
 th:first-child { text-align: left; min-width: 150px; max-width: 260px; position: sticky; left: 0; background: #fff;
   z-index: 1; }
+th[scope=colgroup] { text-align: center; border-bottom: 1px solid var(--rule); padding-bottom: 2px; }
 tbody th { font-weight: 400; }
 tbody tr + tr > * { border-top: 1px solid #eceff2; }
 th.ours, th.ours a { font-weight: 600; color: var(--ours); }
@@ -81,9 +82,9 @@ ul.lines li { margin: 3px 0; }
   table { font-size: 7.6pt; width: 100%; }
   th, td { padding: 2pt 9pt 2pt 3pt; }
   th[scope=col] { min-width: 0; }
-  th:first-child { position: static; min-width: 0; }
+  th:first-child { position: static; min-width: 32mm; }
   thead { display: table-header-group; }
-  tr, figure, .remark, .notes li { break-inside: avoid; }
+  .block, .tablebox, tr, figure, .remark, .notes li { break-inside: avoid; }
   .notes, .protocol, figcaption, .legend { font-size: 7.6pt; }
   .verdict { font-size: 12pt; }
   pre, code { font-size: 8pt; }

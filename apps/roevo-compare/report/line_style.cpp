@@ -28,7 +28,7 @@ std::vector<LineStyle> lineStyles(const std::vector<TableMethod>& methods) {
     for (std::size_t i = 0; i < methods.size(); ++i)
         if (!isOurs(methods[i].name)) {
             const std::size_t round = std::min(foreign / kForeign.size(), kForeignDashes.size() - 1);
-            styles[i] = {kForeign[foreign % kForeign.size()], 1.6, kForeignDashes[round]};
+            styles[i] = {kForeign[foreign % kForeign.size()], 1.4, kForeignDashes[round]};
             ++foreign;
         }
     return styles;

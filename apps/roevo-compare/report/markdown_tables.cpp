@@ -30,8 +30,15 @@ class Footnotes {
 };
 
 std::string setTable(const Table& table, Footnotes& notes) {
-    std::string text = "### " + markdownText(table.title) + "\n\n| " + table.corner + " |";
-    for (const std::string& column : table.columns) text += " " + markdownText(column) + " |";
+    std::vector<std::string> columns = table.columns;
+    std::size_t first = 0;  // Markdown has no heads over several columns
+    for (const auto& [name, size] : table.groups) {
+        for (std::size_t c = first; c < first + size; ++c) columns[c] = name + ": " + columns[c];
+        first += size;
+    }
+    std::string text = table.title.empty() ? "" : "### " + markdownText(table.title) + "\n\n";
+    text += "| " + table.corner + " |";
+    for (const std::string& column : columns) text += " " + markdownText(column) + " |";
     text += "\n|---|";
     for (std::size_t c = 0; c < table.columns.size(); ++c)
         text += table.text_last && c + 1 == table.columns.size() ? "---|" : "---:|";
@@ -42,14 +49,6 @@ std::string setTable(const Table& table, Footnotes& notes) {
                     notes.mark(cell.note) + " |";
     }
     return text + "\n\n" + table.protocol + "\n\n";
-}
-
-std::string rankings(const std::vector<SequenceResults>& results, const std::vector<TableMethod>& methods,
-                     Footnotes& notes) {
-    std::string text;
-    for (const Metric& metric : shownMetrics())
-        if (metric.is_error) text += setTable(rankingTable(metric, results, methods), notes);
-    return text;
 }
 
 // Four spaces make a block from which nothing can break out.
@@ -80,8 +79,9 @@ std::string markdownTables(const std::vector<SequenceResults>& results, const Co
     const auto one = oneRoevo(methods);
     if (one.size() != methods.size())
         text += "As in the paper, one ROEVO (the last mode of these tables) against the others:\n\n" +
-                rankings(results, one, notes) + "All methods, each of ROEVO's modes for itself:\n\n";
-    text += rankings(results, methods, notes) + notes.list() + "## Methods\n\n";
+                setTable(rankingTable(results, one), notes) +
+                "All methods, each of ROEVO's modes for itself:\n\n";
+    text += setTable(rankingTable(results, methods), notes) + notes.list() + "## Methods\n\n";
     for (const TableMethod& method : methods)
         text += "- **" + markdownText(method.label) + "**: " + markdownText(method.note) + "\n";
     text += "\n## Protocol\n\n";

@@ -63,17 +63,17 @@ Value p95Time(const MethodRun& run, const EvaluatedRun&) {
 
 const std::vector<Metric>& shownMetrics() {
     static const std::vector<Metric> metrics{
-        {"ATE RMSE", "cm", 3, true, false, error<ate, 100>},
-        {"RPE over 1 s, translation RMSE", "cm/s", 3, true, false, error<secondTranslation, 100>},
-        {"RPE over 1 s, rotation RMSE", "deg/s", 3, true, false, error<secondRotation, 1>},
-        {"RPE per frame, translation RMSE", "cm", 3, true, false, error<frameTranslation, 100>},
-        {"RPE per frame, rotation RMSE", "deg", 3, true, false, error<frameRotation, 1>},
-        {"Frames tracked", "%", 1, false, true, tracked},
-        {"Time per frame, median", "ms", 2, false, false, medianTime},
-        {"Time per frame, 95th percentile", "ms", 2, false, false, p95Time},
-        {"Processor time per frame, all threads", "ms", 2, false, false,
+        {"ATE RMSE", "ATE", "cm", 3, true, false, error<ate, 100>},
+        {"RPE over 1 s, translation RMSE", "RPE 1 s", "cm/s", 3, true, false, error<secondTranslation, 100>},
+        {"RPE over 1 s, rotation RMSE", "RPE 1 s", "deg/s", 3, true, false, error<secondRotation, 1>},
+        {"RPE per frame, translation RMSE", "RPE frame", "cm", 3, true, false, error<frameTranslation, 100>},
+        {"RPE per frame, rotation RMSE", "RPE frame", "deg", 3, true, false, error<frameRotation, 1>},
+        {"Frames tracked", "Tracked", "%", 1, false, true, tracked},
+        {"Time per frame, median", "Time, median", "ms", 2, false, false, medianTime},
+        {"Time per frame, 95th percentile", "Time, p95", "ms", 2, false, false, p95Time},
+        {"Processor time per frame, all threads", "Processor time", "ms", 2, false, false,
          whenRun<&MethodRun::cpu_ms_per_frame>},
-        {"Memory peak", "MB", 0, false, false, whenRun<&MethodRun::memory_peak_mb>},
+        {"Memory peak", "Memory peak", "MB", 0, false, false, whenRun<&MethodRun::memory_peak_mb>},
     };
     return metrics;
 }

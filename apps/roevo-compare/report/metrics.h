@@ -10,6 +10,7 @@ namespace roevo {
 /// One figure of a run, as the tables show it.
 struct Metric {
     std::string title;  ///< "ATE RMSE"
+    std::string brief;  ///< the same as the head of a narrow column
     std::string unit;   ///< as shown, e.g. "cm"; `value` is in it
     int decimals = 0;
     bool is_error = false;  ///< needs ground truth, and is ranked

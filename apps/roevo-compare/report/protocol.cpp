@@ -37,6 +37,10 @@ std::string errorProtocol() {
            "and one configuration for all.";
 }
 
+std::string shareProtocol() {
+    return "Share of the usable frames to which the method measured the motion; the same frames for all.";
+}
+
 std::string costProtocol() {
     return "One core, reading and decoding apart; times over tracked frames; same frames and one "
            "configuration "

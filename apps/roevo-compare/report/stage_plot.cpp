@@ -12,7 +12,7 @@ namespace {
 constexpr int kWidth = 1120, kBarHeight = 30, kBesideHeight = 66;  // px
 constexpr std::size_t kLongestLabel = 42;                          // characters
 constexpr double kMarginByCharacter = 0.75;                        // gnuplot counts in widths of a wide one
-constexpr double kClipAt = 4;  // times the median bar: what is longer is cut off, so that others stay legible
+constexpr double kClipAt = 5;  // times the median bar: what is longer is cut off, so that others stay legible
 constexpr double kLeastRest = 0.02;  // share of the total that is worth a piece of the bar
 
 struct Bar {

@@ -11,6 +11,7 @@ namespace roevo {
 namespace {
 
 constexpr std::size_t kMaxSequenceColumns = 8;  // more do not fit a page beside each other
+constexpr std::size_t kRankedMetrics = 3;       // ATE, RPE over 1 s: the first ones
 constexpr char kDash[] = "–";
 
 std::string reasonOf(const Metric& metric, const SequenceResults& results, std::size_t index) {
@@ -29,27 +30,52 @@ TableCell makeCell(const Metric& metric, const SequenceResults& results, const s
     const auto value = metricOf(metric, results, *run);
     if (!value) return {kDash, false, false, reasonOf(metric, results, *run)};
     TableCell cell{shownNumber(value, metric.decimals), best[*run], false, {}};
+    const double share = trackedShare(sequence.runs[*run]).value_or(0);
     cell.weak = !isComplete(sequence.runs[*run]) && (metric.is_error || metric.is_share);
-    if (metric.is_error && cell.weak) {
-        cell.note = "tracked " + shownNumber(trackedShare(sequence.runs[*run]).value_or(0) * 100, 1) +
-                    " % of the frames only; ranks behind those that tracked more";
-    }
+    if (metric.is_error && share < 1)
+        cell.note = "tracked " + shownNumber(share * 100, 1) + " % of the frames" +
+                    (cell.weak ? " only; ranks behind those that tracked more" : "");
     return cell;
 }
 
 // Mean over all sequences, where there is a figure for each of them.
-TableCell meanCell(const Metric& metric, const std::vector<SequenceResults>& results,
-                   const std::string& method) {
+struct Mean {
+    std::optional<double> value;
+    bool weak = false;  // some of it is of runs that tracked too few frames
+};
+
+Mean meanOf(const Metric& metric, const std::vector<SequenceResults>& results, const std::string& method) {
     double sum = 0;
     bool weak = false;
     for (const SequenceResults& result : results) {
         const auto run = findRun(*result.sequence, method);
         const auto value = run ? metricOf(metric, result, *run) : std::nullopt;
-        if (!value) return {kDash, false, false, "no mean where a sequence is missing"};
+        if (!value) return {};
         sum += *value;
-        weak = weak || (metric.is_error && !isComplete(result.sequence->runs[*run]));
+        weak = weak || ((metric.is_error || metric.is_share) && !isComplete(result.sequence->runs[*run]));
     }
-    return {shownNumber(sum / static_cast<double>(results.size()), metric.decimals), false, weak, {}};
+    return {sum / static_cast<double>(results.size()), weak};
+}
+
+void addMeans(Table& table, const Metric& metric, const std::vector<SequenceResults>& results,
+              const std::vector<TableMethod>& methods) {
+    table.columns.push_back("mean");
+    std::vector<Mean> means;
+    for (const TableMethod& method : methods) means.push_back(meanOf(metric, results, method.name));
+    std::optional<double> least;
+    std::size_t compared = 0;
+    for (const Mean& mean : means)
+        if (mean.value && !mean.weak) {
+            least = std::min(least.value_or(*mean.value), *mean.value);
+            ++compared;
+        }
+    for (std::size_t i = 0; i < means.size(); ++i) {
+        const std::string text = shownNumber(means[i].value, metric.decimals);
+        const bool best = !metric.is_share && compared > 1 && !means[i].weak && means[i].value &&
+                          text == shownNumber(least, metric.decimals);
+        table.rows[i].cells.push_back(
+            {text, best, means[i].weak, means[i].value ? "" : "no mean where a sequence is missing"});
+    }
 }
 
 Table transposed(const Table& table, const std::string& corner) {
@@ -67,7 +93,7 @@ std::string inUnit(const Metric& metric) {
 }
 
 std::string protocolOf(const Metric& metric) {
-    return metric.is_error ? errorProtocol() : costProtocol();
+    return metric.is_error ? errorProtocol() : metric.is_share ? shareProtocol() : costProtocol();
 }
 
 void addPaperRow(Table& table, const std::vector<SequenceResults>& results) {
@@ -80,6 +106,26 @@ void addPaperRow(Table& table, const std::vector<SequenceResults>& results) {
     table.rows.push_back(row);
 }
 
+// Appends the four columns of a rank table to the rows.
+void addRanks(Table& table, const std::vector<RankRow>& rows) {
+    std::array<int, 3> most{};
+    double best_rank = 0;
+    for (const RankRow& row : rows) {
+        for (std::size_t k = 0; k < most.size(); ++k) most[k] = std::max(most[k], row.top[k]);
+        if (row.sequences > 0 && (best_rank <= 0 || row.mean_rank < best_rank)) best_rank = row.mean_rank;
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        auto& cells = table.rows[i].cells;
+        for (std::size_t k = 0; k < most.size(); ++k)
+            cells.push_back(
+                {std::to_string(rows[i].top[k]), rows[i].top[k] > 0 && rows[i].top[k] == most[k], false, {}});
+        if (rows[i].sequences > 0)
+            cells.push_back({shownNumber(rows[i].mean_rank, 2), rows[i].mean_rank <= best_rank, false, {}});
+        else
+            cells.push_back({kDash, false, false, "ranked on no sequence"});
+    }
+}
+
 }  // namespace
 
 Table figureTable(const Metric& metric, const std::vector<SequenceResults>& results,
@@ -90,26 +136,28 @@ Table figureTable(const Metric& metric, const std::vector<SequenceResults>& resu
         table.columns.push_back(result.sequence->name);
         best.push_back(bestRuns(metric, result));
     }
-    const bool averaged = results.size() > 1;
-    if (averaged) table.columns.push_back("mean");
     for (const TableMethod& method : methods) {
         Table::Row row{method.label, isOurs(method.name), false, {}, {}};
         for (std::size_t s = 0; s < results.size(); ++s)
             row.cells.push_back(
                 makeCell(metric, results[s], best[s], findRun(*results[s].sequence, method.name)));
-        if (averaged) row.cells.push_back(meanCell(metric, results, method.name));
         table.rows.push_back(row);
     }
+    if (results.size() > 1) addMeans(table, metric, results, methods);
     if (&metric == &shownMetrics().front()) addPaperRow(table, results);
     return results.size() > kMaxSequenceColumns ? transposed(table, "Sequence") : table;
 }
 
 Table sequenceTable(const SequenceResults& results) {
-    Table table{"All figures", "Method", {}, {}, errorProtocol() + " " + costProtocol()};
+    Table table{"All figures",
+                "Method",
+                {},
+                {},
+                "Errors and times per frame. " + errorProtocol() + " " + costProtocol()};
     for (const MethodRun& run : results.sequence->runs)
         table.rows.push_back({labelOf(run), isOurs(run.method), false, {}, {}});
     for (const Metric& metric : shownMetrics()) {
-        table.columns.push_back(inUnit(metric));
+        table.columns.push_back(metric.brief + " [" + metric.unit + "]");
         const auto best = bestRuns(metric, results);
         for (std::size_t i = 0; i < table.rows.size(); ++i)
             table.rows[i].cells.push_back(makeCell(metric, results, best, i));
@@ -146,33 +194,22 @@ Table stageTable(const SequenceResults& results) {
     return table;
 }
 
-Table rankingTable(const Metric& metric, const std::vector<SequenceResults>& results,
-                   const std::vector<TableMethod>& methods) {
-    Table table{"By " + metric.title,
-                "Method",
-                {"Top 1 seqs.", "Top 2 seqs.", "Top 3 seqs.", "Mean rank", "Ranked seqs.", "Without result"},
-                {},
-                errorProtocol()};
-    const auto rows = rankTable(metric, results, methods);
-    double best_rank = 0;
-    for (const RankRow& row : rows)
-        if (row.sequences > 0 && (best_rank <= 0 || row.mean_rank < best_rank)) best_rank = row.mean_rank;
-    std::array<int, 3> most{};
-    for (const RankRow& row : rows)
-        for (std::size_t k = 0; k < most.size(); ++k) most[k] = std::max(most[k], row.top[k]);
-    for (const RankRow& row : rows) {
-        Table::Row shown{row.method.label, isOurs(row.method.name), false, {}, {}};
-        for (std::size_t k = 0; k < most.size(); ++k)
-            shown.cells.push_back(
-                {std::to_string(row.top[k]), row.top[k] > 0 && row.top[k] == most[k], false, {}});
-        shown.cells.push_back(
-            row.sequences > 0
-                ? TableCell{shownNumber(row.mean_rank, 2), row.mean_rank <= best_rank, false, {}}
-                : TableCell{kDash, false, false, "ranked on no sequence"});
-        shown.cells.push_back({std::to_string(row.sequences), false, false, {}});
-        shown.cells.push_back({std::to_string(row.failures), false, false, {}});
-        table.rows.push_back(shown);
+Table rankingTable(const std::vector<SequenceResults>& results, const std::vector<TableMethod>& methods) {
+    Table table{"", "Method", {}, {}, errorProtocol()};
+    for (const TableMethod& method : methods)
+        table.rows.push_back({method.label, isOurs(method.name), false, {}, {}});
+    for (std::size_t m = 0; m < kRankedMetrics; ++m) {
+        const Metric& metric = shownMetrics()[m];
+        table.columns.insert(table.columns.end(), {"Top 1", "Top 2", "Top 3", "Mean rank"});
+        table.groups.emplace_back(metric.title, 4);
+        addRanks(table, rankTable(metric, results, methods));
     }
+    table.columns.insert(table.columns.end(), {"Ranked", "Without result"});
+    table.groups.emplace_back("Sequences", 2);
+    const auto rows = rankTable(shownMetrics().front(), results, methods);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        for (const int count : {rows[i].sequences, rows[i].failures})
+            table.rows[i].cells.push_back({std::to_string(count), false, false, {}});
     return table;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "roevo-compare/report/metrics.h"
@@ -28,6 +29,8 @@ struct Table {
     std::vector<Row> rows;
     std::string protocol;    ///< one sentence
     bool text_last = false;  ///< the last column holds words, not numbers
+    /// What successive columns have in common, and how many they are; empty, or for all columns.
+    std::vector<std::pair<std::string, std::size_t>> groups{};
 };
 
 /// A figure of every method (rows) on every sequence (columns), with the mean over the sequences where there
@@ -42,9 +45,8 @@ Table sequenceTable(const SequenceResults& results);
 /// since each method has its own.
 Table stageTable(const SequenceResults& results);
 
-/// The paper's rank table by an error, see rankTable().
-Table rankingTable(const Metric& metric, const std::vector<SequenceResults>& results,
-                   const std::vector<TableMethod>& methods);
+/// The paper's rank table, see rankTable(), by ATE and by RPE over 1 s.
+Table rankingTable(const std::vector<SequenceResults>& results, const std::vector<TableMethod>& methods);
 
 /// What a reader must know before the figures, a sentence each: sequences that failed, ground truth that is
 /// missing, methods that were not given the same frames. Normally none.

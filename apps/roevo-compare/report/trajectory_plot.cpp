@@ -9,12 +9,12 @@
 namespace roevo {
 namespace {
 
-constexpr std::size_t kMaxPoints = 1500;                // of a line; more are not seen
-constexpr int kWidth = 560;                             // px
-constexpr int kBesideWidth = 90, kBesideHeight = 62;    // px that the axes' texts take
-constexpr double kMargin = 0.12;                        // around the ground truth, as a share of its extent
-constexpr double kMinExtent = 0.02;                     // m: of a camera that stands
-constexpr double kMinAspect = 0.42, kMaxAspect = 0.95;  // height to width of a picture
+constexpr std::size_t kMaxPoints = 1500;               // of a line; more are not seen
+constexpr int kWidth = 560;                            // px
+constexpr int kBesideWidth = 90, kBesideHeight = 62;   // px that the axes' texts take
+constexpr double kMargin = 0.12;                       // around the ground truth, as a share of its extent
+constexpr double kMinExtent = 0.02;                    // m: of a camera that stands
+constexpr double kMinAspect = 0.42, kMaxAspect = 0.8;  // height to width of a picture
 
 struct Line {
     std::string name;
