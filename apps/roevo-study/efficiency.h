@@ -40,7 +40,7 @@ struct Measured {
 constexpr int kEfficiencyPasses = 3;
 
 /// Our odometry and the one with the distance field take turns on every frame, on one core: processor time of
-/// this thread, but for coarse tracking and mapping, which tell the clock's. The recording is run
+/// this thread, but for mapping, which tells the clock's. The recording is run
 /// kEfficiencyPasses times and an operation's time on a frame is the least of them: the work is the same
 /// every time, and whatever else the computer does only adds to it.
 /// @param done  frames so far, for the progress

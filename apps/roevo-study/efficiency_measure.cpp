@@ -132,6 +132,7 @@ class Contest {
     template <class Tracker>
     OdometryStages stages(Tracker& tracker) {
         OdometryStages stages;
+        stages.clock = processorTime;
         stages.registration = [this, &tracker](const Keyframe& keyframe, const FineFrame& frame,
                                                const Pose& T_start, const PosePrior& prior,
                                                const RollingShutter& shutter, const Brightness& brightness) {

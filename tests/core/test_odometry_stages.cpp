@@ -103,5 +103,22 @@ TEST(OdometryStages, WithoutPointsCoarseTrackingSaysSo) {
     EXPECT_NE(results[1].reason.find("too few points"), std::string::npos) << results[1].reason;
 }
 
+double strangeClock() {
+    static double now = 0;
+    return now += 1000;
+}
+TEST(OdometryStages, TimesAreTheClocksThatWasPutIn) {
+    OdometryOptions options;
+    options.mode = Mode::kTracking;
+    OdometryStages stages;
+    stages.clock = strangeClock;
+    const std::vector<FrameResult> results = run(options, stages);
+    EXPECT_EQ(results[1].ms.edges, 1000);
+    EXPECT_EQ(results[1].ms.coarse, 1000);
+    EXPECT_EQ(results[1].ms.fine, 1000);
+    EXPECT_EQ(results[1].ms.total, 7000);
+    expectSame(run(options, OdometryStages()), results);
+}
+
 }  // namespace
 }  // namespace roevo

@@ -25,6 +25,9 @@ struct OdometryStages {
     std::function<FineResult(const Keyframe&, const FineFrame&, const Pose& T_start, const PosePrior&,
                              const RollingShutter&, const Brightness&)>
         registration;
+
+    /// Milliseconds for FrameResult::ms (but mapping and waiting); else the steady clock.
+    double (*clock)() = nullptr;
 };
 
 }  // namespace roevo

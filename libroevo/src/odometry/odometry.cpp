@@ -180,11 +180,11 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
     const Pose T_world_keyframe = keyframe->T_world_camera;
     const RollingShutter shutter = motion.shutter(frame.timestamp, T_world_keyframe);
 
-    const Stopwatch coarse_watch;
+    const Stopwatch coarse_watch(stages.clock);
     const CoarseResult aligned = coarse.track(*keyframe, now.pyramid, ideal, shutter, guesses, brightness);
     result.ms.coarse += coarse_watch.milliseconds();
 
-    const Stopwatch fine_watch;
+    const Stopwatch fine_watch(stages.clock);
     const FineFrame view{frame.timestamp, &now.edges,   &grid,   &extractor.mask(),
                          &now.pyramid,    &frame.depth, &camera, &ideal};
     Pose T_current_keyframe = aligned.T_current_keyframe;
@@ -237,7 +237,7 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
 
 void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
     applyMapUpdates(result);
-    Stopwatch edge_watch;
+    const Stopwatch edge_watch(stages.clock);
     std::swap(now, before);
     keepForKeyframe(frame);
     const cv::Mat& grey = undistorter.apply(now.images.grey, now.undistorted);
@@ -352,7 +352,7 @@ Odometry::Odometry(Odometry&&) noexcept = default;
 Odometry& Odometry::operator=(Odometry&&) noexcept = default;
 
 FrameResult Odometry::processFrame(const RgbdFrame& frame) {
-    Stopwatch watch;
+    const Stopwatch watch(impl_->stages.clock);
     FrameResult result;
     result.timestamp = frame.timestamp;
     if (auto fault = faultOf(frame, impl_->camera, impl_->last_timestamp); !fault.empty()) {
