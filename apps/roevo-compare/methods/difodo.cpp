@@ -108,19 +108,15 @@ class Difodo : public RegistrationMethod {
         if (!expected.velocity_known) flow_.forgetVelocity();
         const mrpt::poses::CPose3D T_before_now = flow_.solve(expected.dt);
         found.stage_ms[1] = watch.milliseconds();
-        if (!flow_.determined()) {
+        const Pose step = sensorFromOptical().inverse() * toEigen(T_before_now) * sensorFromOptical();
+        if (!flow_.determined() || !step.matrix().allFinite()) {
             found.reason = "the depth does not determine the motion";
             flow_.forgetVelocity();  // it may not be finite
+        } else if (step.translation().norm() > kLongestStep || rotationAngle(step) > kLargestTurn) {
+            found.reason = "the motion found is longer than range flow can see";
+            flow_.forgetVelocity();
         } else {
-            const Pose step = sensorFromOptical().inverse() * toEigen(T_before_now) * sensorFromOptical();
-            if (step.translation().norm() < kLongestStep && rotationAngle(step) < kLargestTurn) {
-                found.T_reference_frame = step;
-            } else {
-                found.reason = "a step of " + std::to_string(step.translation().norm()) + " m and " +
-                               std::to_string(rotationAngle(step) / kDegree) +
-                               " degrees is more than range flow can see";
-                flow_.forgetVelocity();
-            }
+            found.T_reference_frame = step;
         }
         return found;
     }

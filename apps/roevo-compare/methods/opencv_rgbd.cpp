@@ -61,7 +61,7 @@ class OpencvRgbd : public RegistrationMethod {
         if (solved)
             found.T_reference_frame = toPose(T);
         else
-            found.reason = "OpenCV found too few correspondences, or a motion beyond its limits";
+            found.reason = "too few correspondences or a motion beyond the limits of OpenCV";
         reference_ = current;
         return found;
     }
