@@ -92,7 +92,7 @@ std::string draw(const Panel& panel, const std::vector<double>& factors, double 
         gnuplotData(panel.block, lines) + "set title " + gnuplotText(panel.title) + "\nset ylabel " +
         gnuplotText(panel.y_label) +
         format("\nset yrange [%g:%g]\nset lmargin at screen %g\nset rmargin at screen %g\nplot ", low / 1.2,
-               high * 1.2, panel.left, panel.right);
+               std::min(kTop, high * 1.2), panel.left, panel.right);
     for (std::size_t i = 0; i < names.size(); ++i)
         script += format("$%s using 1:%zu with linespoints lt %zu lw 1.5 ps 0.6 title ", panel.block.c_str(),
                          i + 3, i % 8 + 1) +
@@ -115,7 +115,7 @@ void plot(StudyReport& report, const std::string& folder, const std::vector<doub
         format("set arrow from %g, graph 0 to %g, graph 1 nohead lw 1.5 dt 2 lc rgb '#888888'\n", configured,
                configured) +
         "set multiplot\n" +
-        draw({"ate", "Absolute trajectory error", "ATE / ATE at Otsu", &Errors::ate, 0.055, 0.36}, factors,
+        draw({"ate", "Absolute trajectory error", "ATE / ATE at Otsu", &Errors::ate, 0.065, 0.365}, factors,
              configured, names, rows) +
         draw({"rpe", "Relative pose error over 1 s, translation", "RPE / RPE at Otsu",
               &Errors::rpe_translation, 0.43, 0.735},
@@ -175,7 +175,9 @@ StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std
     addTable(report, folder, "canny.csv", table);
     report.notes.push_back(
         format("The low threshold is half the high one; min_high_threshold is out of force, so that the "
-               "factor alone decides. Configured: %g x Otsu.",
+               "factor alone decides. Configured: %g x Otsu. Lines that leave the plot at the top, or end: "
+               "the odometry "
+               "lost its way.",
                configured));
     if (plotted.empty()) {
         report.summary = "no recording with ground truth: no errors, no plot";
@@ -193,7 +195,7 @@ StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std
         return format("%g x Otsu (", factors[f]) +
                (std::isfinite(middle) ? format("%.2f)", middle) : "most runs failed)");
     };
-    report.summary = format("%zu recordings, median of ATE / ATE at Otsu: least at ", plotted.size()) +
+    report.summary = counted(plotted.size(), "recording") + ", median of ATE / ATE at Otsu: least at " +
                      described(best) + "; configured: " + described(at_configured);
     return report;
 }

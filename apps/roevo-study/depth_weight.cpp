@@ -140,7 +140,7 @@ StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::s
                   gnuplotText(label(sets[s]));
     addPlot(report, folder, "depth_weight.svg", script, 1000, 440);
 
-    report.summary = format("%zu recordings, ATE relative to no weight (median):", names.size());
+    report.summary = counted(names.size(), "recording") + ", ATE relative to no weight (median):";
     for (std::size_t s = 1; s < sets.size(); ++s)
         report.summary +=
             format("%s %s %.2f", s > 1 ? "," : "", sets[s].name.c_str(), median(ratios[s]).value_or(0));

@@ -64,10 +64,10 @@ void checkFrames(FrameSource& source, const std::string& path) {
     SourceFrame frame;
     for (std::size_t count = 0; count < kFewestFrames || !good; ++count) {
         if (!source.next(frame))
-            throw std::runtime_error(
-                count < kFewestFrames ? path + ": only " + std::to_string(count) +
-                                            " frames; a study needs at least " + std::to_string(kFewestFrames)
-                                      : path + ": no frame can be read; the last one: " + frame.fault);
+            throw std::runtime_error(count < kFewestFrames
+                                         ? path + ": only " + counted(count, "frame") +
+                                               "; a study needs at least " + std::to_string(kFewestFrames)
+                                         : path + ": no frame can be read; the last one: " + frame.fault);
         if (!frame.fault.empty() || good) continue;
         good = true;
         if (const std::string fault = depthScaleFault(frame.frame); !fault.empty())

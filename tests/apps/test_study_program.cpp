@@ -195,7 +195,7 @@ TEST_F(StudyProgram, FramesThatCannotBeReadAreLeftOut) {
     writeFile(folder_ / "recording/rgb/0003.png", "not an image");
     const ProgramResult result = run("repeatability");
     ASSERT_EQ(result.exit_code, 0) << result.all();
-    EXPECT_NE(result.out.find("1 frames left out"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("1 frame left out"), std::string::npos) << result.out;
     EXPECT_EQ(table("repeatability.csv").size(), 4u);
 }
 

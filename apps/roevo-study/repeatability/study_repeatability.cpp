@@ -197,18 +197,18 @@ StudyReport studyRepeatability(const std::vector<StudyInput>& inputs, const std:
         addRows(rows, input.name, of_input);
         addBins(bins, input.name, of_input.rows);
         pooled.insert(pooled.end(), of_input.rows.begin(), of_input.rows.end());
-        std::string note = format("%s: judged by %s; %zu references", input.name.c_str(),
-                                  of_input.judged_by.c_str(), of_input.references);
+        std::string note = input.name + ": judged by " + of_input.judged_by + "; " +
+                           counted(of_input.references, "reference");
         std::vector<double> disagreements;
         for (const RepeatabilityRow& row : of_input.rows) disagreements.push_back(row.disagreement);
         if (const double typical = median(disagreements).value_or(0);
             typical > 0.5 * static_cast<double>(kTolerance))
             note += format(
-                "; its poses and the odometry's put the same edge %.1f px apart (median), so that all shares "
-                "are lower than they would be by exact poses",
+                "; its poses and the odometry's put the same edge %.1f px apart (median): too much to judge "
+                "well, compare with --no-ground-truth",
                 typical);
         if (of_input.left_out > 0)
-            note += format("; %zu frames left out (unreadable or without a pose)", of_input.left_out);
+            note += "; " + counted(of_input.left_out, "frame") + " left out (unreadable or without a pose)";
         report.notes.push_back(note);
     }
     addBins(bins, "all", pooled);
