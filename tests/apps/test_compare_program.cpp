@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <thread>
 
 #include "roevo-compare/compare.h"
@@ -41,6 +42,19 @@ class Compare : public testing::Test {
     std::string clip(const std::string& name, int frames = 6) const {
         writeTumFolder(folder / name, slidingRecording(frames));
         return folder / name;
+    }
+    // Runs the program and does something while it is at it.
+    test::ProgramResult runMeanwhile(const std::vector<std::string>& all,
+                                     const std::function<void(pid_t program)>& act) const {
+        std::vector<std::string> words{"-c", "echo $$ > " + (folder / "pid") + "; exec \"$@\"", "sh",
+                                       std::string(ROEVO_BIN_DIR) + "/" + kName};
+        words.insert(words.end(), all.begin(), all.end());
+        test::ProgramResult result;
+        std::thread program([&] { result = test::runProgram("/bin/sh", words); });
+        while (!fs::exists(folder / "pid") || readFile(folder / "pid").empty()) usleep(5'000);
+        act(std::stoi(readFile(folder / "pid")));
+        program.join();
+        return result;
     }
     std::string output() const { return folder / "out"; }
     std::string runFolder(const std::string& sequence, const std::string& method) const {
@@ -316,23 +330,42 @@ TEST_F(Compare, TwoProgramsDoNotShareAnOutputFolder) {
     EXPECT_EQ(run({input}, {"--methods", "roevo-ct"}).exit_code, 0);
 }
 
+TEST_F(Compare, AMethodThatCrashesIsARowAndTheNextOneRuns) {
+    const std::string input = clip("clip", 80), myself = std::to_string(getpid());
+    const std::string children = "/proc/" + myself + "/task/" + myself + "/children";
+    if (!fs::exists(children)) GTEST_SKIP() << "no " << children;
+    const auto result =
+        runMeanwhile(arguments({input}, {"--methods", "roevo-tr,roevo-ct"}), [&](pid_t program) {
+            const std::string id = std::to_string(program);
+            std::string child;
+            for (int i = 0; i < 6000 && child.empty(); ++i) {
+                usleep(5'000);
+                child = readFile("/proc/" + id + "/task/" + id + "/children");
+                if (readFile("/proc/" + std::to_string(std::atoi(child.c_str())) + "/cmdline")
+                        .find("--run-method") == std::string::npos)
+                    child.clear();  // before its exec it still is this program
+            }
+            ASSERT_FALSE(child.empty());
+            kill(std::stoi(child), SIGSEGV);
+        });
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    expectRow("clip,roevo-tr,");
+    expectRow("clip,roevo-ct,");
+    EXPECT_NE(kept("clip", "roevo-tr").failure.find("signal 11"), std::string::npos)
+        << kept("clip", "roevo-tr").failure;
+    EXPECT_TRUE(kept("clip", "roevo-ct").ok());
+    EXPECT_NE(result.out.find("failed: it died of signal 11"), std::string::npos) << result.out;
+    EXPECT_NE(readFile(output() + "/table.md").find("signal 11"), std::string::npos);
+}
+
 // Interrupts the program as soon as the first run is there. The second takes long enough for that.
 TEST_F(Compare, AnInterruptLeavesWhatIsFinishedAndResumeGoesOn) {
     const std::string quick = clip("quick", 3), slow = clip("slow", 80);
-    const auto all = arguments({quick, slow}, {"--methods", "roevo-tr"});
     const std::string first = runFolder("quick", "roevo-tr") + "/run.json";
-    test::ProgramResult result;
-    std::thread program([&] {
-        result = test::runProgram("/bin/sh", [&] {
-            std::vector<std::string> words{"-c", "echo $$ > " + (folder / "pid") + "; exec \"$@\"", "sh",
-                                           std::string(ROEVO_BIN_DIR) + "/" + kName};
-            words.insert(words.end(), all.begin(), all.end());
-            return words;
-        }());
+    const auto result = runMeanwhile(arguments({quick, slow}, {"--methods", "roevo-tr"}), [&](pid_t program) {
+        for (int i = 0; i < 6000 && !fs::exists(first); ++i) usleep(5'000);
+        kill(program, SIGINT);
     });
-    for (int i = 0; i < 6000 && !fs::exists(first); ++i) usleep(5'000);
-    kill(std::stoi(readFile(folder / "pid")), SIGINT);
-    program.join();
     expectError(result, 1, kName, {"interrupted", "1 runs are missing", "--resume"});
     expectRow("quick,roevo-tr,");
     expectNoRow("slow,roevo-tr,");
