@@ -9,6 +9,8 @@
 namespace roevo {
 namespace {
 
+constexpr std::size_t kManyColumns = 8;  // more are set closer
+
 std::string colourText(unsigned rgb) {
     char text[8];
     std::snprintf(text, sizeof text, "#%06X", rgb);
@@ -58,8 +60,9 @@ std::string setTable(const Table& table, const std::string& id, bool titled) {
     const auto words = [&](const Table::Row& row) { return table.text_last ? &row.cells.back() : nullptr; };
     std::string html = "<div class=\"tablebox\" id=\"" + id + "\">\n";
     if (titled) html += element("h3", table.title) + "\n";
-    html += "<div class=\"scroll\" tabindex=\"0\"><table>\n<thead>" + groupHeads(table) +
-            "<tr><th scope=\"col\">" + htmlText(table.corner) + "</th>";
+    html += "<div class=\"scroll\" tabindex=\"0\"><table" +
+            std::string(table.columns.size() > kManyColumns ? " class=\"dense\"" : "") + ">\n<thead>" +
+            groupHeads(table) + "<tr><th scope=\"col\">" + htmlText(table.corner) + "</th>";
     for (const std::string& column : table.columns)
         html += (table.text_last && &column == &table.columns.back() ? "<th scope=\"col\" class=\"text\">"
                                                                      : "<th scope=\"col\">") +

@@ -34,6 +34,9 @@ th[scope=col] { min-width: 72px; max-width: 190px; }
 th:first-child { text-align: left; min-width: 150px; max-width: 260px; position: sticky; left: 0; background: #fff;
   z-index: 1; }
 th[scope=colgroup] { text-align: center; border-bottom: 1px solid var(--rule); padding-bottom: 2px; }
+table.dense { font-size: 13px; }
+.dense th, .dense td { padding: 3px 12px 3px 5px; }
+.dense th[scope=col] { min-width: 50px; max-width: 110px; }
 tbody th { font-weight: 400; }
 tbody tr + tr > * { border-top: 1px solid #eceff2; }
 th.ours, th.ours a { font-weight: 600; color: var(--ours); }
