@@ -91,7 +91,9 @@ TEST_F(StudyProgram, CannyThreshold) {
         EXPECT_EQ(row.at("mode"), "tr");
         EXPECT_EQ(row.at("frames"), "6");
         EXPECT_LT(number(row, "ate_m"), 0.02) << factors.back();
-        if (factors.back() == 1) EXPECT_EQ(number(row, "ate_ratio"), 1);
+        if (factors.back() == 1) {
+            EXPECT_EQ(number(row, "ate_ratio"), 1);
+        }
         EXPECT_EQ(row.at("rpe_translation_ratio"), "") << "the recording is shorter than a second";
     }
     EXPECT_EQ(factors, (std::vector<double>{0.25, 0.35, 0.5, 0.6, 0.7, 1, 1.4, 2, 2.8, 4}));
