@@ -45,7 +45,7 @@ struct Verdict {
 /// @param found  where the method says that each reference point is; none: lost
 Verdict judgePoints(const TrueView& view, const std::vector<std::optional<cv::Point2f>>& found);
 
-/// Edges of the current frame that a method associates with each reference edge.
+/// Edges of the current frame that a method associates with each reference edge, in ascending order.
 using EdgeLinks = std::vector<std::vector<int>>;
 
 /// Judges edge-wise associations by the reference edges' true curves. The points of all edges associated with
