@@ -182,10 +182,13 @@ std::vector<MethodInfo> icpMethods() {
     frame.unavailable = keyframe.unavailable = kUnavailable;
     frame.name = "icp-frame";
     frame.label = "MRPT ICP frame";
-    frame.note = "weak: MRPT's CICP, point to point, depth only, each frame to the one before";
+    frame.note =
+        "weak: MRPT's CICP, point to point, depth only, each frame to the one before, so that it drifts";
     keyframe.name = "icp-keyframe";
     keyframe.label = "MRPT ICP keyframe";
-    keyframe.note = "weak: MRPT's CICP, point to point, depth only, each frame to the last keyframe";
+    keyframe.note =
+        "weak on paper: MRPT's CICP, point to point, depth only; but each frame to the last keyframe, which "
+        "keeps it from drifting";
     return {frame, keyframe};
 }
 
