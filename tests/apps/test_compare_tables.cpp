@@ -173,6 +173,16 @@ TEST(CompareTable, NumbersThatAreNoneAreLeftOut) {
     for (const char* column : {"ate_rmse_m", "time_total_median_ms", "time_total_p95_ms", "memory_peak_mb"})
         EXPECT_EQ(out.row("s", "a").at(column), "") << column;
     EXPECT_EQ(out.row("s", "b").at("rank_ate"), "1");
+    EXPECT_FALSE(contains(out.md, "**–")) << "a dash is never the best";
+}
+
+TEST(CompareTable, ErrorsBeyondAllNumbersAreNone) {
+    auto run = makeRun("a", 0.01);
+    run.trajectory[2].T_world_camera.translation().x() = 1e200;
+    const WrittenComparison out({makeSequence("s", {run, makeRun("b", 0.01)})});
+    EXPECT_EQ(out.row("s", "a").at("no_errors_because"), "its errors are too large to be computed");
+    EXPECT_EQ(out.row("s", "a").at("ate_rmse_m"), "");
+    EXPECT_EQ(out.row("s", "b").at("rank_ate"), "1");
 }
 
 TEST(CompareTable, OddNamesStayInTheirFields) {

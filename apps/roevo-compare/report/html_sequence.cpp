@@ -86,9 +86,13 @@ std::string SequenceWriter::plots(const SequenceResults& results) {
     const auto drawn = [&](const std::function<std::string()>& draw) -> std::string {
         if (!plot_fault_.empty()) return {};
         try {
-            return draw();
+            const std::string html = draw();
+            any_plot_ = true;
+            return html;
         } catch (const std::runtime_error& e) {
-            plot_fault_ = e.what();  // the same for all that would follow, as a rule: gnuplot is missing
+            if (any_plot_) return "<p class=\"remark\">No plot: " + htmlText(e.what()) + "</p>\n";
+            plot_fault_ =
+                e.what();  // not even the first: gnuplot is missing, so the others need not be tried
             return {};
         }
     };

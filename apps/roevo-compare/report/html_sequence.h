@@ -29,6 +29,7 @@ class SequenceWriter {
     std::string folder_;
     bool with_table_;
     std::vector<std::string> stages_;  // in the order of their colours
+    bool any_plot_ = false;
     std::string plot_fault_;
 };
 

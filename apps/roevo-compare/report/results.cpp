@@ -9,6 +9,16 @@
 namespace roevo {
 namespace {
 
+// Squares of what is beyond 1e150 m are no numbers any more.
+bool allFinite(const Evaluation& evaluation) {
+    for (const ErrorStatistics* s :
+         {&evaluation.ate.translation, &evaluation.rpe_second.translation, &evaluation.rpe_second.rotation,
+          &evaluation.rpe_frame.translation, &evaluation.rpe_frame.rotation})
+        if (s->count > 0 && !(std::isfinite(s->rmse) && std::isfinite(s->std) && std::isfinite(s->max)))
+            return false;
+    return true;
+}
+
 EvaluatedRun evaluateRun(const SequenceComparison& sequence, const MethodRun& run) {
     EvaluatedRun result;
     if (!run.ok()) {
@@ -28,7 +38,11 @@ EvaluatedRun evaluateRun(const SequenceComparison& sequence, const MethodRun& ru
         return result;
     }
     try {
-        result.evaluation = evaluate(sequence.reference, run.trajectory);
+        const Evaluation evaluation = evaluate(sequence.reference, run.trajectory);
+        if (allFinite(evaluation))
+            result.evaluation = evaluation;
+        else
+            result.fault = "its errors are too large to be computed";
     } catch (const std::exception& e) {
         result.fault = firstLine(e.what());
     }
