@@ -134,7 +134,7 @@ TEST(DistanceFieldTracker, PointsFarFromAnyEdgeOrOutsideSayNothing) {
         return tracker.linearise(keyframe, field, kCamera, Pose::Identity(), RowMotion(), 6).gradient.norm();
     };
     EXPECT_GT(gradientAt(103.4, 101.2), 0);
-    EXPECT_EQ(gradientAt(110, 100), 0);
+    EXPECT_EQ(gradientAt(107, 100), 0) << "beyond the radius, though not yet an outlier";
     EXPECT_EQ(gradientAt(-40, 100), 0);
     EXPECT_EQ(gradientAt(318.5, 238.5), 0);
 }
@@ -210,6 +210,7 @@ TEST(DistanceFieldTracker, WithoutEdgesItSaysSoAndKeepsThePose) {
 
 TEST(DistanceFieldMethod, WithoutNoiseTheErrorIsAFewMillimetres) {
     ASSERT_GT(pathLength(room().truth), 0.2);
+    std::vector<double> errors;  // m
     for (const MethodInfo& info : distanceFieldMethods()) {
         const auto method = makeDistanceField(info.name, room().camera, OdometryOptions());
         const Pose T_world_first = room().start();
@@ -229,7 +230,9 @@ TEST(DistanceFieldMethod, WithoutNoiseTheErrorIsAFewMillimetres) {
         const double error = std::sqrt(squared / static_cast<double>(room().frames.size()));
         RecordProperty(info.name + "_mm", std::to_string(1000 * error));
         EXPECT_LT(error, 0.003) << info.name;
+        errors.push_back(error);
     }
+    EXPECT_LT(errors[1], 0.9 * errors[0]) << "intensities see below the pixels of the mask";
 }
 
 TEST(DistanceFieldMethod, WhereTheWorldBeginsDoesNotMatter) {

@@ -71,14 +71,16 @@ TEST(PointSelection, DsoSpreadsOverTheImageAndCannyDoesNot) {
 
 TEST(PointSelection, DsoTakesAtMostOnePixelOfABlockAndTheStrongestOne) {
     cv::Mat image = cv::Mat::zeros(240, 320, CV_8UC1);
-    image(cv::Rect(100, 0, 220, 240)) = 60;  // one vertical step
+    image(cv::Rect(98, 0, 222, 240)) = 20;  // one vertical edge, steepest at 98
+    image(cv::Rect(99, 0, 221, 240)) = 90;
+    image(cv::Rect(100, 0, 220, 240)) = 100;
     const Gradient gradient = gradientOf(image);
     const auto pixels = selectDsoPixels(gradient, 20);
     ASSERT_GT(pixels.size(), 5U);
     ASSERT_LE(pixels.size(), 20U);
     std::set<int> rows;
     for (const cv::Point& p : pixels) {
-        EXPECT_TRUE(p.x == 99 || p.x == 100) << p.x;
+        EXPECT_EQ(p.x, 98);
         rows.insert(p.y);
     }
     EXPECT_EQ(rows.size(), pixels.size());
@@ -103,6 +105,17 @@ TEST(PointSelection, WeakPixelsAreTakenOnlyWhereThereIsNothingStronger) {
     EXPECT_GT(weak, weaker);
     EXPECT_GT(weaker, 0U);
     EXPECT_EQ(none, 0U);
+}
+
+TEST(PointSelection, WhatIsNoSteeperThanItsRegionIsNotTaken) {
+    cv::Mat image(240, 320, CV_8UC1);
+    for (int x = 0; x < image.cols; ++x) {
+        const int phase = x % 48;  // up and down by 9 grey levels per pixel
+        image.col(x) = 20 + 9 * (phase < 24 ? phase : 48 - phase);
+    }
+    EXPECT_TRUE(selectDsoPixels(gradientOf(image), 1000).empty());
+    image(cv::Rect(0, 100, 320, 140)) = 128;
+    EXPECT_GT(selectDsoPixels(gradientOf(image), 1000).size(), 10U) << "the border of the texture stands out";
 }
 
 TEST(PointSelection, FlatAndTinyImagesGiveNothing) {
