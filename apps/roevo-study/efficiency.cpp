@@ -90,7 +90,7 @@ void draw(StudyReport& report, const std::string& folder, const std::vector<Meas
     }
     std::string script =
         gnuplotData("bars", bars) + labels +
-        "set title 'Time per frame on one core (medians)'\nset ylabel 'ms'\n"
+        "set title 'Processor time per frame (medians)'\nset ylabel 'ms'\n"
         "set yrange [0:*]\nset xtics scale 0 (" +
         tics + ")\n" + format("set xrange [-0.8:%g]\n", 4.0 * static_cast<double>(all.size()) - 1.2) +
         "set boxwidth 0.8\nset style fill solid 1.0 noborder\nset grid noxtics\nset bmargin 4.5\n"
