@@ -137,7 +137,19 @@ TEST(CompareTable, SaysWhyThereAreNoErrorsAndKeepsTheRest) {
         }
     }
     EXPECT_TRUE(contains(out.md, "No method could be ranked"));
-    EXPECT_TRUE(contains(out.md, "add 250.000000 s")) << "in a footnote";
+    EXPECT_TRUE(contains(out.md, "elsewhere: no run could be compared with its ground truth: no pose has"));
+    EXPECT_EQ(test::count(out.md, "| mean |"), 5u) << "of shares, times and memory, but of no error";
+}
+
+TEST(CompareTable, MeansAreOverSequencesWithFigures) {
+    auto without = makeSequence("u", {makeRun("a", 0.01), makeRun("b", 0.01)});
+    without.reference.clear();
+    const WrittenComparison out({makeSequence("s", {makeRun("a", 0.01), makeRun("b", 0.05)}),
+                                 makeSequence("t", {makeRun("a", 0.03), failedRun("b", "it threw")}),
+                                 without});
+    EXPECT_TRUE(contains(out.md, "| s | t | u | mean of 2 |"));
+    EXPECT_TRUE(contains(out.md, "| label of a | **1.000** | 3.000 | –[^1] | 2.000 |")) << out.md;
+    EXPECT_TRUE(contains(out.md, ": no mean where a sequence is missing")) << "b";
 }
 
 TEST(CompareTable, ASequenceThatFailedIsARow) {

@@ -38,37 +38,49 @@ TableCell makeCell(const Metric& metric, const SequenceResults& results, const s
     return cell;
 }
 
-// Mean over all sequences, where there is a figure for each of them.
+// Mean over sequences, where there is a figure for each of them.
 struct Mean {
     std::optional<double> value;
     bool weak = false;  // some of it is of runs that tracked too few frames
 };
 
-Mean meanOf(const Metric& metric, const std::vector<SequenceResults>& results, const std::string& method) {
+Mean meanOf(const Metric& metric, const std::vector<const SequenceResults*>& results,
+            const std::string& method) {
     double sum = 0;
     bool weak = false;
-    for (const SequenceResults& result : results) {
-        const auto run = findRun(*result.sequence, method);
-        const auto value = run ? metricOf(metric, result, *run) : std::nullopt;
+    for (const SequenceResults* result : results) {
+        const auto run = findRun(*result->sequence, method);
+        const auto value = run ? metricOf(metric, *result, *run) : std::nullopt;
         if (!value) return {};
         sum += *value;
-        weak = weak || ((metric.is_error || metric.is_share) && !isComplete(result.sequence->runs[*run]));
+        weak = weak || ((metric.is_error || metric.is_share) && !isComplete(result->sequence->runs[*run]));
     }
     return {sum / static_cast<double>(results.size()), weak};
 }
 
+// The column of means, over the sequences for which there is any figure.
 void addMeans(Table& table, const Metric& metric, const std::vector<SequenceResults>& results,
               const std::vector<TableMethod>& methods) {
-    table.columns.push_back("mean");
+    std::vector<const SequenceResults*> measured;
+    for (const SequenceResults& result : results)
+        for (std::size_t i = 0; i < result.evaluated.size(); ++i)
+            if (metricOf(metric, result, i)) {
+                measured.push_back(&result);
+                break;
+            }
+    if (measured.size() < 2) return;
+    table.columns.push_back(measured.size() == results.size() ? "mean"
+                                                              : "mean of " + std::to_string(measured.size()));
     std::vector<Mean> means;
-    for (const TableMethod& method : methods) means.push_back(meanOf(metric, results, method.name));
     std::optional<double> least;
     std::size_t compared = 0;
-    for (const Mean& mean : means)
-        if (mean.value && !mean.weak) {
-            least = std::min(least.value_or(*mean.value), *mean.value);
+    for (const TableMethod& method : methods) {
+        means.push_back(meanOf(metric, measured, method.name));
+        if (means.back().value && !means.back().weak) {
+            least = std::min(least.value_or(*means.back().value), *means.back().value);
             ++compared;
         }
+    }
     for (std::size_t i = 0; i < means.size(); ++i) {
         const std::string text = shownNumber(means[i].value, metric.decimals);
         const bool best = !metric.is_share && compared > 1 && !means[i].weak && means[i].value &&
@@ -127,6 +139,16 @@ void addRanks(Table& table, const std::vector<RankRow>& rows) {
     }
 }
 
+// Why no run that went well has errors; nothing when one has.
+std::optional<std::string> commonFault(const SequenceResults& results) {
+    std::optional<std::string> fault;
+    for (std::size_t i = 0; i < results.evaluated.size(); ++i) {
+        if (results.evaluated[i].evaluation) return std::nullopt;
+        if (results.sequence->runs[i].ok() && !fault) fault = results.evaluated[i].fault;
+    }
+    return fault;
+}
+
 }  // namespace
 
 Table figureTable(const Metric& metric, const std::vector<SequenceResults>& results,
@@ -144,7 +166,7 @@ Table figureTable(const Metric& metric, const std::vector<SequenceResults>& resu
                 makeCell(metric, results[s], best[s], findRun(*results[s].sequence, method.name)));
         table.rows.push_back(row);
     }
-    if (results.size() > 1) addMeans(table, metric, results, methods);
+    addMeans(table, metric, results, methods);
     if (&metric == &shownMetrics().front()) addPaperRow(table, results);
     return results.size() > kMaxSequenceColumns ? transposed(table, "Sequence") : table;
 }
@@ -227,6 +249,8 @@ std::vector<std::string> remarks(const std::vector<SequenceResults>& results) {
             say("its ground truth could not be used: " + sequence.ground_truth_fault);
         else if (sequence.reference.empty())
             say("no ground truth, so no errors and no rank");
+        else if (const auto fault = commonFault(result))
+            say("no run could be compared with its ground truth: " + *fault);
         std::set<std::size_t> counts;
         for (const MethodRun& run : sequence.runs)
             if (run.ok()) counts.insert(run.frames - std::min(run.rejected, run.frames));
@@ -249,7 +273,7 @@ std::string verdict(const std::vector<SequenceResults>& results) {
         ranked += std::any_of(ranks.begin(), ranks.end(), [](const auto& r) { return r.has_value(); });
     }
     return first->method.label + " has the smallest ATE on " + std::to_string(first->top[0]) + " of " +
-           std::to_string(ranked) + " sequence" + (ranked == 1 ? "" : "s") + " with ground truth.";
+           std::to_string(ranked) + " sequence" + (ranked == 1 ? "" : "s") + " that could be ranked.";
 }
 
 }  // namespace roevo
