@@ -45,9 +45,9 @@ struct PooledErrors {
     static std::optional<double> rmse(double sum, double n) {
         return n > 0 ? std::optional<double>(std::sqrt(sum / n)) : std::nullopt;
     }
-    std::optional<double> cmPerSecond() const { return rmse(1e4 * second_t, seconds); }
+    std::optional<double> metresPerSecond() const { return rmse(second_t, seconds); }
     std::optional<double> degPerSecond() const { return rmse(second_r, seconds); }
-    std::optional<double> cmPerFrame() const { return rmse(1e4 * frame_t, pairs); }
+    std::optional<double> metresPerFrame() const { return rmse(frame_t, pairs); }
     std::optional<double> degPerFrame() const { return rmse(frame_r, pairs); }
 };
 
@@ -144,8 +144,8 @@ Table trackAllWays(const StudyInput& input, Progress& progress, std::size_t& don
 
 void addRow(CsvTable& table, const std::string& recording, const std::string& pass, std::size_t variant,
             const PooledErrors& e) {
-    table.add({recording, pass, label(kAllCoarsePoints[variant]), CsvTable::number(e.cmPerSecond()),
-               CsvTable::number(e.degPerSecond()), CsvTable::number(e.cmPerFrame()),
+    table.add({recording, pass, label(kAllCoarsePoints[variant]), CsvTable::number(e.metresPerSecond()),
+               CsvTable::number(e.degPerSecond()), CsvTable::number(e.metresPerFrame()),
                CsvTable::number(e.degPerFrame()), std::to_string(e.frames), std::to_string(e.tracked),
                CsvTable::number(e.keyframes > 0 ? e.points / e.keyframes : 0, 4)});
 }
@@ -157,14 +157,14 @@ void draw(StudyReport& report, const std::string& folder, const std::vector<std:
     for (std::size_t r = 0; r < pooled.size(); ++r) {
         bars.push_back({static_cast<double>(r)});
         for (const PooledErrors& e : pooled[r]) {
-            bars.back().push_back(e.cmPerSecond().value_or(kMissing));
+            bars.back().push_back(100 * e.metresPerSecond().value_or(kMissing));
             bars.back().push_back(e.degPerSecond().value_or(kMissing));
         }
         if (r >= errors.size()) continue;
         for (const auto& pass : errors[r])
             for (std::size_t v = 0; v < kVariants; ++v)
                 dots.push_back({static_cast<double>(r) + 0.2 * (static_cast<double>(v) - 1.5),
-                                pass[v].cmPerSecond().value_or(kMissing),
+                                100 * pass[v].metresPerSecond().value_or(kMissing),
                                 pass[v].degPerSecond().value_or(kMissing)});
     }
     std::string tics;
@@ -195,8 +195,8 @@ void draw(StudyReport& report, const std::string& folder, const std::vector<std:
 
 StudyReport studyAblation(const std::vector<StudyInput>& inputs, const std::string& folder) {
     StudyReport report;
-    CsvTable table({"recording", "pass", "points_on", "rpe_translation_cm_per_s", "rpe_rotation_deg_per_s",
-                    "rpe_translation_cm_per_frame", "rpe_rotation_deg_per_frame", "frames", "tracked",
+    CsvTable table({"recording", "pass", "points_on", "rpe_translation_m_per_s", "rpe_rotation_deg_per_s",
+                    "rpe_translation_m_per_frame", "rpe_rotation_deg_per_frame", "frames", "tracked",
                     "points_mean"});
     std::vector<std::string> names;
     std::vector<Table> all;
@@ -216,7 +216,7 @@ StudyReport studyAblation(const std::vector<StudyInput>& inputs, const std::stri
         }
         for (std::size_t v = 0; v < kVariants; ++v) addRow(table, input.name, "all", v, together[v]);
         if (!fault.empty()) report.notes.push_back(input.name + ": errors are not known: " + fault);
-        if (!together[0].cmPerSecond()) continue;
+        if (!together[0].metresPerSecond()) continue;
         for (std::size_t v = 0; v < kVariants; ++v) total[v].add(together[v]);
         names.push_back(input.name);
         all.push_back(errors);
@@ -240,9 +240,9 @@ StudyReport studyAblation(const std::vector<StudyInput>& inputs, const std::stri
     draw(report, folder, names, all, pooled);
     report.summary = "RPE of coarse tracking over 1 s:";
     for (std::size_t v = 0; v < kVariants; ++v)
-        report.summary +=
-            format("%s %s %.2f cm %.3f deg", v > 0 ? "," : "", label(kAllCoarsePoints[v]),
-                   total[v].cmPerSecond().value_or(kMissing), total[v].degPerSecond().value_or(kMissing));
+        report.summary += format("%s %s %.2f cm %.3f deg", v > 0 ? "," : "", label(kAllCoarsePoints[v]),
+                                 100 * total[v].metresPerSecond().value_or(kMissing),
+                                 total[v].degPerSecond().value_or(kMissing));
     return report;
 }
 
