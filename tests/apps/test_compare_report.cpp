@@ -74,10 +74,13 @@ std::vector<SequenceComparison> everyKind() {
                                     failedRun("f", "it <threw> & \"died\""), skippedRun("l", "no library")}),
         makeSequence("<odd> & \"name\", 'ü' \x01 \xff", {makeRun("roevo-tr", 0)}),
         makeSequence("one frame", {makeRun("roevo-tr", 0)}),
-        makeSequence("no truth", {makeRun("roevo-tr", 0.01)}), makeSequence("failed", {})};
+        makeSequence("no truth", {makeRun("roevo-tr", 0.01)}),
+        makeSequence("failed", {}),
+        makeSequence("elsewhere", {makeRun("roevo-tr", 0.01)})};
     all[0].run_folders.assign(7, "runs/a b/ü");
     all[2].runs[0].trajectory.resize(1);
     all[3].reference.clear();
+    for (StampedPose& pose : all[5].reference) pose.timestamp += 250;
     all[4].failure = "cannot read <it>";
     return all;
 }
@@ -112,8 +115,9 @@ TEST(CompareReport, DrawsWhatThereIs) {
     if (test::runProgram("/usr/bin/env", {"gnuplot", "--version"}).exit_code != 0)
         GTEST_SKIP() << "no gnuplot";
     const WrittenComparison out(everyKind());
-    // every/kind and the odd one: top, side, error, stages; one frame and no truth: no error
-    EXPECT_EQ(count(out.html, "class=\"plot\""), 4u + 4 + 3 + 3);
+    // every/kind and the odd one: top, side, error, stages; one frame, no truth and elsewhere: no error
+    EXPECT_EQ(count(out.html, "class=\"plot\""), 4u + 4 + 3 + 3 + 3);
+    EXPECT_EQ(count(out.html, "class=\"legend\""), 3u + 3 + 2 + 2 + 2) << "top and side share theirs";
     EXPECT_TRUE(contains(out.html, "Leaving the picture: Runaway<")) << "and nobody else";
     EXPECT_FALSE(contains(out.html, "No plots"));
     EXPECT_TRUE(contains(out.html, "no picture: the scene map.3Dscene is missing"));

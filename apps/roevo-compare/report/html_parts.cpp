@@ -94,13 +94,12 @@ std::string lineSample(const LineStyle& style) {
 
 std::string lineLegend(const SequenceResults& results, const Legend& legend, bool in_space) {
     std::string items;
-    bool referenced = false;
+    const bool referenced = std::any_of(results.evaluated.begin(), results.evaluated.end(),
+                                        [](const EvaluatedRun& run) { return run.evaluation.has_value(); });
     for (std::size_t i = 0; i < results.evaluated.size(); ++i) {
         const MethodRun& run = results.sequence->runs[i];
         const bool errors = results.evaluated[i].evaluation.has_value();
-        referenced = referenced || errors;
-        if (!run.ok() || run.trajectory.empty() || (!errors && !results.sequence->reference.empty()))
-            continue;
+        if (!run.ok() || run.trajectory.empty() || (!errors && referenced)) continue;
         const std::size_t m = legend.indexOf(run.method);
         items += "<li>" + lineSample(legend.styles[m]) + htmlText(legend.methods[m].label) + "</li>";
     }

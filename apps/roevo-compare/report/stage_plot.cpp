@@ -78,7 +78,7 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
                          "\nset rmargin 3\nset tmargin 0.5\nset bmargin 3.2\nset border 1\n"
                          "set xlabel 'time per frame [ms]'\nset grid noytics xtics\nset ytics scale 0\n";
     script += "set xrange [0:" + exactNumber(end) + "]\nset yrange [" +
-              exactNumber(static_cast<double>(bars.size()) - 0.45) + ":-0.55]\nset ytics (";
+              exactNumber(static_cast<double>(bars.size()) - 0.35) + ":-0.6]\nset ytics (";
     std::vector<std::vector<double>> rectangles, ticks, processor;
     std::string labels, cut;
     for (std::size_t i = 0; i < bars.size(); ++i) {
