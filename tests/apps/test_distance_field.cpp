@@ -139,23 +139,24 @@ TEST(DistanceFieldTracker, PointsFarFromAnyEdgeOrOutsideSayNothing) {
     EXPECT_EQ(gradientAt(318.5, 238.5), 0);
 }
 
-const testing::Sequence& room() {
-    static const testing::Sequence sequence = testing::simulate(testing::smallRoom(), 40);
-    return sequence;
+/// The first frames of a room without noise. Every case is a process of its own: no more than needed.
+testing::Sequence room(int frames) {
+    return testing::simulate(testing::smallRoom(), frames);
 }
 
 /// Two frames of the room: a keyframe at the first, the other to be registered.
 struct TwoFrames {
+    testing::Sequence sequence;
     OdometryOptions options;
-    PinholeCamera camera = room().camera;
+    PinholeCamera camera = sequence.camera;
     EdgeExtractor extractor{options.edges};
     OrganizedEdges edges;
     ImagePyramid pyramid;
     Keyframe keyframe;
     Pose T_truth;
 
-    explicit TwoFrames(std::size_t other) {
-        const RgbdFrame &first = room().frames[0], &second = room().frames[other];
+    explicit TwoFrames(int other) : sequence(room(other + 1)) {
+        const RgbdFrame &first = sequence.frames.front(), &second = sequence.frames.back();
         extractor.extract(first.grey, edges);
         keyframe.edges = liftEdges(edges, first.depth, camera, RowMotion(), options.edges, options.sensor);
         keyframe.median_depth = static_cast<double>(keyframe.edges.medianDepth());
@@ -163,7 +164,7 @@ struct TwoFrames {
         keyframe.photometric = samplePhotometricPoints(keyframe.edges, pyramid, options.coarse.max_points);
         extractor.extract(second.grey, edges);
         pyramid.build(second.grey, 2);
-        T_truth = room().truth[other].T_world_camera.inverse() * room().truth[0].T_world_camera;
+        T_truth = sequence.truth.back().T_world_camera.inverse() * sequence.truth.front().T_world_camera;
     }
     FineFrame frame() const {
         FineFrame view;
@@ -209,14 +210,15 @@ TEST(DistanceFieldTracker, WithoutEdgesItSaysSoAndKeepsThePose) {
 }
 
 TEST(DistanceFieldMethod, WithoutNoiseTheErrorIsAFewMillimetres) {
-    ASSERT_GT(pathLength(room().truth), 0.2);
+    const testing::Sequence sequence = room(40);
+    ASSERT_GT(pathLength(sequence.truth), 0.2);
     std::vector<double> errors;  // m
     for (const MethodInfo& info : distanceFieldMethods()) {
-        const auto method = makeDistanceField(info.name, room().camera, OdometryOptions());
-        const Pose T_world_first = room().start();
+        const auto method = makeDistanceField(info.name, sequence.camera, OdometryOptions());
+        const Pose T_world_first = sequence.start();
         double squared = 0;
-        for (std::size_t i = 0; i < room().frames.size(); ++i) {
-            const MethodFrame frame = method->processFrame(room().frames[i]);
+        for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
+            const MethodFrame frame = method->processFrame(sequence.frames[i]);
             ASSERT_TRUE(frame.tracked) << info.name << ", frame " << i << ": " << frame.reason;
             ASSERT_EQ(frame.stage_ms.size(), method->stages().size());
             for (const double ms : frame.stage_ms) EXPECT_GE(ms, 0);
@@ -224,10 +226,10 @@ TEST(DistanceFieldMethod, WithoutNoiseTheErrorIsAFewMillimetres) {
                 EXPECT_GT(frame.stage_ms[2], 0) << "no field was built for frame " << i;
             }
             squared += ((T_world_first * *frame.T_world_camera).translation() -
-                        room().truth[i].T_world_camera.translation())
+                        sequence.truth[i].T_world_camera.translation())
                            .squaredNorm();
         }
-        const double error = std::sqrt(squared / static_cast<double>(room().frames.size()));
+        const double error = std::sqrt(squared / static_cast<double>(sequence.frames.size()));
         RecordProperty(info.name + "_mm", std::to_string(1000 * error));
         EXPECT_LT(error, 0.003) << info.name;
         errors.push_back(error);
@@ -236,6 +238,7 @@ TEST(DistanceFieldMethod, WithoutNoiseTheErrorIsAFewMillimetres) {
 }
 
 TEST(DistanceFieldMethod, WhereTheWorldBeginsDoesNotMatter) {
+    const testing::Sequence sequence = room(15);
     const OdometryOptions options = [] {
         OdometryOptions tracking;
         tracking.mode = Mode::kTracking;
@@ -249,10 +252,11 @@ TEST(DistanceFieldMethod, WhereTheWorldBeginsDoesNotMatter) {
                                   const Brightness& brightness) {
             return tracker.track(keyframe, frame, T_start, prior, shutter, brightness);
         };
-        Odometry odometry(room().camera, options, T_world_start, stages);
+        Odometry odometry(sequence.camera, options, T_world_start, stages);
         std::vector<Pose> poses;
         for (std::size_t i = 0; i < 15; ++i) {
-            poses.push_back(T_world_start.inverse() * odometry.processFrame(room().frames[i]).T_world_camera);
+            poses.push_back(T_world_start.inverse() *
+                            odometry.processFrame(sequence.frames[i]).T_world_camera);
         }
         return poses;
     };
@@ -265,29 +269,31 @@ TEST(DistanceFieldMethod, WhereTheWorldBeginsDoesNotMatter) {
 }
 
 TEST(DistanceFieldMethod, BadFramesComeBackWithAReason) {
-    const auto method = makeDistanceField("distance-field", room().camera, OdometryOptions());
-    for (std::size_t i = 0; i < 3; ++i) ASSERT_TRUE(method->processFrame(room().frames[i]).tracked);
-    RgbdFrame grey = room().frames[3];
+    const testing::Sequence sequence = room(6);
+    const auto method = makeDistanceField("distance-field", sequence.camera, OdometryOptions());
+    for (std::size_t i = 0; i < 3; ++i) ASSERT_TRUE(method->processFrame(sequence.frames[i]).tracked);
+    RgbdFrame grey = sequence.frames[3];
     grey.grey = cv::Mat(grey.grey.size(), CV_8UC1, cv::Scalar(90));
     const MethodFrame blind = method->processFrame(grey);
     EXPECT_FALSE(blind.tracked);
     EXPECT_NE(blind.reason, "");
     ASSERT_TRUE(blind.T_world_camera.has_value());
     EXPECT_TRUE(blind.T_world_camera->matrix().allFinite());
-    RgbdFrame empty = room().frames[4];
+    RgbdFrame empty = sequence.frames[4];
     empty.grey = cv::Mat();
     const MethodFrame rejected = method->processFrame(empty);
     EXPECT_FALSE(rejected.tracked);
     EXPECT_FALSE(rejected.T_world_camera.has_value());
-    EXPECT_TRUE(method->processFrame(room().frames[5]).tracked) << "tracking goes on after bad frames";
+    EXPECT_TRUE(method->processFrame(sequence.frames[5]).tracked) << "tracking goes on after bad frames";
 }
 
 TEST(DistanceFieldMethod, NamesAndCamerasAreChecked) {
-    EXPECT_THROW(makeDistanceField("distance", room().camera, OdometryOptions()), std::invalid_argument);
+    const testing::Sequence sequence = room(1);
+    EXPECT_THROW(makeDistanceField("distance", sequence.camera, OdometryOptions()), std::invalid_argument);
     EXPECT_THROW(makeDistanceField("distance-field", PinholeCamera(), OdometryOptions()),
                  std::invalid_argument);
     for (const MethodInfo& info : distanceFieldMethods()) {
-        EXPECT_NE(makeMethod(info.name, room().camera, OdometryOptions()), nullptr);
+        EXPECT_NE(makeMethod(info.name, sequence.camera, OdometryOptions()), nullptr);
         EXPECT_FALSE(info.ours);
         EXPECT_NE(info.label, "");
         EXPECT_NE(info.note, "");
