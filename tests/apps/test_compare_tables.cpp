@@ -138,6 +138,9 @@ TEST(CompareTable, SaysWhyThereAreNoErrorsAndKeepsTheRest) {
     }
     EXPECT_TRUE(contains(out.md, "No method could be ranked"));
     EXPECT_TRUE(contains(out.md, "elsewhere: no run could be compared with its ground truth: no pose has"));
+    for (std::size_t n = 1; contains(out.md, "[^" + std::to_string(n) + "]"); ++n)
+        EXPECT_TRUE(contains(out.md, "\n[^" + std::to_string(n) + "]: ")) << "footnote " << n;
+    EXPECT_TRUE(contains(out.md, ": ranked on no sequence"));
     EXPECT_EQ(test::count(out.md, "| mean |"), 5u) << "of shares, times and memory, but of no error";
 }
 

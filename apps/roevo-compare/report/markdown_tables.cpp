@@ -81,7 +81,8 @@ std::string markdownTables(const std::vector<SequenceResults>& results, const Co
         text += "As in the paper, one ROEVO (the last mode of these tables) against the others:\n\n" +
                 setTable(rankingTable(results, one), notes) +
                 "All methods, each of ROEVO's modes for itself:\n\n";
-    text += setTable(rankingTable(results, methods), notes) + notes.list() + "## Methods\n\n";
+    text += setTable(rankingTable(results, methods), notes);
+    text += notes.list() + "## Methods\n\n";
     for (const TableMethod& method : methods)
         text += "- **" + markdownText(method.label) + "**: " + markdownText(method.note) + "\n";
     text += "\n## Protocol\n\n";
