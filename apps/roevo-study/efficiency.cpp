@@ -52,9 +52,10 @@ void addRows(CsvTable& table, const Measured& measured) {
                    CsvTable::number(percentile(ms, 0.95), 4), CsvTable::number(statistics.mean, 4),
                    std::to_string(ms.size())});
     }
-    const ErrorStatistics mapping = errorStatistics(measured.mapping);
     table.add({measured.name, "ROEVO local mapping", "per frame", "", "",
                CsvTable::number(measured.mappingPerFrame(), 4), std::to_string(measured.all_frames)});
+    if (measured.mapping.empty()) return;
+    const ErrorStatistics mapping = errorStatistics(measured.mapping);
     table.add({measured.name, "ROEVO local mapping", "per keyframe", CsvTable::number(mapping.median, 4),
                CsvTable::number(percentile(measured.mapping, 0.95), 4), CsvTable::number(mapping.mean, 4),
                std::to_string(mapping.count)});
@@ -76,7 +77,7 @@ void draw(StudyReport& report, const std::string& folder, const std::vector<Meas
         const double blocks[3][kBlocks] = {
             {ms(kDetect), ms(kOrganize), 0, ms(kCoarse), ms(kRegistration), 0},
             {ms(kDetect), 0, ms(kField), ms(kCoarseField), ms(kRegistrationField), 0},
-            {0, 0, 0, 0, 0, m.mappingPerFrame()}};
+            {0, 0, 0, 0, 0, m.mappingPerFrame().value_or(0)}};
         constexpr std::array<const char*, 3> kShort = {"ROEVO", "DF", "map"};
         for (std::size_t b = 0; b < 3; ++b) {
             std::vector<double> bar{at + static_cast<double>(b)};
@@ -112,7 +113,6 @@ StudyReport studyEfficiency(const std::vector<StudyInput>& inputs, const std::st
     Measured together;
     Progress progress("efficiency", 0);
     std::size_t done = 0;
-    double mapping = 0;
     for (const StudyInput& input : inputs) {
         Measured measured = measureEfficiency(input, progress, done);
         if (measured.frames.empty()) {
@@ -120,7 +120,7 @@ StudyReport studyEfficiency(const std::vector<StudyInput>& inputs, const std::st
             continue;
         }
         addRows(table, measured);
-        mapping += measured.mappingSum();
+        together.mapping.insert(together.mapping.end(), measured.mapping.begin(), measured.mapping.end());
         together.all_frames += measured.all_frames;
         together.frames.insert(together.frames.end(), measured.frames.begin(), measured.frames.end());
         all.push_back(std::move(measured));
@@ -139,12 +139,12 @@ StudyReport studyEfficiency(const std::vector<StudyInput>& inputs, const std::st
     const auto ms = [&](const std::vector<Operation>& parts) { return middle(together, parts); };
     report.summary = format(
         "medians: organizing edges %.2f ms, distance field %.2f ms; registration %.2f ms, by the field %.2f "
-        "ms; "
-        "in all %.2f ms and %.2f ms; mapping %.2f ms per frame",
+        "ms; in all %.2f ms and %.2f ms",
         ms({kOrganize}), ms({kField}), ms({kRegistration}), ms({kRegistrationField}),
         ms({kDetect, kOrganize, kCoarse, kRegistration}),
-        ms({kDetect, kField, kCoarseField, kRegistrationField}),
-        mapping / static_cast<double>(together.all_frames));
+        ms({kDetect, kField, kCoarseField, kRegistrationField}));
+    const std::optional<double> mapping = together.mappingPerFrame();
+    report.summary += mapping ? format("; mapping %.2f ms per frame", *mapping) : "; no map was made in time";
     return report;
 }
 

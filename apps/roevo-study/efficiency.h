@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,10 @@ struct Measured {
     std::size_t all_frames = 0;   ///< that could be read
 
     double mappingSum() const { return std::accumulate(mapping.begin(), mapping.end(), 0.0); }
-    double mappingPerFrame() const {
-        return all_frames > 0 ? mappingSum() / static_cast<double>(all_frames) : 0;
+    /// None when no map took effect.
+    std::optional<double> mappingPerFrame() const {
+        if (mapping.empty()) return std::nullopt;
+        return mappingSum() / static_cast<double>(all_frames);
     }
 };
 

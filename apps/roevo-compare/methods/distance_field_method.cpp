@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 #include "distance_field.h"
+#include "odometry_frame.h"
 #include "roevo/odometry.h"
 #include "roevo/odometry_stages.h"
 
@@ -26,11 +26,7 @@ class DistanceFieldMethod : public Method {
     MethodFrame processFrame(const RgbdFrame& frame) override {
         const FrameResult result = odometry_.processFrame(frame);
         const DistanceFieldTracker::Times times = tracker_.takeTimes();
-        MethodFrame out;
-        if (result.hasPose()) out.T_world_camera = result.T_world_camera;
-        out.tracked = result.status == FrameStatus::kOk ||
-                      (result.status == FrameStatus::kInitialised && !std::exchange(started_, true));
-        if (!out.tracked) out.reason = std::string(toString(result.status)) + ": " + result.reason;
+        MethodFrame out = toMethodFrame(result, started_);
         // Edges are associated afterwards, as the rule for new keyframes wants it
         const double rest = std::max(0.0, result.ms.fine - times.field - times.registration);
         out.stage_ms = {result.ms.edges, result.ms.coarse, times.field, times.registration, rest};

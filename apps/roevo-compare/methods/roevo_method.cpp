@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "odometry_frame.h"
 #include "roevo/odometry.h"
 #include "roevo_mrpt/scene_builder.h"
 
@@ -25,12 +26,7 @@ class RoevoMethod : public Method {
 
     MethodFrame processFrame(const RgbdFrame& frame) override {
         const FrameResult result = odometry_.processFrame(frame);
-        MethodFrame out;
-        if (result.hasPose()) out.T_world_camera = result.T_world_camera;
-        // Every start but the first means that the camera's motion since the last one is not known
-        out.tracked = result.status == FrameStatus::kOk ||
-                      (result.status == FrameStatus::kInitialised && !std::exchange(started_, true));
-        if (!out.tracked) out.reason = std::string(toString(result.status)) + ": " + result.reason;
+        MethodFrame out = toMethodFrame(result, started_);
         out.stage_ms = {result.ms.edges, result.ms.coarse};
         if (mode() != Mode::kCoarse) out.stage_ms.push_back(result.ms.fine);
         if (mode() == Mode::kBundleAdjustment) out.stage_ms.push_back(result.ms.waiting);
