@@ -11,7 +11,8 @@ roevo_test(test_programs
           apps/test_odometry_program.cpp apps/test_bad_folders.cpp apps/test_bad_rawlogs.cpp apps/test_realtime.cpp
           apps/test_odd_rawlogs_program.cpp apps/test_scale_check.cpp
   LIBS roevo_test_support roevo_evaluation roevo_mrpt nlohmann_json::nlohmann_json)
-add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog rawlog2rgbd rawlog-simulate)
+add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog rawlog2rgbd rawlog-simulate
+                 roevo-study)
 
 # Needs the whole build. Sanitized libraries would want the sanitizer in the program that uses them, too.
 if(NOT ROEVO_SANITIZE)
@@ -21,3 +22,41 @@ if(NOT ROEVO_SANITIZE)
                    -P ${CMAKE_CURRENT_SOURCE_DIR}/apps/install_test.cmake)
   set_tests_properties(Install.LibrariesCanBeFoundAndUsed PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endif()
+
+roevo_test(test_distance_field
+  SOURCES apps/test_distance_field.cpp
+  LIBS roevo_methods roevo_simulator roevo_evaluation)
+target_include_directories(test_distance_field PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+
+roevo_test(test_study_ablation
+  SOURCES apps/test_study_ablation.cpp
+  LIBS roevo_study roevo_simulator)
+target_include_directories(test_study_ablation PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+
+roevo_test(test_compare
+  SOURCES apps/test_method_run.cpp apps/test_kept_run.cpp apps/test_run_queue.cpp apps/test_compare_benchmark.cpp apps/test_compare_program.cpp
+  LIBS roevo_compare roevo_support roevo_test_support nlohmann_json::nlohmann_json)
+add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog)
+
+# One ctest entry per method, since its cases share rendered frames.
+add_executable(test_compare_baselines apps/test_compare_baselines.cpp apps/test_depth_resampler.cpp)
+target_link_libraries(test_compare_baselines PRIVATE roevo_methods roevo_simulator roevo_evaluation GTest::gtest_main
+                      roevo_build_flags)
+foreach(suite DepthResampler.* CentredCamera.* BaselineList.* Difodo480.* */difodo_240 */icp_frame */icp_keyframe
+        */opencv_rgbd */opencv_rgbd_icp)
+  string(REGEX REPLACE "[.*/]" "" case ${suite})
+  add_test(NAME CompareBaselines.${case} COMMAND test_compare_baselines --gtest_filter=${suite})
+  set_tests_properties(CompareBaselines.${case} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
+endforeach()
+target_include_directories(test_compare_baselines PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+
+roevo_test(test_compare_report
+  SOURCES apps/test_compare_tables.cpp apps/test_compare_report.cpp apps/test_compare_numpy.cpp
+  LIBS roevo_report roevo_evaluation roevo_test_support nlohmann_json::nlohmann_json)
+add_dependencies(test_compare_report roevo-compare roevo-odometry roevo-render)
+
+roevo_test(test_study
+  SOURCES apps/test_study_program.cpp apps/test_study_repeatability.cpp apps/test_gnuplot.cpp
+  LIBS roevo_study roevo_test_support)
+target_include_directories(test_study SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+add_dependencies(test_study roevo-study)

@@ -18,8 +18,12 @@ std::string seconds(double value, int decimals = 6) {
     return text;
 }
 
+std::string count(std::size_t poses) {
+    return std::to_string(poses) + (poses == 1 ? " pose" : " poses");
+}
+
 std::string range(const std::vector<StampedPose>& poses) {
-    return std::to_string(poses.size()) + " poses from " + seconds(poses.front().timestamp) + " to " +
+    return count(poses.size()) + " from " + seconds(poses.front().timestamp) + " to " +
            seconds(poses.back().timestamp);
 }
 
@@ -40,23 +44,36 @@ double largestGap(const std::vector<StampedPose>& poses) {
     return gap;
 }
 
+// What would let the two trajectories meet, in words; empty when nothing is known to.
+std::string advice(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
+                   std::size_t found, double max_dt) {
+    if (found == estimate.size()) return "; the estimate itself is too short";
+    const auto duration = [](const std::vector<StampedPose>& poses) {
+        return poses.back().timestamp - poses.front().timestamp;
+    };
+    const double overlap = std::min(reference.back().timestamp, estimate.back().timestamp) -
+                           std::max(reference.front().timestamp, estimate.front().timestamp);
+    if (overlap >= 0 && overlap >= 0.5 * std::min(duration(reference), duration(estimate)))
+        return "; try a larger --max-dt of roevo-eval";
+
+    const double offset = reference.front().timestamp - estimate.front().timestamp;
+    auto shifted = estimate;
+    for (StampedPose& pose : shifted) pose.timestamp += offset;
+    const std::size_t common = associate(reference, shifted, max_dt).size();
+    if (common < kMinPairs) return "; starting together they would have " + count(common) + " in common, too";
+    return "; to let both start together add " + seconds(offset) +
+           " to the estimate's stamps (roevo-eval --offset), then " + count(common) + " are common";
+}
+
 std::string explainTooFew(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
                           std::size_t found, double max_dt) {
-    std::string text =
-        (found == 0 ? std::string("no pose has") : "only " + std::to_string(found) + " poses have");
-    text += " a reference within " + seconds(max_dt, 3) + " (at least 3 are needed): reference has " +
-            range(reference) + " (largest gap " + seconds(largestGap(reference), 3) + "), estimate has " +
-            range(estimate) + "; the closest stamps are " + seconds(closestStamps(reference, estimate), 3) +
-            " apart";
-    const bool overlap = reference.front().timestamp <= estimate.back().timestamp &&
-                         estimate.front().timestamp <= reference.back().timestamp;
-    if (!overlap)
-        text += "; to let both start together add " +
-                seconds(reference.front().timestamp - estimate.front().timestamp) +
-                " to the estimate's stamps (roevo-eval --offset)";
-    else if (found < estimate.size())
-        text += "; try a larger --max-dt";
-    return text;
+    return (found == 0   ? std::string("no pose has")
+            : found == 1 ? "only 1 pose has"
+                         : "only " + count(found) + " have") +
+           " a reference within " + seconds(max_dt, 3) + " (at least 3 are needed): reference has " +
+           range(reference) + " (largest gap " + seconds(largestGap(reference), 3) + "), estimate has " +
+           range(estimate) + "; the closest stamps are " + seconds(closestStamps(reference, estimate), 3) +
+           " apart" + advice(reference, estimate, found, max_dt);
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,11 +27,17 @@ struct MethodRun {
     StageStatistics total;                              ///< of tracked frames, decoding apart
     StageStatistics decode;
     double cpu_ms_per_frame = 0;  ///< processor time of all threads by frame, decoding apart
+    double core_lost = 0;         ///< share (0 to 1) of the run's time in which other programs had its core
     std::string background;       ///< name of the work beside the frames, e.g. "mapping"; may be empty
     double background_ms = 0;     ///< mean of one piece of it
     double memory_peak_mb = 0;    ///< of the process
     std::vector<StampedPose> trajectory;
-    std::string scene;  ///< file name of the 3-D scene in the folder, or empty
+    std::string scene;     ///< file name of the 3-D scene in the folder, or empty
+    std::string warning;   ///< what is odd about the recording or the result, one line; may be empty
+    std::size_t jobs = 1;  ///< runs that went on side by side on the machine, this one included
+    /// All that the figures depend on: recording, frames, options, program, processor. A run is only taken
+    /// again, instead of made again, when these are the same.
+    std::map<std::string, std::string> settings;
 
     bool ok() const { return skipped.empty() && failure.empty(); }
 };

@@ -13,7 +13,9 @@ constexpr double kLogStep = 0.1;         // share of the work
 constexpr double kLogMinPeriod = 2;      // s, so that short work does not fill a log
 constexpr double kLogPeriod = 10;        // s, when the amount of work is unknown
 
-std::string duration(double seconds) {
+}  // namespace
+
+std::string durationText(double seconds) {
     const long s = static_cast<long>(seconds + 0.5);
     char text[32];
     if (s >= 3600)
@@ -24,8 +26,6 @@ std::string duration(double seconds) {
         std::snprintf(text, sizeof text, "%ld s", s);
     return text;
 }
-
-}  // namespace
 
 Progress::Progress(std::string label, std::size_t total, bool enabled)
     : label_(std::move(label)),
@@ -74,9 +74,9 @@ void Progress::print(bool last) {
         line += text;
     }
     if (last)
-        line += ", took " + duration(elapsed);
+        line += ", took " + durationText(elapsed);
     else if (fraction_ > 0 && fraction_ < 1)
-        line += ", " + duration(elapsed * (1 - fraction_) / fraction_) + " left";
+        line += ", " + durationText(elapsed * (1 - fraction_) / fraction_) + " left";
     // "\033[K" wipes what a longer line before this one has left.
     std::fprintf(stderr, terminal_ ? (last ? "\r%s\033[K\n" : "\r%s\033[K") : "%s\n", line.c_str());
     std::fflush(stderr);

@@ -5,6 +5,9 @@
 
 namespace roevo {
 
+/// A time span for people: "12 s", "3 min 05 s", "1 h 02 min".
+std::string durationText(double seconds);
+
 /// Progress of long work, on stderr: one self-updating line with the time left on a terminal, a plain line
 /// about every 10 % (or every 10 s when the total is unknown) in a log.
 class Progress {

@@ -117,11 +117,45 @@ TEST(Evaluation, SaysWhatDecidesWhenThereIsNoOverlap) {
         FAIL() << "should have thrown";
     } catch (const std::runtime_error& e) {
         for (const char* words : {"100.000000 s to 102.900000 s", "3700.000000 s to 3702.900000 s",
-                                  "largest gap 0.100 s", "add -3600.000000 s"})
+                                  "largest gap 0.100 s", "add -3600.000000 s", "then 30 poses are common"})
             EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << words << " in " << e.what();
     }
     estimate = {reference[0], reference[1]};
     EXPECT_THROW(evaluate(reference, estimate), std::runtime_error) << "two common poses are too few";
+}
+
+TEST(Evaluation, SuggestsOnlyWhatWouldHelp) {
+    const auto complaint = [](const std::vector<StampedPose>& reference,
+                              const std::vector<StampedPose>& estimate) -> std::string {
+        try {
+            evaluate(reference, estimate);
+        } catch (const std::runtime_error& e) {
+            return e.what();
+        }
+        return "no error";
+    };
+    const auto has = [](const std::string& text, const char* words) {
+        return text.find(words) != std::string::npos;
+    };
+    const auto reference = curve(30);
+
+    const auto one = complaint(reference, {reference[4]});
+    EXPECT_TRUE(has(one, "only 1 pose has") && has(one, "too short")) << one;
+    EXPECT_FALSE(has(one, "--offset") || has(one, "--max-dt")) << one;
+
+    auto late = reference;  // the ranges touch, at one stamp
+    for (StampedPose& pose : late) pose.timestamp += 2.9;
+    EXPECT_TRUE(has(complaint(reference, late), "add -2.900000 s")) << complaint(reference, late);
+
+    auto between = reference;
+    for (StampedPose& pose : between) pose.timestamp += 0.05;
+    EXPECT_TRUE(has(complaint(reference, between), "--max-dt")) << complaint(reference, between);
+
+    // Sparse and of another length: starting together would not make it right either
+    std::vector<StampedPose> sparse{reference[0], reference[1], reference[2]};
+    for (std::size_t i = 0; i < sparse.size(); ++i)
+        sparse[i].timestamp = 5000 + 7.77 * static_cast<double>(i);
+    EXPECT_FALSE(has(complaint(reference, sparse), "--offset")) << complaint(reference, sparse);
 }
 
 TEST(Evaluation, GoldenFiguresOfFr2Desk) {

@@ -33,8 +33,12 @@ class FineTracking : public ::testing::Test {
     }
     FineResult trackFrom(const Pose& start, const Pose& likely) {
         FineTracker tracker(options_.fine, options_.edges, options_.sensor);
-        const FineFrame frame{
-            &edges_, &grid_, &pyramid_, &sequence_->frames[4].depth, &sequence_->camera, &sequence_->camera};
+        FineFrame frame;
+        frame.edges = &edges_;
+        frame.grid = &grid_;
+        frame.pyramid = &pyramid_;
+        frame.depth = &sequence_->frames[4].depth;
+        frame.raw_camera = frame.camera = &sequence_->camera;
         return tracker.track(keyframe_, frame, start, {likely, 1, 1}, RollingShutter(), Brightness());
     }
     double errorOf(const FineResult& result) const {

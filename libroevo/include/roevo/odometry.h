@@ -11,6 +11,8 @@
 
 namespace roevo {
 
+struct OdometryStages;
+
 enum class FrameStatus {
     kOk,           ///< tracked
     kInitialised,  ///< first usable frame, or re-anchored after a loss: a new keyframe with no measured
@@ -67,6 +69,9 @@ class Odometry {
     /// @throws std::invalid_argument when the camera or an option is unusable (one line that names it).
     Odometry(const PinholeCamera& camera, const OdometryOptions& options,
              const Pose& T_world_start = Pose::Identity());
+    /// With some stages replaced, for experiments (roevo/odometry_stages.h).
+    Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start,
+             const OdometryStages& stages);
     ~Odometry();
     Odometry(Odometry&&) noexcept;
     Odometry& operator=(Odometry&&) noexcept;

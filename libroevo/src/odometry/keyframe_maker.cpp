@@ -15,7 +15,7 @@ bool keyframeIsDue(const Keyframe& keyframe, const FrameResult& result, const Ke
 }
 
 std::string makeKeyframe(const FrameData& data, int id, const PinholeCamera& camera,
-                         const OdometryOptions& options, Keyframe& keyframe) {
+                         const OdometryOptions& options, const OdometryStages& stages, Keyframe& keyframe) {
     if (data.images.depth.empty()) return "no depth image";
     keyframe.edges =
         liftEdges(data.edges, data.images.depth, camera, data.row_motion, options.edges, options.sensor);
@@ -29,7 +29,10 @@ std::string makeKeyframe(const FrameData& data, int id, const PinholeCamera& cam
     keyframe.T_world_camera = data.T_world_camera;
     keyframe.covariance = data.covariance;
     keyframe.row_motion = data.row_motion;
-    keyframe.photometric = samplePhotometricPoints(keyframe.edges, data.pyramid, options.coarse.max_points);
+    keyframe.photometric =
+        stages.photometric_points
+            ? stages.photometric_points({keyframe.edges, data.pyramid, data.images.depth, data.row_motion})
+            : samplePhotometricPoints(keyframe.edges, data.pyramid, options.coarse.max_points);
     keyframe.median_depth = static_cast<double>(keyframe.edges.medianDepth());
     return {};
 }

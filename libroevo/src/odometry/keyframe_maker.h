@@ -5,6 +5,7 @@
 #include "roevo/edge_map.h"
 #include "roevo/mapping/local_mapper.h"
 #include "roevo/odometry.h"
+#include "roevo/odometry_stages.h"
 #include "roevo/options.h"
 #include "roevo/tracking/keyframe.h"
 
@@ -16,7 +17,7 @@ bool keyframeIsDue(const Keyframe& keyframe, const FrameResult& result, const Ke
 /// Makes a keyframe of a frame with a pose. Returns an empty string, or in words why it cannot be one (then
 /// `keyframe` is not to be used).
 std::string makeKeyframe(const FrameData& data, int id, const PinholeCamera& camera,
-                         const OdometryOptions& options, Keyframe& keyframe);
+                         const OdometryOptions& options, const OdometryStages& stages, Keyframe& keyframe);
 
 /// Share of the frames that looked for each edge of the keyframe and found it; negative where too few did.
 std::vector<float> foundShares(const Keyframe& keyframe);

@@ -10,6 +10,7 @@
 #include "map_link.h"
 #include "pose_history.h"
 #include "recovery.h"
+#include "registration.h"
 #include "roevo/camera/undistorter.h"
 #include "roevo/edges/edge_extractor.h"
 #include "roevo/tracking/fine_tracker.h"
@@ -20,10 +21,12 @@
 
 namespace roevo {
 struct Odometry::Impl {
-    Impl(const PinholeCamera& raw, const OdometryOptions& opts, const Pose& start)
+    Impl(const PinholeCamera& raw, const OdometryOptions& opts, const Pose& start,
+         const OdometryStages& replaced)
         : camera(raw),
           ideal(raw.undistorted()),
           options(opts),
+          stages(replaced),
           undistorter(raw),
           extractor(opts.edges),
           coarse(opts.coarse),
@@ -36,6 +39,7 @@ struct Odometry::Impl {
 
     PinholeCamera camera, ideal;
     OdometryOptions options;
+    OdometryStages stages;
     Undistorter undistorter;
     EdgeExtractor extractor;
     CoarseTracker coarse;
@@ -74,7 +78,7 @@ struct Odometry::Impl {
 std::string Odometry::Impl::startKeyframe(const FrameData& data) {
     auto fresh = std::make_unique<Keyframe>();
     const int id = static_cast<int>(history.keyframes().size());
-    if (auto fault = makeKeyframe(data, id, camera, options, *fresh); !fault.empty()) return fault;
+    if (auto fault = makeKeyframe(data, id, camera, options, stages, *fresh); !fault.empty()) return fault;
     const std::unique_ptr<Keyframe> last = std::move(keyframe);
     keyframe = std::move(fresh);
     brightness = Brightness();
@@ -176,12 +180,13 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
     const Pose T_world_keyframe = keyframe->T_world_camera;
     const RollingShutter shutter = motion.shutter(frame.timestamp, T_world_keyframe);
 
-    const Stopwatch coarse_watch;
+    const Stopwatch coarse_watch(stages.clock);
     const CoarseResult aligned = coarse.track(*keyframe, now.pyramid, ideal, shutter, guesses, brightness);
     result.ms.coarse += coarse_watch.milliseconds();
 
-    const Stopwatch fine_watch;
-    const FineFrame view{&now.edges, &grid, &now.pyramid, &frame.depth, &camera, &ideal};
+    const Stopwatch fine_watch(stages.clock);
+    const FineFrame view{frame.timestamp, &now.edges,   &grid,   &extractor.mask(),
+                         &now.pyramid,    &frame.depth, &camera, &ideal};
     Pose T_current_keyframe = aligned.T_current_keyframe;
     Matrix6d covariance;
     if (options.mode == Mode::kCoarse) {
@@ -201,8 +206,7 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
         }
         covariance = kCorrelatedPoints * (aligned.system.hessian + 1e-9 * Matrix6d::Identity()).inverse();
     } else {
-        const FineResult refined =
-            fine.track(*keyframe, view, T_current_keyframe, prior, shutter, aligned.brightness);
+        const FineResult refined = refinePose(stages, fine, *keyframe, view, aligned, prior, shutter);
         result.inliers = refined.inliers;
         if (!refined.converged) {
             result.matched_ratio = refined.matched_ratio;
@@ -233,7 +237,7 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
 
 void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
     applyMapUpdates(result);
-    Stopwatch edge_watch;
+    const Stopwatch edge_watch(stages.clock);
     std::swap(now, before);
     keepForKeyframe(frame);
     const cv::Mat& grey = undistorter.apply(now.images.grey, now.undistorted);
@@ -334,18 +338,21 @@ void Odometry::Impl::bridgeLoss(const RgbdFrame& frame, FrameResult& result) {
     }
 }
 
-Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start) {
+Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start)
+    : Odometry(camera, options, T_world_start, OdometryStages()) {}
+Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start,
+                   const OdometryStages& stages) {
     if (const auto fault = camera.check(); !fault.empty()) throw std::invalid_argument(fault);
     if (const auto fault = checkOptions(options); !fault.empty()) throw std::invalid_argument(fault);
     if (!T_world_start.matrix().allFinite()) throw std::invalid_argument("the start pose is not finite");
-    impl_ = std::make_unique<Impl>(camera, options, T_world_start);
+    impl_ = std::make_unique<Impl>(camera, options, T_world_start, stages);
 }
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
 Odometry& Odometry::operator=(Odometry&&) noexcept = default;
 
 FrameResult Odometry::processFrame(const RgbdFrame& frame) {
-    Stopwatch watch;
+    const Stopwatch watch(impl_->stages.clock);
     FrameResult result;
     result.timestamp = frame.timestamp;
     if (auto fault = faultOf(frame, impl_->camera, impl_->last_timestamp); !fault.empty()) {

@@ -6,13 +6,12 @@
 #include <limits>
 
 #include "roevo/edges/edge_depth.h"
+#include "roevo/tracking/robust.h"
 #include "roevo/tracking/se3.h"
 
 namespace roevo {
 namespace {
 
-constexpr double kMinScale = 0.1;  ///< px; sub-pixel edges never agree better on real images
-constexpr double kMaxScale = 2.0;  ///< px
 /// How much less the evidence of one frame counts for the read-out time: its velocity is only known from two
 /// poses.
 constexpr double kReadoutCaution = 50;
@@ -21,8 +20,7 @@ constexpr double kReadoutCaution = 50;
 /// does not depend on it.
 constexpr double kReadoutGain = 2.5;
 constexpr double kOverRelaxation = 1.6;
-constexpr float kStudentNu = 5;  ///< degrees of freedom of the t-distribution that residuals follow
-constexpr float kUnknown = -1;   ///< depth not looked up yet
+constexpr float kUnknown = -1;  ///< depth not looked up yet
 
 }  // namespace
 
@@ -55,10 +53,7 @@ void FineTracker::geometricResiduals(const OrganizedEdges& current) {
             current.normal_x[p] * (u_[i] - current.x[p]) + current.normal_y[p] * (v_[i] - current.y[p]);
         scratch_.push_back(std::abs(residual_[k]));
     }
-    if (scratch_.empty()) return;
-    const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
-    std::nth_element(scratch_.begin(), middle, scratch_.end());
-    scale_ = std::clamp(1.4826 * static_cast<double>(*middle), kMinScale, kMaxScale);
+    if (!scratch_.empty()) scale_ = robustScale(scratch_);
 }
 
 float FineTracker::currentDepth(std::size_t point, const FineFrame& frame) {
@@ -103,8 +98,8 @@ void FineTracker::weigh(const Keyframe& keyframe) {
         const float squared = residual_[k] * residual_[k] * inverse;
         if (squared > chi2) continue;
         ++inliers_;
-        weight_[k] = keyframe.edges.weight[static_cast<std::size_t>(matches_.reference[k])] * inverse *
-                     (kStudentNu + 1) / (kStudentNu + squared);
+        weight_[k] = studentWeight(
+            keyframe.edges.weight[static_cast<std::size_t>(matches_.reference[k])] * inverse, squared);
     }
 }
 
@@ -213,8 +208,6 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
     const OrganizedEdges& current = *frame.edges;
     const PinholeCamera& camera = *frame.camera;
     const double depth = std::max(keyframe.median_depth, 0.1);
-    FineResult result;
-    result.T_current_keyframe = T_start;
     current_depth_.assign(current.size(), kUnknown);
     // Moving shadows and blur lead photometry astray before they do edges
     Pose pose = betterStart(keyframe, frame, T_start, prior.mean, shutter);
@@ -255,21 +248,30 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
         if (motion_px < 0.01 && share >= 1) break;
     }
     // What is reported belongs to the final pose
-    associate(keyframe, frame, pose, shutter.motion(pose), options_.final_radius);
-    geometricResiduals(current);
+    FineResult result = assess(keyframe, frame, pose, shutter.motion(pose));
+    if (result.converged) {
+        result.covariance = kCorrelatedPoints * system.hessian.inverse();
+    } else {
+        result.T_current_keyframe = T_start;
+    }
+    return result;
+}
+
+FineResult FineTracker::assess(const Keyframe& keyframe, const FineFrame& frame,
+                               const Pose& T_current_keyframe, const RowMotion& rows) {
+    associate(keyframe, frame, T_current_keyframe, rows, options_.final_radius);
+    geometricResiduals(*frame.edges);
     weigh(keyframe);
+    FineResult result;
+    result.T_current_keyframe = T_current_keyframe;
     const int matched = static_cast<int>(matches_.size());
     result.inliers = matched < options_.min_inliers ? matched : inliers_;
     result.scale = scale_;
     result.matched_ratio = matches_.matchedRatio();
-    if (result.inliers < options_.min_inliers || result.matched_ratio < options_.min_matched_ratio ||
-        !pose.matrix().allFinite()) {
-        return result;
-    }
-    orthonormalise(pose);
-    result.T_current_keyframe = pose;
-    result.covariance = kCorrelatedPoints * system.hessian.inverse();
-    result.converged = true;
+    result.converged = result.inliers >= options_.min_inliers &&
+                       result.matched_ratio >= options_.min_matched_ratio &&
+                       T_current_keyframe.matrix().allFinite();
+    if (result.converged) orthonormalise(result.T_current_keyframe);
     return result;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roevo/tracking/robust.h"
+
 namespace roevo {
 namespace {
 
@@ -44,9 +46,6 @@ bool samplePatch(const cv::Mat& image, float u, float v, float axis_x, float axi
     }
     return true;
 }
-
-constexpr float kStudentNu =
-    5;  ///< degrees of freedom of the t-distribution that photometric residuals follow well
 
 }  // namespace
 
@@ -105,7 +104,7 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
     const auto& kernel = kernels::best();
     kernel.project(makeProjection(T, camera, rows), points.x.data(), points.y.data(), points.z.data(), padded,
                    {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
-    const Eigen::Vector2f turn = imageRotation(T);
+    const Eigen::Vector2f turn = points.turning ? imageRotation(T) : Eigen::Vector2f(1, 0);
     for (std::size_t i = 0; i < n; ++i) {
         axis_x_[i] = turn.x() * points.axis_x[i] - turn.y() * points.axis_y[i];
         axis_y_[i] = turn.y() * points.axis_x[i] + turn.x() * points.axis_y[i];
@@ -136,8 +135,7 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
     const auto inverse = static_cast<float>(1 / (scale_ * scale_ * kernels::kPatchSize));
     for (std::size_t i = 0; i < n; ++i) {
         const float squared = residuals_[i].squared * inverse;
-        weight_[i] =
-            residuals_[i].squared < 0 ? 0 : points.weight[i] * (kStudentNu + 1) / (kStudentNu + squared);
+        weight_[i] = residuals_[i].squared < 0 ? 0 : studentWeight(points.weight[i], squared);
     }
 }
 

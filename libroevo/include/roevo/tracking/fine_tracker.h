@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "roevo/edges/canny.h"
 #include "roevo/tracking/coarse_tracker.h"
 #include "roevo/tracking/edge_association.h"
 #include "roevo/tracking/keyframe.h"
@@ -13,8 +14,10 @@ inline constexpr double kCorrelatedPoints = 5;
 
 /// What fine tracking needs of the current frame.
 struct FineFrame {
+    double timestamp = 0;  ///< s
     const OrganizedEdges* edges = nullptr;
     const EdgeGrid* grid = nullptr;
+    const EdgeMask* mask = nullptr;  ///< pixels that `edges` were made of; may be absent
     const ImagePyramid* pyramid = nullptr;
     const cv::Mat* depth = nullptr;             ///< raw depth of `raw_camera`; may be empty
     const PinholeCamera* raw_camera = nullptr;  ///< with distortion
@@ -41,6 +44,11 @@ class FineTracker {
     /// @param T_start  from coarse tracking; where more edges are found at the prior's mean, that is the start
     FineResult track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
                      const PosePrior& prior, const RollingShutter& shutter, const Brightness& brightness);
+
+    /// What track() reports, at a given pose and without refining it: inliers, scale and matched ratio;
+    /// converged where these are enough. No covariance. Fills matches().
+    FineResult assess(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_current_keyframe,
+                      const RowMotion& rows);
 
     /// Edge-wise association at a given pose, without refining it: fills matches().
     void associate(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_current_keyframe,

@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace roevo {
+
+/// Name of the processor, or "unknown processor".
+std::string processorName();
+
+/// One line: processor, cores that this process may use, memory, operating system.
+std::string machineText();
+
+/// Name and version of this software, of the libraries that it uses, and of the compiler.
+std::vector<std::pair<std::string, std::string>> softwareVersions();
+
+/// Changes when this program changes: its version and a hash of its file.
+std::string programState();
+
+/// The words of a command line, quoted where a shell would need it.
+std::string shellCommand(const std::vector<std::string>& words);
+
+/// The present time, ISO 8601, UTC, to the second.
+std::string utcNow();
+
+}  // namespace roevo

@@ -1,0 +1,31 @@
+# Every method under comparison. One set of files each, listed here and in methods/registry.cpp.
+add_library(roevo_methods STATIC
+  methods/registry.cpp
+  methods/roevo_method.cpp
+  methods/distance_field_method.cpp
+  methods/distance_field.cpp
+  methods/registration_method.cpp
+  methods/depth_resampler.cpp
+  methods/difodo.cpp
+  methods/icp.cpp
+  methods/opencv_rgbd.cpp)
+target_include_directories(roevo_methods PUBLIC ${PROJECT_SOURCE_DIR}/apps ${CMAKE_CURRENT_SOURCE_DIR})
+target_link_libraries(roevo_methods PUBLIC roevo PRIVATE roevo_mrpt roevo_build_flags)
+# How the core checks frames and takes times.
+target_include_directories(roevo_methods PRIVATE ${PROJECT_SOURCE_DIR}/libroevo/src)
+
+# Baselines of libraries that need not be there: without its library a method is known, and says why it cannot be run.
+find_package(mrpt-vision QUIET)
+find_package(mrpt-slam QUIET)
+if(mrpt-vision_FOUND)
+  target_compile_definitions(roevo_methods PRIVATE ROEVO_HAVE_MRPT_VISION)
+  target_link_libraries(roevo_methods PRIVATE mrpt::vision)
+endif()
+if(mrpt-slam_FOUND)
+  target_compile_definitions(roevo_methods PRIVATE ROEVO_HAVE_MRPT_SLAM)
+  target_link_libraries(roevo_methods PRIVATE mrpt::slam)
+endif()
+if(TARGET opencv_rgbd)
+  target_compile_definitions(roevo_methods PRIVATE ROEVO_HAVE_OPENCV_RGBD)
+  target_link_libraries(roevo_methods PRIVATE opencv_rgbd)
+endif()

@@ -1,0 +1,164 @@
+#include "distance_field.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "roevo/tracking/robust.h"
+#include "roevo/tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+void DistanceField::build(const cv::Mat& mask) {
+    cv::compare(mask, 0, background_, cv::CMP_EQ);
+    cv::distanceTransform(background_, distance_, cv::DIST_L2, cv::DIST_MASK_PRECISE, CV_32F);
+}
+
+DistanceField::Sample DistanceField::at(float u, float v) const {
+    const int x = static_cast<int>(u), y = static_cast<int>(v);
+    const float a = u - static_cast<float>(x), b = v - static_cast<float>(y);
+    const auto* top = distance_.ptr<float>(y) + x;
+    const auto* bottom = distance_.ptr<float>(y + 1) + x;
+    const float upper = top[1] - top[0], lower = bottom[1] - bottom[0];
+    const float left = bottom[0] - top[0];
+    const float turn = lower - upper;  // of the slope along u, per pixel along v
+    return {top[0] + a * upper + b * (left + a * turn), upper + b * turn, left + a * turn};
+}
+
+PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const DistanceField& field,
+                                           const PinholeCamera& camera, const Pose& T_current_keyframe,
+                                           const RowMotion& rows, double radius) {
+    const EdgePoints3D& edges = keyframe.edges;
+    const std::size_t all = edges.x.size();
+    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(all);
+    kernels::best().project(makeProjection(T_current_keyframe, camera, rows), edges.x.data(), edges.y.data(),
+                            edges.z.data(), all, {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+
+    near_.clear();
+    for (auto* array : {&gradient_u_, &gradient_v_, &residual_}) array->clear();
+    visible_ = 0;
+    const float margin = EdgeMask::kBorder;  // the mask is empty there, and its edges are not where they seem
+    const float max_u = static_cast<float>(camera.width) - 1 - margin,
+                max_v = static_cast<float>(camera.height) - 1 - margin;
+    const auto limit = static_cast<std::size_t>(options_.max_points);
+    const std::size_t stride = std::max<std::size_t>(1, (edges.size() + limit - 1) / limit);
+    for (std::size_t i = stride / 2; i < edges.size(); i += stride) {
+        if (!(u_[i] >= margin && v_[i] >= margin && u_[i] <= max_u && v_[i] <= max_v)) continue;
+        ++visible_;
+        const DistanceField::Sample sample = field.at(u_[i], v_[i]);
+        if (!(static_cast<double>(sample.distance) <= radius)) continue;
+        near_.push_back(i);
+        residual_.push_back(sample.distance);
+        gradient_u_.push_back(sample.du);
+        gradient_v_.push_back(sample.dv);
+    }
+    inliers_ = 0;
+    PoseSystem system;
+    if (near_.empty()) return system;
+
+    magnitudes_ = residual_;
+    scale_ = robustScale(magnitudes_);
+    const auto inverse = static_cast<float>(1 / (scale_ * scale_));
+    const auto chi2 = static_cast<float>(options_.chi2);
+    const std::size_t padded = kernels::paddedSize(near_.size());
+    for (auto& array : matrix_) array.assign(padded, 0);
+    for (auto& array : vector_) array.assign(padded, 0);
+    for (auto& array : position_) array.assign(padded, 0);
+    const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+        const std::size_t i = near_[k];
+        const float r = residual_[k], squared = r * r * inverse;
+        if (squared > chi2) continue;
+        ++inliers_;
+        const float w = studentWeight(edges.weight[i] * inverse, squared);
+        const float du = gradient_u_[k], dv = gradient_v_[k];
+        float matrix[6], vector[3];
+        liftInformation(x_[i], y_[i], z_[i], fx, fy, w * du * du, w * du * dv, w * dv * dv, w * du * r,
+                        w * dv * r, matrix, vector);
+        for (int a = 0; a < 6; ++a) matrix_[a][k] = matrix[a];
+        for (int a = 0; a < 3; ++a) vector_[a][k] = vector[a];
+        position_[0][k] = x_[i];
+        position_[1][k] = y_[i];
+        position_[2][k] = z_[i];
+    }
+    kernels::PointInformation points{position_[0].data(), position_[1].data(), position_[2].data(), {}, {}};
+    for (int a = 0; a < 6; ++a) points.matrix[a] = matrix_[a].data();
+    for (int a = 0; a < 3; ++a) points.vector[a] = vector_[a].data();
+    kernels::NormalEquations equations;
+    kernels::best().accumulate(points, padded, equations);
+    system.add(equations);
+    return system;
+}
+
+void DistanceFieldTracker::prepare(const FineFrame& frame) {
+    if (field_timestamp_ == frame.timestamp) return;
+    const Clock::time_point begin = Clock::now();
+    field_.build(frame.mask->mask);
+    field_timestamp_ = frame.timestamp;
+    times_.field += millisecondsSince(begin);
+}
+
+FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
+                                       const PosePrior& prior, const RollingShutter& shutter,
+                                       const Brightness& brightness) {
+    prepare(frame);
+    const Clock::time_point begin = Clock::now();
+    const PinholeCamera& camera = *frame.camera;
+    const double depth = std::max(keyframe.median_depth, 0.1);
+    FineResult result;
+    Pose pose = T_start;
+    Brightness gain = brightness;
+    PoseSystem system;
+    const double narrowing = std::clamp(options_.max_iterations - 1.0, 1.0, 4.0);
+    for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+        const double share = std::min(1.0, iteration / narrowing);
+        const double radius =
+            options_.search_radius + share * (options_.final_radius - options_.search_radius);
+        const RowMotion rows = shutter.motion(pose);
+        system = linearise(keyframe, field_, camera, pose, rows, radius);
+        if (static_cast<int>(near_.size()) < options_.min_inliers) break;
+        if (photometric_weight_ > 0 && keyframe.photometric.size() > 0) {
+            photometric_.evaluate(keyframe.photometric, 0, frame.pyramid->level(0), camera, pose, rows, gain);
+            const double count = static_cast<double>(near_.size()) /
+                                 std::max<double>(1, photometric_.numVisible() * kernels::kPatchSize);
+            kernels::NormalEquations equations;
+            photometric_.accumulate(keyframe.photometric, 0, camera, photometric_weight_ * count, equations);
+            system.add(equations);
+            gain = photometric_.fitBrightness(keyframe.photometric, 0, gain);
+        }
+        system.addPrior(prior, pose, kCorrelatedPoints);
+        const Vector6d step = system.solve();
+        pose = poseIncrement(step) * pose;
+        const double motion_px = camera.fx * (step.tail<3>().norm() + step.head<3>().norm() / depth);
+        if (motion_px < 0.01 && share >= 1) break;
+    }
+    result.inliers = inliers_;
+    result.scale = scale_;
+    result.matched_ratio = visible_ > 0 ? static_cast<double>(near_.size()) / visible_ : 0;
+    result.converged = inliers_ >= options_.min_inliers && pose.matrix().allFinite();
+    result.T_current_keyframe = result.converged ? pose : T_start;
+    if (result.converged) {
+        orthonormalise(result.T_current_keyframe);
+        result.covariance = kCorrelatedPoints * system.hessian.inverse();
+    }
+    times_.registration += millisecondsSince(begin);
+    return result;
+}
+
+DistanceFieldTracker::Times DistanceFieldTracker::takeTimes() {
+    return std::exchange(times_, Times());
+}
+
+}  // namespace roevo

@@ -1,0 +1,74 @@
+#pragma once
+#include <limits>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "roevo/tracking/fine_tracker.h"
+
+namespace roevo {
+
+/// Exact Euclidean distance of every pixel to the nearest edge pixel, and its bilinear interpolation.
+class DistanceField {
+  public:
+    /// @param mask  CV_8UC1, not 0 on an edge. Without any edge every pixel is far from one.
+    void build(const cv::Mat& mask);
+
+    struct Sample {
+        float distance;  ///< px
+        float du, dv;    ///< its derivatives, exact within the cell between four pixel centres
+    };
+    /// @param u, v  px, at least 0 and below width - 1 and height - 1
+    Sample at(float u, float v) const;
+
+    const cv::Mat& distances() const { return distance_; }  ///< CV_32FC1, px
+
+  private:
+    cv::Mat background_, distance_;
+};
+
+/// Registration as edge-based odometries before organized edges have it: a keyframe's 3-D edge points slide
+/// down the distance field of the current frame's edge mask. No association; a residual is the interpolated
+/// distance where a point is reprojected, never negative. Weights, narrowing radius, prior and number of
+/// steps are those of FineTracker, so that only the residual differs.
+class DistanceFieldTracker {
+  public:
+    /// @param photometric_weight  FineOptions::photometric_weight for the residual joined with the
+    /// photometric one as in FineTracker; 0 for the field alone
+    DistanceFieldTracker(const FineOptions& options, double photometric_weight)
+        : options_(options), photometric_weight_(photometric_weight) {}
+
+    /// Builds the field of a frame when it is new; track() does so, too.
+    void prepare(const FineFrame& frame);
+
+    /// As FineTracker::track(). FineResult::inliers counts points
+    /// near an edge, matched_ratio their share of those that are looked up and visible.
+    FineResult track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
+                     const PosePrior& prior, const RollingShutter& shutter, const Brightness& brightness);
+
+    /// Weighted normal equations at a pose.
+    /// @param radius  points farther than this from any edge are left out, px
+    PoseSystem linearise(const Keyframe& keyframe, const DistanceField& field, const PinholeCamera& camera,
+                         const Pose& T_current_keyframe, const RowMotion& rows, double radius);
+
+    /// Milliseconds since the last call, of building fields and of registering.
+    struct Times {
+        double field = 0, registration = 0;
+    };
+    Times takeTimes();
+
+  private:
+    FineOptions options_;
+    double photometric_weight_;
+    DistanceField field_;
+    double field_timestamp_ = std::numeric_limits<double>::quiet_NaN();  ///< s, frame of the field; NaN: none
+    PhotometricResiduals photometric_;
+    std::vector<float> x_, y_, z_, u_, v_;  // of all keyframe points
+    std::vector<std::size_t> near_;         // points that count
+    std::vector<float> gradient_u_, gradient_v_, residual_, magnitudes_;
+    std::vector<float> matrix_[6], vector_[3], position_[3];
+    double scale_ = 1;
+    int visible_ = 0, inliers_ = 0;
+    Times times_;
+};
+
+}  // namespace roevo

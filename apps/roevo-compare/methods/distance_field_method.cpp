@@ -1,0 +1,79 @@
+#include "distance_field_method.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "distance_field.h"
+#include "odometry_frame.h"
+#include "roevo/odometry.h"
+#include "roevo/odometry_stages.h"
+
+namespace roevo {
+namespace {
+
+constexpr char kAlone[] = "distance-field", kJoined[] = "distance-field-photometric";
+
+class DistanceFieldMethod : public Method {
+  public:
+    DistanceFieldMethod(const PinholeCamera& camera, const OdometryOptions& options, bool photometric)
+        : tracker_(options.fine, photometric ? options.fine.photometric_weight : 0),
+          odometry_(camera, trackingOnly(options), Pose::Identity(), stagesOf(tracker_)) {}
+
+    std::vector<std::string> stages() const override {
+        return {"edges", "coarse", "distance field", "registration", "keyframe rule"};
+    }
+
+    MethodFrame processFrame(const RgbdFrame& frame) override {
+        const FrameResult result = odometry_.processFrame(frame);
+        const DistanceFieldTracker::Times times = tracker_.takeTimes();
+        MethodFrame out = toMethodFrame(result, started_);
+        // Edges are associated afterwards, as the rule for new keyframes wants it
+        const double rest = std::max(0.0, result.ms.fine - times.field - times.registration);
+        out.stage_ms = {result.ms.edges, result.ms.coarse, times.field, times.registration, rest};
+        return out;
+    }
+
+  private:
+    static OdometryOptions trackingOnly(OdometryOptions options) {
+        options.mode = Mode::kTracking;
+        options.mapping.semi_dense_points = 0;  // no scene is written
+        return options;
+    }
+    static OdometryStages stagesOf(DistanceFieldTracker& tracker) {
+        OdometryStages stages;
+        stages.registration = [&tracker](const Keyframe& keyframe, const FineFrame& frame,
+                                         const Pose& T_start, const PosePrior& prior,
+                                         const RollingShutter& shutter, const Brightness& brightness) {
+            return tracker.track(keyframe, frame, T_start, prior, shutter, brightness);
+        };
+        return stages;
+    }
+
+    DistanceFieldTracker tracker_;
+    Odometry odometry_;
+    bool started_ = false;
+};
+
+}  // namespace
+
+std::vector<MethodInfo> distanceFieldMethods() {
+    MethodInfo alone, joined;
+    alone.name = kAlone;
+    alone.label = "Distance field";
+    alone.note =
+        "exact Euclidean distance field of the edge mask in place of ROEVO's fine tracking; edges, depth, "
+        "coarse tracking, keyframe rule and motion model are ROEVO's, so compare it with ROEVO TR";
+    joined.name = kJoined;
+    joined.label = "Distance field + photometric";
+    joined.note = "the same, its residual joined with the photometric one as in ROEVO's fine tracking";
+    return {alone, joined};
+}
+
+std::unique_ptr<Method> makeDistanceField(const std::string& name, const PinholeCamera& camera,
+                                          const OdometryOptions& options) {
+    if (name != kAlone && name != kJoined)
+        throw std::invalid_argument("there is no distance field method called '" + name + "'");
+    return std::make_unique<DistanceFieldMethod>(camera, options, name == kJoined);
+}
+
+}  // namespace roevo

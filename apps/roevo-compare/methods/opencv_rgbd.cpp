@@ -1,0 +1,140 @@
+#include "opencv_rgbd.h"
+
+#include <stdexcept>
+
+#ifdef ROEVO_HAVE_OPENCV_RGBD
+#include <limits>
+#include <opencv2/core.hpp>
+#include <opencv2/rgbd.hpp>
+
+#include "depth_resampler.h"
+#include "odometry/stopwatch.h"
+#include "registration_method.h"
+#include "roevo/camera/undistorter.h"
+#endif
+
+namespace roevo {
+namespace {
+
+#ifdef ROEVO_HAVE_OPENCV_RGBD
+
+constexpr char kUnavailable[] = "";
+
+using cv::rgbd::Odometry;
+using cv::rgbd::OdometryFrame;
+
+/// Least share of the pixels with a depth.
+constexpr double kLeastKnown = 0.02;
+
+class OpencvRgbd : public RegistrationMethod {
+  public:
+    OpencvRgbd(const PinholeCamera& camera, const OdometryOptions& options, bool with_icp)
+        : RegistrationMethod(camera, options),
+          undistorter_(camera),
+          resampler_(camera, camera.undistorted(), options.sensor) {
+        const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+        const auto nearest = static_cast<float>(options.sensor.min_depth),
+                   farthest = static_cast<float>(options.sensor.depth_limit);
+        if (with_icp)
+            odometry_ = cv::rgbd::RgbdICPOdometry::create(cv::Mat(K), nearest, farthest);
+        else
+            odometry_ = cv::rgbd::RgbdOdometry::create(cv::Mat(K), nearest, farthest);
+    }
+
+    std::vector<std::string> stages() const override { return {"prepare", "solve"}; }
+
+  protected:
+    Registration start(const RgbdFrame& frame) override {
+        Registration first;
+        reference_ = load(frame, first);
+        return first;
+    }
+
+    Registration registerFrame(const RgbdFrame& frame, const Expected& /*expected*/) override {
+        Registration found;
+        cv::Ptr<OdometryFrame> current = load(frame, found);
+        if (!current) return found;
+        const Stopwatch watch;
+        cv::Mat T;  // maps points of the first frame into the second's
+        const bool solved = odometry_->compute(current, reference_, T);
+        found.stage_ms[1] = watch.milliseconds();
+        if (solved)
+            found.T_reference_frame = toPose(T);
+        else
+            found.reason = "too few correspondences or a motion beyond the limits of OpenCV";
+        reference_ = current;
+        return found;
+    }
+
+  private:
+    /// Null: the image has too little depth, and is left out as if it had not been taken.
+    cv::Ptr<OdometryFrame> load(const RgbdFrame& frame, Registration& result) {
+        const Stopwatch watch;
+        cv::Mat grey, depth;
+        // Not zero for unknown depth: its pyramid would mix the two.
+        resampler_.apply(frame.depth, depth, std::numeric_limits<float>::quiet_NaN());
+        result.becomes_reference = countKnown(depth) > kLeastKnown * static_cast<double>(depth.total());
+        cv::Ptr<OdometryFrame> prepared;
+        if (result.becomes_reference) {
+            undistorter_.apply(frame.grey, grey);
+            if (undistorter_.isIdentity()) grey = frame.grey.clone();  // the caller may use its memory again
+            prepared = OdometryFrame::create(grey, depth);
+            odometry_->prepareFrameCache(prepared, OdometryFrame::CACHE_ALL);
+        } else {
+            result.reason = "too little depth";
+        }
+        result.stage_ms = {watch.milliseconds(), 0};
+        return prepared;
+    }
+
+    static Pose toPose(const cv::Mat& T) {
+        Pose pose = Pose::Identity();
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 4; ++column) pose(row, column) = T.at<double>(row, column);
+        return pose;
+    }
+
+    Undistorter undistorter_;
+    DepthResampler resampler_;
+    cv::Ptr<Odometry> odometry_;
+    cv::Ptr<OdometryFrame> reference_;
+};
+
+std::unique_ptr<Method> make(const PinholeCamera& camera, const OdometryOptions& options, bool with_icp) {
+    return std::make_unique<OpencvRgbd>(camera, options, with_icp);
+}
+
+#else
+
+constexpr char kUnavailable[] = "this OpenCV has no rgbd module (package libopencv-contrib-dev)";
+
+std::unique_ptr<Method> make(const PinholeCamera&, const OdometryOptions&, bool) {
+    throw std::invalid_argument(kUnavailable);
+}
+
+#endif
+
+}  // namespace
+
+std::vector<MethodInfo> opencvRgbdMethods() {
+    MethodInfo rgbd, icp;
+    rgbd.unavailable = icp.unavailable = kUnavailable;
+    rgbd.name = "opencv-rgbd";
+    rgbd.label = "OpenCV RGB-D";
+    rgbd.note = "OpenCV contrib's RgbdOdometry: dense photometric registration from frame to frame";
+    icp.name = "opencv-rgbd-icp";
+    icp.label = "OpenCV RGB-D+ICP";
+    icp.note =
+        "OpenCV contrib's RgbdICPOdometry: dense photometric and point-to-plane registration from frame to "
+        "frame";
+    return {rgbd, icp};
+}
+
+std::unique_ptr<Method> makeOpencvRgbd(const std::string& name, const PinholeCamera& camera,
+                                       const OdometryOptions& options) {
+    if (name == "opencv-rgbd") return make(camera, options, false);
+    if (name == "opencv-rgbd-icp") return make(camera, options, true);
+    throw std::invalid_argument("there is no method called '" + name + "' in the family of OpenCV");
+}
+
+}  // namespace roevo

@@ -1,0 +1,99 @@
+#include "roevo_method.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "odometry_frame.h"
+#include "roevo/odometry.h"
+#include "roevo_mrpt/scene_builder.h"
+
+namespace roevo {
+namespace {
+
+constexpr std::pair<const char*, Mode> kModes[] = {
+    {"roevo-ct", Mode::kCoarse}, {"roevo-tr", Mode::kTracking}, {"roevo-ba", Mode::kBundleAdjustment}};
+
+class RoevoMethod : public Method {
+  public:
+    RoevoMethod(const PinholeCamera& camera, const OdometryOptions& options) : odometry_(camera, options) {}
+
+    std::vector<std::string> stages() const override {
+        std::vector<std::string> names{"edges", "coarse"};
+        if (mode() != Mode::kCoarse) names.push_back("fine");
+        if (mode() == Mode::kBundleAdjustment) names.push_back("waiting");
+        return names;
+    }
+
+    MethodFrame processFrame(const RgbdFrame& frame) override {
+        const FrameResult result = odometry_.processFrame(frame);
+        MethodFrame out = toMethodFrame(result, started_);
+        out.stage_ms = {result.ms.edges, result.ms.coarse};
+        if (mode() != Mode::kCoarse) out.stage_ms.push_back(result.ms.fine);
+        if (mode() == Mode::kBundleAdjustment) out.stage_ms.push_back(result.ms.waiting);
+        if (result.ms.mapping > 0) {
+            mapping_ms_ += result.ms.mapping;
+            ++mapped_;
+        }
+        return out;
+    }
+
+    std::optional<std::vector<StampedPose>> finalTrajectory() override { return odometry_.trajectory(); }
+
+    std::optional<Background> background() const override {
+        if (mode() != Mode::kBundleAdjustment) return std::nullopt;
+        return Background{"mapping of a keyframe",
+                          mapped_ > 0 ? mapping_ms_ / static_cast<double>(mapped_) : 0, mapped_};
+    }
+
+    bool writeScene(const std::string& path) override {
+        SceneContent content;
+        content.map = odometry_.map();
+        if (mode() == Mode::kBundleAdjustment) content.keyframe_edges = odometry_.keyframeEdges();
+        content.semi_dense = odometry_.semiDense();
+        content.trajectory = odometry_.trajectory();
+        content.keyframes = odometry_.keyframes();
+        content.camera = odometry_.camera().undistorted();
+        saveScene(path, *buildScene(content));
+        return true;
+    }
+
+  private:
+    Mode mode() const { return odometry_.options().mode; }
+
+    Odometry odometry_;
+    bool started_ = false;
+    double mapping_ms_ = 0;
+    std::size_t mapped_ = 0;
+};
+
+}  // namespace
+
+std::vector<MethodInfo> roevoMethods() {
+    MethodInfo ct, tr, ba;
+    ct.name = "roevo-ct";
+    ct.label = "ROEVO CT";
+    ct.note = "coarse tracking only: photometric, on a sample of the edge points";
+    tr.name = "roevo-tr";
+    tr.label = "ROEVO TR";
+    tr.note = "coarse and fine tracking against the last keyframe, no map";
+    ba.name = "roevo-ba";
+    ba.label = "ROEVO TR+BA";
+    ba.note =
+        "tracking with local mapping in a second thread, which shares the one core; its trajectory is the "
+        "refined one, as known at the end";
+    for (MethodInfo* info : {&ct, &tr, &ba}) info->ours = true;
+    return {ct, tr, ba};
+}
+
+std::unique_ptr<Method> makeRoevo(const std::string& name, const PinholeCamera& camera,
+                                  const OdometryOptions& options) {
+    for (const auto& [known, mode] : kModes)
+        if (name == known) {
+            OdometryOptions own = options;
+            own.mode = mode;
+            return std::make_unique<RoevoMethod>(camera, own);
+        }
+    throw std::invalid_argument("there is no mode of ROEVO called '" + name + "'");
+}
+
+}  // namespace roevo

@@ -1,0 +1,152 @@
+#include "process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sched.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+namespace roevo {
+namespace {
+
+constexpr std::size_t kLongestLine = 4096;  // the rest of a line is not kept
+constexpr int kReadsAtOnce = 64;
+
+struct Pipe {
+    int ends[2] = {-1, -1};
+    Pipe() {
+        if (pipe2(ends, O_CLOEXEC) != 0)
+            throw std::runtime_error(std::string("cannot start a process: ") + std::strerror(errno));
+    }
+    ~Pipe() {
+        for (const int fd : ends)
+            if (fd >= 0) close(fd);
+    }
+    int takeReadEnd() { return std::exchange(ends[0], -1); }
+};
+
+// Between fork() and exec: only functions that are safe there.
+[[noreturn]] void becomeChild(char* const* argv, int core, int out, int err, pid_t parent) {
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(127);  // it died before the line above
+    if (core >= 0) {
+        cpu_set_t set;
+        CPU_ZERO(&set);
+        CPU_SET(static_cast<std::size_t>(core), &set);
+        sched_setaffinity(0, sizeof set, &set);
+    }
+    const int null = open("/dev/null", O_RDONLY);
+    dup2(null, STDIN_FILENO);
+    dup2(out, STDOUT_FILENO);
+    dup2(err, STDERR_FILENO);
+    execv(argv[0], argv);
+    const char* reason = strerrordesc_np(errno);
+    if (write(STDERR_FILENO, "cannot be started: ", 19) < 0 || !reason ||
+        write(STDERR_FILENO, reason, std::strlen(reason)) < 0)
+        _exit(126);
+    _exit(127);
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::vector<std::string>& command, int core, double timeout_s)
+    : start_(std::chrono::steady_clock::now()), timeout_s_(timeout_s) {
+    std::vector<char*> argv;
+    for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+
+    Pipe out, err;
+    const pid_t parent = getpid();
+    pid_ = fork();
+    if (pid_ < 0) throw std::runtime_error(std::string("cannot start a process: ") + std::strerror(errno));
+    if (pid_ == 0) becomeChild(argv.data(), core, out.ends[1], err.ends[1], parent);
+    pid_fd_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
+    setpgid(pid_, pid_);  // in both processes, so that the group is there whoever comes first
+    output_.fd = out.takeReadEnd();
+    error_.fd = err.takeReadEnd();
+    for (const int fd : {output_.fd, error_.fd}) fcntl(fd, F_SETFL, O_NONBLOCK);
+}
+
+ChildProcess::~ChildProcess() {
+    if (running_) {
+        kill(-pid_, SIGKILL);
+        waitpid(pid_, nullptr, 0);
+    }
+    for (const int fd : {pid_fd_, output_.fd, error_.fd})
+        if (fd >= 0) close(fd);
+}
+
+double ChildProcess::seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+bool ChildProcess::update() {
+    if (!running_) return false;
+    if (!end_.timed_out && seconds() > timeout_s_) {
+        end_.timed_out = true;
+        kill(-pid_, SIGKILL);
+    }
+    // Its own children go while its number still is its own, that is before it is waited for
+    siginfo_t info{};
+    waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT);
+    const bool ended = info.si_pid == pid_;
+    if (ended) kill(-pid_, SIGKILL);
+    output_.read();
+    error_.read();
+    if (!ended) return true;
+
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    running_ = false;
+    if (WIFEXITED(status)) end_.exit_code = WEXITSTATUS(status);
+    if (WIFSIGNALED(status)) end_.signal = WTERMSIG(status);
+    output_.finish();
+    error_.finish();
+    return false;
+}
+
+void ChildProcess::Stream::read() {
+    char buffer[4096];
+    ssize_t count = 0;
+    // Not for ever, should it write faster than this reads
+    for (int i = 0; i < kReadsAtOnce && (count = ::read(fd, buffer, sizeof buffer)) > 0; ++i)
+        for (ssize_t k = 0; k < count; ++k)
+            if (buffer[k] == '\n' || buffer[k] == '\r')
+                finish();
+            else if (partial.size() < kLongestLine)
+                partial += buffer[k];
+}
+
+void ChildProcess::Stream::finish() {
+    if (partial.find_first_not_of(" \t") != std::string::npos) line = partial;
+    partial.clear();
+}
+
+void ChildProcess::waitForNews(const std::vector<const ChildProcess*>& processes, double seconds) {
+    // Not for what they say, or the waiting one would wake up for every frame and take time from the others
+    std::vector<pollfd> fds;
+    for (const ChildProcess* process : processes)
+        if (process->pid_fd_ >= 0) fds.push_back({process->pid_fd_, POLLIN, 0});
+    poll(fds.data(), fds.size(), static_cast<int>(seconds * 1000));
+}
+
+std::vector<int> allowedCores() {
+    cpu_set_t set;
+    std::vector<int> cores;
+    if (sched_getaffinity(0, sizeof set, &set) == 0)
+        for (int i = 0; i < CPU_SETSIZE; ++i)
+            if (CPU_ISSET(static_cast<std::size_t>(i), &set)) cores.push_back(i);
+    return cores;
+}
+
+}  // namespace roevo

@@ -1,0 +1,49 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/evaluate.h"
+#include "roevo-compare/method_run.h"
+#include "roevo/types.h"
+
+namespace roevo {
+
+/// One recording and what every method made of it.
+struct SequenceComparison {
+    std::string name;          ///< of the table's row, e.g. "fr1_xyz"
+    std::string input;         ///< as given
+    std::string failure;       ///< why nothing could be run on it (unreadable, …); empty otherwise
+    std::string note;          ///< what a reader must know of it: damage, frames left out; may be empty
+    std::string ground_truth;  ///< file or folder, empty when there is none
+    std::vector<StampedPose> reference;    ///< the ground truth's poses; may be empty
+    std::string ground_truth_fault;        ///< why there is none although one was named
+    std::vector<MethodRun> runs;           ///< in the order of the tables
+    std::vector<std::string> run_folders;  ///< where each is kept, for links and scenes
+    std::optional<double> paper_ate_cm;    ///< the paper's ROEVO-TR+BA on the whole sequence, when it has it
+};
+
+/// What a reader must know to repeat it.
+struct ComparisonInfo {
+    std::string command;                                        ///< the exact command line
+    std::string date;                                           ///< ISO, UTC
+    std::string machine;                                        ///< processor, cores, memory, system
+    std::vector<std::pair<std::string, std::string>> versions;  ///< roevo, mrpt, opencv, eigen, compiler, …
+    /// What a reader must know of this comparison, a sentence each: runs side by side, sequences that were
+    /// not there, an interrupt. To be printed with the protocol.
+    std::vector<std::string> notes;
+};
+
+/// Errors of each run against the sequence's reference, computed once; absent with the reason in words.
+struct EvaluatedRun {
+    std::optional<Evaluation> evaluation;
+    std::string fault;
+};
+std::vector<EvaluatedRun> evaluateRuns(const SequenceComparison& sequence);
+
+/// Writes table.csv, table.md and report.html (all pictures inside, no network) into the folder, each whole
+/// or not at all. @throws std::runtime_error in one line
+void writeComparison(const std::string& folder, const std::vector<SequenceComparison>& sequences,
+                     const ComparisonInfo& info);
+
+}  // namespace roevo

@@ -1,0 +1,21 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "roevo-compare/report/results.h"
+
+namespace roevo {
+
+/// table.csv: one row per sequence and method with every figure, SI units and milliseconds, named in the
+/// head. What was not measured is empty, and a reason column says why.
+std::string csvTable(const std::vector<SequenceResults>& results);
+
+/// table.md: a table per figure, methods by sequences, the best bold, dashes with a footnote that says why.
+std::string markdownTables(const std::vector<SequenceResults>& results, const ComparisonInfo& info);
+
+/// report.html, well-formed XML, with plots and pictures inside and nothing to be loaded.
+/// @param folder  where it will lie: links to the runs are relative to it
+std::string htmlReport(const std::vector<SequenceResults>& results, const ComparisonInfo& info,
+                       const std::string& folder);
+
+}  // namespace roevo

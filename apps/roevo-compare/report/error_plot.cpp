@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "evaluation/error_statistics.h"
+#include "roevo-compare/report/plots.h"
+#include "roevo-compare/report/text.h"
+#include "support/gnuplot.h"
+
+namespace roevo {
+namespace {
+
+constexpr std::size_t kMaxIntervals = 800;   // of a line, each with its largest error
+constexpr int kWidth = 1120, kHeight = 330;  // px
+constexpr double kMinError = 1e-3;           // cm: what is less is of no interest, and has no logarithm
+
+struct Line {
+    std::string name;
+    LineStyle style;
+    std::vector<double> times, errors;  // s since the sequence's first pose; cm
+};
+
+// Between poses that are farther apart than this nothing is known, and no line is drawn.
+double largestStep(const std::vector<double>& times) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
+    return 3.5 * percentile(steps, 0.5);
+}
+
+std::vector<std::vector<double>> thinned(const Line& line) {
+    const std::size_t step = (line.times.size() + kMaxIntervals - 1) / kMaxIntervals;
+    const double gap = largestStep(line.times) * static_cast<double>(step);
+    std::vector<std::vector<double>> rows;
+    for (std::size_t i = 0; i < line.times.size(); i += step) {
+        const std::size_t end = std::min(i + step, line.times.size());
+        const auto begin = line.errors.begin();
+        const auto worst =
+            static_cast<std::size_t>(std::max_element(begin + static_cast<std::ptrdiff_t>(i),
+                                                      begin + static_cast<std::ptrdiff_t>(end)) -
+                                     begin);
+        if (!rows.empty() && line.times[worst] - rows.back()[0] > gap) rows.push_back({NAN, NAN});
+        rows.push_back({line.times[worst], std::max(line.errors[worst], kMinError)});
+    }
+    return rows;
+}
+
+std::vector<Line> linesOf(const SequenceResults& results, const Legend& legend) {
+    const auto& reference = results.sequence->reference;
+    std::vector<Line> lines;
+    double start = INFINITY;
+    for (std::size_t i = 0; i < results.evaluated.size(); ++i) {
+        if (!results.evaluated[i].evaluation) continue;
+        const Evaluation& evaluation = *results.evaluated[i].evaluation;
+        const MethodRun& run = results.sequence->runs[i];
+        const std::size_t m = legend.indexOf(run.method);
+        Line line{legend.methods[m].label, legend.styles[m], {}, {}};
+        for (const PosePair& pair : evaluation.pairs) {
+            const StampedPose& pose = run.trajectory[pair.estimate];
+            const Eigen::Vector3d centre =
+                evaluation.ate.T_reference_estimate * pose.T_world_camera.translation();
+            const Eigen::Vector3d truth = reference[pair.reference].T_world_camera.translation();
+            line.times.push_back(pose.timestamp);
+            line.errors.push_back(100 * (centre - truth).norm());
+        }
+        start = std::min(start, line.times.front());
+        lines.push_back(std::move(line));
+    }
+    for (Line& line : lines)
+        for (double& time : line.times) time -= start;
+    std::stable_sort(lines.begin(), lines.end(),
+                     [](const Line& a, const Line& b) { return a.style.width < b.style.width; });
+    return lines;
+}
+
+std::string shownTic(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+// 1, 2, 5 in every decade while these are few: gnuplot would label the powers of ten only.
+std::string ticsOf(double low, double high) {
+    const bool few = high / low < 300;
+    std::string tics;
+    for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10)
+        for (const double step : {1.0, 2.0, 5.0})
+            if (few || step < 1.5) tics += (tics.empty() ? "" : ", ") + shownTic(decade * step);
+    return "set ytics (" + tics + ")\n";
+}
+
+}  // namespace
+
+Figure errorFigure(const SequenceResults& results, const Legend& legend) {
+    const std::vector<Line> lines = linesOf(results, legend);
+    if (lines.empty()) return {"", "", "No run has errors that could be drawn."};
+
+    std::vector<double> all;
+    double end = 0;
+    for (const Line& line : lines) {
+        all.insert(all.end(), line.errors.begin(), line.errors.end());
+        end = std::max(end, line.times.back());
+    }
+    // Where a line passes through zero it would reach down for ever.
+    const double low = std::max(percentile(all, 0.01), kMinError);
+    const double high = std::max(percentile(all, 1) * 1.3, 10 * low);
+    std::string script =
+        "unset key\nset logscale y\nset lmargin 9\nset rmargin 2\nset tmargin 1\nset bmargin 3.2\n"
+        "set xlabel 'time [s]'\nset ylabel 'position error [cm]'\nset format y '%g'\n"
+        "set xrange [0:" +
+        exactNumber(std::max(end, 1e-3)) + "]\nset yrange [" + exactNumber(low) + ":" + exactNumber(high) +
+        "]\n";
+    script += ticsOf(low, high);
+    std::string plot;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const std::string block = "line" + std::to_string(i);
+        script += gnuplotData(block, thinned(lines[i]));
+        plot += (i == 0 ? "plot " : ", ") + std::string("$") + block + " using 1:2 with lines " +
+                gnuplotStyle(lines[i].style);
+    }
+    return {drawInline(script + plot + "\n", kWidth, kHeight),
+            results.sequence->name + ": position error over time", ""};
+}
+
+}  // namespace roevo

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include "roevo-compare/report/documents.h"
+#include "roevo-compare/report/html_parts.h"
+#include "roevo-compare/report/html_sequence.h"
+#include "roevo-compare/report/protocol.h"
+#include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/text.h"
+#include "support/program.h"
+
+namespace roevo {
+namespace {
+
+// Of the figures in the summary of several sequences: the rest is with each sequence.
+constexpr std::size_t kSummaryMetrics[] = {0, 1, 2, 5, 6};
+
+std::string count(std::size_t n, const std::string& what) {
+    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
+
+std::string remark(const std::string& text) {
+    return "<p class=\"remark\">" + htmlText(text) + "</p>\n";
+}
+
+std::string header(const std::vector<SequenceResults>& results, const Legend& legend,
+                   const ComparisonInfo& info) {
+    std::string html = "<header>\n<h1>Comparison of RGB-D odometries</h1>\n<p class=\"subtitle\">" +
+                       count(legend.methods.size(), "method") + " on " + count(results.size(), "sequence") +
+                       " · " + htmlText(info.date) + "</p>\n<p class=\"verdict\">" +
+                       htmlText(verdict(results)) + "</p>\n";
+    for (const std::string& sentence : remarks(results)) html += remark(sentence);
+    for (const std::string& note : info.notes) html += remark(note);
+    html += "<nav>";
+    for (std::size_t s = 0; s < results.size(); ++s)
+        html += "<a href=\"#sequence" + std::to_string(s + 1) + "\">" + htmlText(results[s].sequence->name) +
+                "</a> ";
+    for (const char* part : {"Ranking", "Methods", "Protocol", "Repeating"})
+        html += "<a href=\"#" + std::string(part) + "\">" + part + "</a> ";
+    return html + "</nav>\n</header>\n";
+}
+
+std::string summary(const std::vector<SequenceResults>& results, const Legend& legend,
+                    const std::string& folder) {
+    std::string html =
+        "<section>\n<h2>Summary</h2>\n<p>The best figure is bold on blue. A dash is explained beneath the "
+        "table; figures in italics are of runs that tracked less than 90 % of the frames.</p>\n";
+    if (results.size() == 1) return html + allFigures(results[0], "summary", folder) + "</section>\n";
+    for (const std::size_t m : kSummaryMetrics)
+        html +=
+            setTable(figureTable(shownMetrics()[m], results, legend.methods), "summary" + std::to_string(m));
+    return html + "</section>\n";
+}
+
+std::string ranking(const std::vector<SequenceResults>& results, const Legend& legend) {
+    std::string html =
+        "<section id=\"Ranking\">\n<h2>Ranking</h2>\n<p>Number of sequences on which a method is among the "
+        "first 1, 2 and 3, and its mean rank.</p>\n";
+    const auto one = oneRoevo(legend.methods);
+    if (one.size() != legend.methods.size())
+        html +=
+            "<div class=\"block\"><h3>One ROEVO against the others</h3>\n<p>As in the paper’s table: the "
+            "fullest of its modes "
+            "only, so that they do not take places from each other.</p>\n" +
+            setTable(rankingTable(results, one), "rank_one", false) + "</div>\n<h3>All methods</h3>\n";
+    return html + setTable(rankingTable(results, legend.methods), "rank_all", false) + "</section>\n";
+}
+
+std::string methodList(const Legend& legend) {
+    std::string html = "<section id=\"Methods\">\n<h2>Methods</h2>\n<dl class=\"methods\">\n";
+    for (std::size_t m = 0; m < legend.methods.size(); ++m)
+        html += "<dt>" + lineSample(legend.styles[m]) + htmlText(legend.methods[m].label) + "</dt>" +
+                element("dd", legend.methods[m].note) + "\n";
+    return html + "</dl>\n</section>\n";
+}
+
+std::string protocol(const ComparisonInfo& info) {
+    std::string html = "<section id=\"Protocol\">\n<h2>Protocol</h2>\n<ul class=\"lines\">\n";
+    for (const std::string& line : protocolLines()) html += element("li", line) + "\n";
+    for (const std::string& note : info.notes) html += element("li", note) + "\n";
+    return html + "</ul>\n</section>\n";
+}
+
+std::string repeating(const ComparisonInfo& info) {
+    std::string html = "<section id=\"Repeating\">\n<h2>Repeating it</h2>\n" + element("pre", info.command) +
+                       "\n<table>\n<tbody>\n";
+    const auto row = [&](const std::string& name, const std::string& value) {
+        html += "<tr><th scope=\"row\">" + htmlText(name) + "</th><td class=\"text\">" + htmlText(value) +
+                "</td></tr>\n";
+    };
+    row("Date", info.date);
+    row("Machine", info.machine);
+    for (const auto& [name, version] : info.versions) row(name, version);
+    return html + "</tbody></table>\n</section>\n";
+}
+
+}  // namespace
+
+std::string htmlReport(const std::vector<SequenceResults>& results, const ComparisonInfo& info,
+                       const std::string& folder) {
+    const auto methods = tableMethods(results);
+    const Legend legend{methods, lineStyles(methods)};
+    SequenceWriter writer(legend, folder, results.size() > 1);
+    std::string sequences;
+    for (std::size_t s = 0; s < results.size(); ++s) sequences += writer.write(results[s], s + 1);
+    std::string html =
+        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta "
+        "charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+        "<title>Comparison of RGB-D odometries</title>\n<style>" +
+        std::string(pageStyle()) + "</style>\n</head>\n<body>\n" + header(results, legend, info);
+    if (!writer.plotFault().empty()) html += remark("No plots: " + writer.plotFault());
+    return html + "<main>\n" + summary(results, legend, folder) + sequences + ranking(results, legend) +
+           methodList(legend) + protocol(info) + repeating(info) + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace roevo

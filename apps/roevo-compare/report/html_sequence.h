@@ -1,0 +1,36 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "roevo-compare/report/plots.h"
+
+namespace roevo {
+
+/// Table of all figures of a sequence, each method linked with the folder of its run.
+std::string allFigures(const SequenceResults& results, const std::string& id, const std::string& folder);
+
+/// Writes the sections of the sequences of one report: facts, figures, trajectories, errors, times, maps.
+class SequenceWriter {
+  public:
+    /// @param folder      of the report
+    /// @param with_table  of all figures; not when the summary shows it already
+    SequenceWriter(const Legend& legend, std::string folder, bool with_table);
+
+    std::string write(const SequenceResults& results, std::size_t number);
+
+    /// Why there are no plots at all, e.g. that gnuplot is missing; empty when there are.
+    const std::string& plotFault() const { return plot_fault_; }
+
+  private:
+    std::string plots(const SequenceResults& results);
+    std::string maps(const SequenceResults& results) const;
+
+    const Legend& legend_;
+    std::string folder_;
+    bool with_table_;
+    std::vector<std::string> stages_;  // in the order of their colours
+    bool any_plot_ = false;
+    std::string plot_fault_;
+};
+
+}  // namespace roevo

@@ -1,0 +1,49 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "roevo-compare/report/line_style.h"
+#include "roevo-compare/report/results.h"
+
+namespace roevo {
+
+/// A drawing and what has to be said of it. No drawing when there is nothing to draw; then `note` says why.
+struct Figure {
+    std::string svg;   ///< an <svg> element that can stand in a page with others
+    std::string name;  ///< for those who cannot see it
+    std::string note;  ///< in words: what left the picture, what could not be drawn; may be empty
+    std::vector<std::pair<std::string, unsigned>> fills{};  ///< names and 0xrrggbb of areas, for a legend
+};
+
+/// Methods of a report with their looks.
+struct Legend {
+    std::vector<TableMethod> methods;
+    std::vector<LineStyle> styles;
+    /// Position of a method in both lists. @throws std::out_of_range
+    std::size_t indexOf(const std::string& method) const;
+};
+
+/// Trajectories from above and from the side, aligned with the ground truth; without one each from its own
+/// first pose. Up is the axis of the world nearest to the mean of the cameras' up. @return two figures, or
+/// one that says why there is none. @throws std::runtime_error when gnuplot cannot draw
+std::vector<Figure> trajectoryFigures(const SequenceResults& results, const Legend& legend);
+
+/// Distance of the aligned camera centres from the ground truth over time. @throws std::runtime_error
+Figure errorFigure(const SequenceResults& results, const Legend& legend);
+
+/// Mean time per frame of each run as a bar of its stages. @param stages  names in the order of stageRgb();
+/// new ones are added, so that a stage has one colour in all plots. @throws std::runtime_error
+Figure stageFigure(const SequenceResults& results, std::vector<std::string>& stages);
+
+/// Draws with gnuplot, see support/gnuplot.h. @return an <svg> element whose names are its own, as wide as
+/// its place. @throws std::runtime_error in one line
+std::string drawInline(const std::string& script, int width, int height);
+
+/// Poses brought into the ground truth's world.
+std::vector<StampedPose> aligned(const std::vector<StampedPose>& trajectory, const Evaluation& evaluation);
+
+/// At most `limit` of so many, evenly, the last among them.
+std::vector<std::size_t> evenly(std::size_t count, std::size_t limit);
+
+}  // namespace roevo

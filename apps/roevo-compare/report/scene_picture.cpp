@@ -1,0 +1,68 @@
+#include "roevo-compare/report/scene_picture.h"
+
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+#include <thread>
+
+#include "roevo-compare/process.h"
+#include "roevo-compare/report/scratch_folder.h"
+#include "roevo-compare/report/text.h"
+
+namespace roevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kTimeout = 120;     // s; a picture takes about one
+constexpr char kSize[] = "960x640";  // px: sharp in print at half a page's width
+constexpr char kRenderer[] = "roevo-render";
+
+std::string draw(const std::string& renderer, const std::string& scene, const std::string& layer) {
+    const ScratchFolder scratch;
+    const std::string picture = scratch.file("map.png");
+    ChildProcess process(
+        {renderer, "--scene", scene, "--output", picture, "--size", kSize, "--view", "iso", "--layer", layer},
+        -1, kTimeout);
+    while (process.update()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (process.end().timed_out) throw std::runtime_error(std::string(kRenderer) + " did not come to an end");
+    if (process.end().signal != 0)
+        throw std::runtime_error(std::string(kRenderer) + " was ended by signal " +
+                                 std::to_string(process.end().signal));
+    if (!process.end().ok()) throw std::runtime_error(process.lastError());
+    const std::string png = readWhole(picture);
+    if (png.empty()) throw std::runtime_error(std::string(kRenderer) + " drew nothing");
+    return png;
+}
+
+}  // namespace
+
+ScenePicture renderScene(const std::string& scene, const std::string& layer) {
+    try {
+        std::error_code error;
+        const fs::path renderer = fs::read_symlink("/proc/self/exe", error).parent_path() / kRenderer;
+        if (error || !fs::exists(renderer, error))
+            return {"", std::string(kRenderer) + " is not beside this program"};
+        if (!fs::exists(scene, error))
+            return {"", "the scene " + fs::path(scene).filename().string() + " is missing"};
+        return {draw(renderer.string(), scene, layer), ""};
+    } catch (const std::exception& e) {
+        return {"", cleanText(e.what())};
+    }
+}
+
+std::string base64(const std::string& bytes) {
+    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        unsigned group = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k)
+            text += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
+    }
+    return text;
+}
+
+}  // namespace roevo

@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <cmath>
+
+#include "evaluation/error_statistics.h"
+#include "roevo-compare/report/plots.h"
+#include "roevo-compare/report/text.h"
+#include "support/gnuplot.h"
+
+namespace roevo {
+namespace {
+
+constexpr int kWidth = 1120, kBarHeight = 30, kBesideHeight = 66;  // px
+constexpr std::size_t kLongestLabel = 42;                          // characters
+constexpr double kMarginByCharacter = 0.75;                        // gnuplot counts in widths of a wide one
+constexpr double kClipAt = 5;  // times the median bar: what is longer is cut off, so that others stay legible
+constexpr double kLeastRest = 0.02;  // share of the total that is worth a piece of the bar
+
+struct Bar {
+    std::string label;
+    std::vector<std::pair<std::size_t, double>> pieces;  // stage and mean time, ms
+    StageStatistics total;
+    double processor = 0;
+};
+
+std::size_t indexOf(std::vector<std::string>& stages, const std::string& name) {
+    const auto at = std::find(stages.begin(), stages.end(), name);
+    if (at != stages.end()) return static_cast<std::size_t>(at - stages.begin());
+    stages.push_back(name);
+    return stages.size() - 1;
+}
+
+bool isTime(double ms) {
+    return std::isfinite(ms) && ms > 0;
+}
+
+std::vector<Bar> barsOf(const SequenceComparison& sequence, std::vector<std::string>& stages) {
+    std::vector<Bar> bars;
+    for (const MethodRun& run : sequence.runs) {
+        if (!run.ok() || !isTime(run.total.mean)) continue;
+        Bar bar{shortened(cleanText(labelOf(run)), kLongestLabel), {}, run.total, run.cpu_ms_per_frame};
+        double sum = 0;
+        for (const StageStatistics& stage : run.stages)
+            if (isTime(stage.mean)) {
+                bar.pieces.emplace_back(indexOf(stages, stage.name), stage.mean);
+                sum += stage.mean;
+            }
+        // What belongs to no stage, or all of it where a method has none
+        if (run.total.mean - sum > kLeastRest * run.total.mean)
+            bar.pieces.emplace_back(kNoStage, run.total.mean - sum);
+        bars.push_back(std::move(bar));
+    }
+    return bars;
+}
+
+std::string barLabel(const Bar& bar) {
+    return shownNumber(bar.total.mean, bar.total.mean < 10 ? 2 : 1) + " ms";
+}
+
+}  // namespace
+
+Figure stageFigure(const SequenceResults& results, std::vector<std::string>& stages) {
+    const std::vector<Bar> bars = barsOf(*results.sequence, stages);
+    if (bars.empty()) return {"", "", "No run has times that could be drawn."};
+
+    std::vector<double> totals;
+    for (const Bar& bar : bars) totals.push_back(bar.total.mean);
+    const double limit = kClipAt * percentile(totals, 0.5);
+    double longest = 0;
+    for (const Bar& bar : bars)
+        for (const double ms : {bar.total.mean, bar.total.p95, bar.processor})
+            if (isTime(ms) && ms <= limit) longest = std::max(longest, ms);
+    const double end = 1.12 * std::max(longest, percentile(totals, 0));
+
+    std::size_t longest_label = 0;
+    for (const Bar& bar : bars) longest_label = std::max(longest_label, countCharacters(bar.label));
+    std::string script = "unset key\nset lmargin " +
+                         exactNumber(kMarginByCharacter * static_cast<double>(longest_label) + 2) +
+                         "\nset rmargin 3\nset tmargin 0.5\nset bmargin 3.2\nset border 1\n"
+                         "set xlabel 'time per frame [ms]'\nset grid noytics xtics\nset ytics scale 0\n";
+    script += "set xrange [0:" + exactNumber(end) + "]\nset yrange [" +
+              exactNumber(static_cast<double>(bars.size()) - 0.35) + ":-0.6]\nset ytics (";
+    std::vector<std::vector<double>> rectangles, ticks, processor;
+    std::string labels, cut;
+    for (std::size_t i = 0; i < bars.size(); ++i) {
+        const Bar& bar = bars[i];
+        const double y = static_cast<double>(i);
+        script += (i == 0 ? "" : ", ") + gnuplotText(bar.label) + " " + std::to_string(i);
+        double x = 0;
+        for (const auto& [stage, ms] : bar.pieces) {
+            if (x < end)
+                rectangles.push_back(
+                    {x, y, x, std::min(x + ms, end), y - 0.3, y + 0.3, static_cast<double>(stageRgb(stage))});
+            x += ms;
+        }
+        if (isTime(bar.total.p95) && bar.total.p95 <= end)
+            ticks.push_back({bar.total.p95, y - 0.38, 0, 0.76});
+        if (isTime(bar.processor) && bar.processor <= end) processor.push_back({bar.processor, y});
+        const bool clipped = bar.total.mean > end;
+        // The label stands behind all that is drawn of the bar
+        double behind = std::min(bar.total.mean, end);
+        for (const double ms : {bar.total.p95, bar.processor})
+            if (isTime(ms) && ms <= end) behind = std::max(behind, ms);
+        labels += "set label " + gnuplotText(barLabel(bar) + (clipped ? " ▶" : "")) + " at " +
+                  (clipped ? "graph 0.995, first " : "first " + exactNumber(behind) + ",") +
+                  std::to_string(i) + (clipped ? " right front" : " left offset 0.7,0 front") +
+                  " textcolor rgb '#222222'\n";
+        if (clipped) cut += (cut.empty() ? "" : ", ") + bar.label;
+    }
+    script += ")\n" + labels + gnuplotData("bars", rectangles);
+    std::string plot = "plot $bars using 1:2:3:4:5:6:7 with boxxyerror fc rgb variable fs solid 1 noborder";
+    if (!ticks.empty()) {
+        script += gnuplotData("ticks", ticks);
+        plot += ", $ticks using 1:2:3:4 with vectors nohead lc rgb '#222222' lw 1.6 dt 1";
+    }
+    if (!processor.empty()) {
+        script += gnuplotData("processor", processor);
+        plot += ", $processor using 1:2 with points pt 13 ps 0.9 lc rgb '#222222'";
+    }
+    std::vector<std::pair<std::string, unsigned>> fills;
+    const auto used = [&](std::size_t stage) {
+        return std::any_of(bars.begin(), bars.end(), [&](const Bar& bar) {
+            return std::any_of(bar.pieces.begin(), bar.pieces.end(),
+                               [&](const auto& piece) { return piece.first == stage; });
+        });
+    };
+    for (std::size_t k = 0; k < stages.size(); ++k)
+        if (used(k)) fills.emplace_back(stages[k], stageRgb(k));
+    if (used(kNoStage)) fills.emplace_back("in no stage", stageRgb(kNoStage));
+    const int height = kBarHeight * static_cast<int>(bars.size()) + kBesideHeight;
+    return {drawInline(script + plot + "\n", kWidth, height),
+            results.sequence->name + ": time per frame by stage",
+            cut.empty() ? "" : "Bars cut off at the right: " + cut + ".", fills};
+}
+
+}  // namespace roevo

@@ -1,0 +1,20 @@
+#pragma once
+#include <cstddef>
+#include <string>
+
+#include "roevo/options.h"
+
+namespace roevo {
+
+/// One method's run over one recording, in the process that was started for it.
+struct ChildSettings {
+    std::string method, folder, input, sensor_label;
+    std::size_t skip = 0, first = 0;
+    OdometryOptions options;
+};
+
+/// Makes the run and keeps it in the folder; tells on standard output how far it has come.
+/// @throws std::exception with the reason when there is no result
+void runChild(const ChildSettings& settings);
+
+}  // namespace roevo

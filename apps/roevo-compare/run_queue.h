@@ -1,0 +1,55 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "method.h"
+#include "method_run.h"
+#include "process.h"
+
+namespace roevo {
+
+/// One method to be run over one recording.
+struct RunTask {
+    std::string sequence;  ///< name
+    std::string input;     ///< recording, as given
+    MethodInfo method;
+    std::string folder;  ///< where the run is kept
+    std::map<std::string, std::string> settings;
+};
+
+struct QueueOptions {
+    std::vector<int> cores;  ///< a run at a time on each of them; -1: on any
+    double timeout_s = 0;    ///< of a run
+};
+
+/// The command that makes a run in the given folder. While it goes on it writes lines `frames share` to its
+/// standard output; when it fails, its last line on standard error says why.
+using CommandFor = std::function<std::vector<std::string>(const RunTask& task, const std::string& folder)>;
+
+/// Who wants to know what is going on.
+class QueueObserver {
+  public:
+    virtual ~QueueObserver() = default;
+    /// A run has ended, one way or the other, and is kept in its folder.
+    virtual void finished(std::size_t task, const MethodRun& run, double seconds) = 0;
+    /// Now and then. @param running  share (0 to 1) of each task that is under way
+    virtual void going(const std::map<std::size_t, double>& running) = 0;
+};
+
+/// Makes all runs, each in a process of its own. A run that fails (an error, a signal, its time is up) is one
+/// with MethodRun::failure. Whatever was in a task's folder is replaced when its run has ended, and stays
+/// when it has not.
+/// @throws Interrupted after SIGINT or SIGTERM (needs an InterruptGuard), once all processes are ended;
+/// std::runtime_error when a run cannot be kept
+void runTasks(const std::vector<RunTask>& tasks, const CommandFor& command, const QueueOptions& options,
+              QueueObserver& observer);
+
+/// The run in the task's folder, when it is whole and was made with the same settings (and, if its time was
+/// up, with no less of it).
+/// @return whether there is one
+bool findFinishedRun(const RunTask& task, double timeout_s, MethodRun& run);
+
+}  // namespace roevo

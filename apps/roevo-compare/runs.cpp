@@ -1,0 +1,130 @@
+#include "runs.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "machine_info.h"
+#include "report/text.h"
+
+namespace roevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+// All that a run depends on but the method itself.
+std::map<std::string, std::string> runSettings(const CompareSettings& settings, const SequenceInput& sequence,
+                                               const std::string& program) {
+    OdometryOptions options = settings.options;
+    options.mode = OdometryOptions().mode;  // each method has its own
+    std::string values, versions;
+    for (const OptionField& field : optionFields(options))
+        values += field.name() + "=" + field.toText() + "; ";
+    for (const auto& [name, version] : softwareVersions()) versions += name + " " + version + "; ";
+    std::map<std::string, std::string> all{{"recording", recordingState(sequence.input)},
+                                           {"sensor_label", sequence.sensor_label},
+                                           {"skip", std::to_string(sequence.skip)},
+                                           {"first", std::to_string(sequence.first)},
+                                           {"options", values},
+                                           {"program", program},
+                                           {"versions", versions},
+                                           {"processor", processorName()}};
+    for (auto& [key, value] : all) value = cleanText(value);  // as it comes back from the file
+    return all;
+}
+
+std::vector<std::string> childCommand(const RunTask& task, const std::string& folder,
+                                      const SequenceInput& sequence, const std::string& config) {
+    // Not the path of this program: it may be another one by now, had it been built anew
+    std::vector<std::string> command{"/proc/self/exe", "--run-method", task.method.name,
+                                     "--run-folder",   folder,         "--input",
+                                     sequence.input,   "--config",     config};
+    const auto add = [&](const char* option, const std::string& value) {
+        command.insert(command.end(), {option, value});
+    };
+    if (sequence.skip > 0) add("--skip", std::to_string(sequence.skip));
+    if (sequence.first > 0) add("--first", std::to_string(sequence.first));
+    if (!sequence.sensor_label.empty()) add("--sensor-label", sequence.sensor_label);
+    return command;
+}
+
+}  // namespace
+
+Runs::Runs(const CompareSettings& settings, std::vector<SequenceComparison>& sequences)
+    : settings_(settings), sequences_(sequences), place_(sequences.size()) {
+    const std::string program = programState();
+    for (std::size_t s = 0; s < sequences.size(); ++s) {
+        if (!sequences[s].failure.empty()) continue;
+        place_[s].resize(settings.methods.size());
+        const auto run_settings = runSettings(settings, settings.sequences[s], program);
+        for (std::size_t m = 0; m < settings.methods.size(); ++m) plan(s, m, run_settings);
+    }
+}
+
+void Runs::plan(std::size_t s, std::size_t m, const std::map<std::string, std::string>& run_settings) {
+    const MethodInfo& method = settings_.methods[m];
+    MethodRun run;
+    if (!method.unavailable.empty()) {
+        run.method = method.name;
+        run.label = method.label;
+        run.note = method.note;
+        run.input = sequences_[s].input;
+        run.skipped = method.unavailable;
+        place_[s][m] = run;
+        return;
+    }
+    RunTask task{sequences_[s].name, sequences_[s].input, method, folder(s, m), run_settings};
+    if (settings_.resume && findFinishedRun(task, settings_.queue.timeout_s, run)) {
+        place_[s][m] = run;
+        ++reused_;
+        if (!run.failure.empty() && !settings_.quiet)
+            std::fprintf(stderr, "%s, %s: kept as it is, FAILED: %s (remove %s to have it run again)\n",
+                         task.sequence.c_str(), method.name.c_str(), run.failure.c_str(),
+                         task.folder.c_str());
+        return;
+    }
+    tasks_.push_back(std::move(task));
+    where_.emplace_back(s, m);
+}
+
+std::string Runs::folder(std::size_t s, std::size_t m) const {
+    return (fs::path(settings_.output) / "runs" / sequences_[s].name / settings_.methods[m].name).string();
+}
+
+void Runs::make(const std::string& config) {
+    const auto command = [&](const RunTask& task, const std::string& run_folder) {
+        const std::size_t index = static_cast<std::size_t>(&task - tasks_.data());
+        return childCommand(task, run_folder, settings_.sequences[where_[index].first], config);
+    };
+    runTasks(tasks_, command, settings_.queue, *this);
+}
+
+std::size_t Runs::count() const {
+    std::size_t count = 0;
+    for (const auto& runs : place_)
+        for (const auto& run : runs) count += run && run->skipped.empty();
+    return count;
+}
+
+std::size_t Runs::total() const {
+    std::size_t total = 0;
+    for (const auto& runs : place_)
+        for (const auto& run : runs) total += !run || run->skipped.empty();
+    return total;
+}
+
+void Runs::deliver() {
+    for (std::size_t s = 0; s < sequences_.size(); ++s) {
+        std::set<std::string> warnings;
+        for (std::size_t m = 0; m < place_[s].size(); ++m) {
+            if (!place_[s][m]) continue;
+            const MethodRun& run = *place_[s][m];
+            if (!run.warning.empty() && warnings.insert(run.warning).second)
+                sequences_[s].note += (sequences_[s].note.empty() ? "" : "; ") + run.warning;
+            sequences_[s].runs.push_back(run);
+            sequences_[s].run_folders.push_back(folder(s, m));
+        }
+    }
+}
+
+}  // namespace roevo

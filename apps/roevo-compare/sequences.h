@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/comparison.h"
+
+namespace roevo {
+
+/// A recording, or a part of one, that is to become a column of the tables.
+struct SequenceInput {
+    std::string name;                    ///< unique, and fit for the name of a folder
+    std::string input;                   ///< rawlog or dataset folder, as given
+    std::string sensor_label;            ///< of rawlogs; may be empty
+    std::string ground_truth;            ///< file to be taken; empty: what lies beside the recording
+    std::string expected_ground_truth;   ///< what a list says of it, for the message when there is none
+    std::size_t skip = 0, first = 0;     ///< at most `first` frames (0: all) after leaving out `skip`
+    std::optional<double> paper_ate_cm;  ///< the paper's figure for just these frames
+    std::string note;                    ///< what a reader must know of it; may be empty
+};
+
+/// Names for recordings: the rawlog's stem or the folder's name; where two have the same, the folder above
+/// goes before it, and then a number behind it.
+std::vector<std::string> sequenceNames(const std::vector<std::string>& inputs);
+
+/// Opens the recording and reads its ground truth and its first good frame, whose depth scale is checked.
+/// @return with `failure` in words when the recording cannot be used, and without runs
+/// @throws UsageError for options that do not suit the recording; std::runtime_error for a ground truth that
+/// was named and cannot be read
+SequenceComparison openSequence(const SequenceInput& sequence);
+
+/// Changes when the recording's files on disk change: its path, and size and time of the rawlog (and time of
+/// its folder of images), or of the files of the folder's top level.
+std::string recordingState(const std::string& input);
+
+}  // namespace roevo

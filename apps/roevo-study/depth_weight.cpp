@@ -1,0 +1,150 @@
+// The depth weight of Eq. (20): its curves under the paper's parameters and what each does to the
+// trajectory's error.
+#include <cmath>
+#include <limits>
+
+#include "roevo/tracking/edge_points.h"
+#include "study.h"
+#include "support/gnuplot.h"
+#include "support/progress.h"
+
+namespace roevo {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+struct WeightSet {
+    std::string name;
+    double k = 0, min_depth = 0, max_depth = 0;  // 1/m, m, m
+};
+
+// The paper's parameters (paragraph of Eq. (20)), those in force, and none: with k = 0 all weigh the same.
+std::vector<WeightSet> weightSets(const SensorOptions& sensor) {
+    return {{"none", 0, sensor.min_depth, sensor.max_depth},
+            {"configured", sensor.depth_weight_k, sensor.min_depth, sensor.max_depth},
+            {"TUM RGB-D", 0.75, 0.2, 4.5},
+            {"ICL-NUIM", 0.5, 0.1, 6},
+            {"ETH3D", 0.5, 0.15, 5}};
+}
+
+std::string label(const WeightSet& set) {
+    if (set.k == 0) return "none (k = 0)";
+    return set.name + format(" (%g, %g, %g)", set.k, set.min_depth, set.max_depth);
+}
+
+OdometryOptions with(OdometryOptions options, const WeightSet& set) {
+    options.sensor.depth_weight_k = set.k;
+    options.sensor.min_depth = set.min_depth;
+    options.sensor.max_depth = set.max_depth;
+    options.mapping.semi_dense_points = 0;  // costs time and moves no pose
+    return options;
+}
+
+void drawCurves(StudyReport& report, const std::string& folder, const std::vector<WeightSet>& sets) {
+    constexpr double kFarthest = 8, kStep = 0.1;  // m
+    std::vector<std::string> head{"depth_m"};
+    for (const WeightSet& set : sets) head.push_back(set.name);
+    CsvTable table(head);
+    std::vector<std::vector<double>> rows;
+    for (int i = 0; i <= static_cast<int>(std::lround(kFarthest / kStep)); ++i) {
+        const double depth = i * kStep;
+        std::vector<double> row{depth};
+        std::vector<std::string> fields{CsvTable::number(depth)};
+        for (const WeightSet& set : sets) {
+            row.push_back(depthWeight(depth, with(OdometryOptions(), set).sensor));
+            fields.push_back(CsvTable::number(row.back()));
+        }
+        rows.push_back(row);
+        table.add(fields);
+    }
+    addTable(report, folder, "depth_weight_curves.csv", table);
+    std::string script =
+        gnuplotData("curves", rows) +
+        "set title 'Weight of an edge point by its depth, Eq. (20)'\n"
+        "set xlabel 'depth d (m)'\nset ylabel 'w_s(d)'\nset xrange [0:8]\nset yrange [0:1]\n"
+        "set key outside right center Left reverse title 'k (1/m), d_{min} (m), d_{max} (m)'\nplot ";
+    for (std::size_t i = 0; i < sets.size(); ++i)
+        script += format("%s$curves using 1:%zu with lines lt %zu lw 2.5 %s title ", i > 0 ? ", " : "", i + 2,
+                         i == 0 ? std::size_t{7} : i, i == 0 ? "dt 2" : "dt 1") +
+                  gnuplotText(label(sets[i]));
+    addPlot(report, folder, "depth_weight_curves.svg", script, 860, 400);
+}
+
+}  // namespace
+
+StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::string& folder) {
+    StudyReport report;
+    const std::vector<WeightSet> sets = weightSets(inputs.front().options.sensor);
+    drawCurves(report, folder, sets);
+
+    CsvTable table({"recording", "mode", "weight", "k", "d_min_m", "d_max_m", "ate_m", "ate_ratio",
+                    "rpe_translation_m_per_s", "rpe_rotation_deg_per_s", "frames", "tracked", "note"});
+    std::vector<std::vector<double>> bars;
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> ratios(sets.size());
+    Progress progress("depth-weight", inputs.size() * sets.size());
+    std::size_t done = 0;
+    for (const StudyInput& input : inputs) {
+        std::optional<double> unweighted;  // ATE, m
+        std::vector<double> bar{static_cast<double>(bars.size())};
+        std::string fault;
+        for (std::size_t s = 0; s < sets.size(); ++s) {
+            const StudyRun run = trackRecording(input, with(input.options, sets[s]));
+            std::optional<double> ate, rpe_translation, rpe_rotation, ratio;
+            if (run.evaluation) {
+                ate = run.evaluation->ate.translation.rmse;
+                if (s == 0) unweighted = ate;
+                if (unweighted && *unweighted > 0) ratio = *ate / *unweighted;
+                if (run.evaluation->rpe_second.translation.count > 0) {
+                    rpe_translation = run.evaluation->rpe_second.translation.rmse;
+                    rpe_rotation = run.evaluation->rpe_second.rotation.rmse;
+                }
+            }
+            if (!run.fault.empty()) fault = run.fault;
+            if (ratio) ratios[s].push_back(*ratio);
+            bar.push_back(ratio.value_or(kMissing));
+            table.add({input.name, toString(input.options.mode), sets[s].name, CsvTable::number(sets[s].k),
+                       CsvTable::number(sets[s].min_depth), CsvTable::number(sets[s].max_depth),
+                       CsvTable::number(ate), CsvTable::number(ratio), CsvTable::number(rpe_translation),
+                       CsvTable::number(rpe_rotation), std::to_string(run.frames),
+                       std::to_string(run.tracked), run.fault});
+            progress.update(++done);
+        }
+        if (unweighted) {
+            bars.push_back(std::move(bar));
+            names.push_back(input.name);
+        } else {
+            report.notes.push_back(input.name + ": errors are not known: " + fault);
+        }
+    }
+    progress.finish();
+    addTable(report, folder, "depth_weight.csv", table);
+    if (bars.empty()) {
+        report.summary = "no recording with ground truth: curves only";
+        return report;
+    }
+    std::string tics;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        tics += (i > 0 ? ", " : "") + gnuplotText(names[i]) + ' ' + std::to_string(i);
+    std::string script =
+        gnuplotData("bars", bars) +
+        "set title 'Error of the trajectory under the depth weight'\n"
+        "set ylabel 'ATE / ATE without weight'\nset yrange [0:*]\nset xtics rotate by -15 (" +
+        tics + ")\n" + format("set xrange [-0.6:%g]\n", static_cast<double>(names.size()) - 0.4) +
+        "set key outside right center Left reverse title 'k (1/m), d_{min} (m), d_{max} (m)'\n"
+        "set boxwidth 0.18\nset bmargin 6\nset grid noxtics\nplot 1 with lines lt 7 dt 2 lw 1.5 title 'none "
+        "(k = 0)'";
+    for (std::size_t s = 1; s < sets.size(); ++s)
+        script += format(", $bars using ($1%+.2f):%zu with boxes lt %zu title ",
+                         0.2 * (static_cast<double>(s) - 2.5), s + 2, s) +
+                  gnuplotText(label(sets[s]));
+    addPlot(report, folder, "depth_weight.svg", script, 1000, 440);
+
+    report.summary = counted(names.size(), "recording") + ", ATE relative to no weight (median):";
+    for (std::size_t s = 1; s < sets.size(); ++s)
+        report.summary +=
+            format("%s %s %.2f", s > 1 ? "," : "", sets[s].name.c_str(), median(ratios[s]).value_or(0));
+    return report;
+}
+
+}  // namespace roevo

@@ -1,0 +1,110 @@
+#include "inputs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+namespace roevo {
+namespace {
+
+// Ends after so many frames.
+class FirstFrames : public FrameSource {
+  public:
+    FirstFrames(std::unique_ptr<FrameSource> source, std::size_t count)
+        : source_(std::move(source)), left_(count), count_(count) {}
+
+    bool next(SourceFrame& frame) override {
+        if (left_ == 0 || !source_->next(frame)) return false;
+        --left_;
+        return true;
+    }
+    bool skip() override {
+        if (left_ == 0 || !source_->skip()) return false;
+        --left_;
+        return true;
+    }
+    const PinholeCamera& camera() const override { return source_->camera(); }
+    std::string kind() const override { return source_->kind(); }
+    std::string cameraSource() const override { return source_->cameraSource(); }
+    GroundTruth groundTruth() const override { return source_->groundTruth(); }
+    std::vector<std::string> notes() const override { return source_->notes(); }
+    std::size_t size() const override { return std::min(source_->size(), count_); }
+    std::string warning() const override { return source_->warning(); }
+
+  private:
+    std::unique_ptr<FrameSource> source_;
+    std::size_t left_, count_;
+};
+
+std::unique_ptr<FrameSource> openFrames(const std::string& path, const InputSettings& settings) {
+    auto source = openSource(path, settings.sensor_label);
+    skipFrames(*source, settings.skip, path);
+    if (settings.first == 0) return source;
+    return std::make_unique<FirstFrames>(std::move(source), settings.first);
+}
+
+std::string shortName(const std::string& path, const std::vector<StudyInput>& others) {
+    namespace fs = std::filesystem;
+    fs::path whole = fs::absolute(path).lexically_normal();
+    if (!whole.has_filename()) whole = whole.parent_path();  // ends in a slash
+    const std::string stem = fs::is_directory(path) ? whole.filename().string() : whole.stem().string();
+    std::string name = stem;
+    const auto taken = [&] {
+        return std::any_of(others.begin(), others.end(),
+                           [&](const auto& other) { return other.name == name; });
+    };
+    for (int number = 2; taken(); ++number) name = stem + "-" + std::to_string(number);
+    return name;
+}
+
+// Reads so far that it is known to be worth a study.
+void checkFrames(FrameSource& source, const std::string& path) {
+    bool good = false;
+    SourceFrame frame;
+    for (std::size_t count = 0; count < kFewestFrames || !good; ++count) {
+        if (!source.next(frame))
+            throw std::runtime_error(count < kFewestFrames
+                                         ? path + ": only " + counted(count, "frame") +
+                                               "; a study needs at least " + std::to_string(kFewestFrames)
+                                         : path + ": no frame can be read; the last one: " + frame.fault);
+        if (!frame.fault.empty() || good) continue;
+        good = true;
+        if (const std::string fault = depthScaleFault(frame.frame); !fault.empty())
+            throw std::runtime_error(path + ": " + fault);
+    }
+}
+
+void setGroundTruth(StudyInput& input, const InputSettings& settings, const FrameSource& source) {
+    if (settings.ignore_ground_truth) {
+        input.ground_truth_note = "no ground truth, as asked";
+        return;
+    }
+    GroundTruth truth = groundTruthFor(settings.ground_truth, source);
+    input.ground_truth = std::move(truth.poses);
+    if (!input.ground_truth.empty())
+        input.ground_truth_note = "ground truth: " + truth.file;
+    else
+        input.ground_truth_note = truth.note.empty() ? "no ground truth" : "no ground truth: " + truth.note;
+}
+
+}  // namespace
+
+std::vector<StudyInput> openInputs(const InputSettings& settings) {
+    std::vector<StudyInput> inputs;
+    for (const std::string& path : settings.paths) {
+        const auto source = openFrames(path, settings);
+        StudyInput input;
+        input.name = shortName(path, inputs);
+        input.path = path;
+        input.camera = source->camera();
+        input.options = settings.options;
+        setGroundTruth(input, settings, *source);
+        checkFrames(*source, path);
+        input.open = [path, settings] { return prefetch(openFrames(path, settings)); };
+        inputs.push_back(std::move(input));
+    }
+    return inputs;
+}
+
+}  // namespace roevo

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "study.h"
+
+namespace roevo {
+
+/// What the command line says of the recordings.
+struct InputSettings {
+    std::vector<std::string> paths;    ///< rawlogs or dataset folders
+    std::string ground_truth;          ///< for a single recording; empty: what is found beside each
+    bool ignore_ground_truth = false;  ///< even where some is beside a recording
+    std::string sensor_label;          ///< rawlogs with several cameras
+    std::size_t first = 0, skip = 0;   ///< first 0: all frames
+    OdometryOptions options;
+};
+
+/// Fewer frames show no motion to measure.
+inline constexpr std::size_t kFewestFrames = 3;
+
+/// Opens each recording once to learn its camera and ground truth and that there is something to study.
+/// @throws std::runtime_error in one line: not readable, fewer than kFewestFrames frames, depth of no
+/// plausible
+///         scale, a ground truth that was asked for and is bad
+std::vector<StudyInput> openInputs(const InputSettings& settings);
+
+}  // namespace roevo

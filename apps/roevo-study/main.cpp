@@ -1,0 +1,135 @@
+// roevo-study: the paper's experiments on any recording; tables and plots out.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <opencv2/core/utility.hpp>
+
+#include "index.h"
+#include "inputs.h"
+#include "recording/option_arguments.h"
+#include "study.h"
+#include "support/output_folder.h"
+#include "support/program.h"
+
+namespace roevo {
+namespace {
+
+constexpr char kName[] = "roevo-study";
+
+constexpr char kFooter[] =
+    "Examples:\n"
+    "  roevo-study --experiment canny --input office.rawlog --output out\n"
+    "  roevo-study --experiment all --input rgbd_dataset_freiburg1_desk rgbd_dataset_freiburg2_desk --output "
+    "out --first 300\n"
+    "Experiments:\n"
+    "  canny          error of the trajectory under Canny thresholds from 0.25 to 4 times Otsu's\n"
+    "  depth-weight   curves of the depth weight w_s(d) and their effect on the error\n"
+    "  ablation       coarse tracking with other points: as DSO selects them, raw Canny, organized edges\n"
+    "  repeatability  share of features found again under growing change of viewpoint\n"
+    "  efficiency     time per stage, beside registration by a distance field\n"
+    "Each writes CSV tables and SVG plots into the output folder; study.md there lists them.";
+
+struct Study {
+    const char *name, *title;
+    Experiment run;
+};
+constexpr Study kStudies[] = {
+    {"canny", "Canny threshold", studyCannyThreshold},
+    {"depth-weight", "Depth weight", studyDepthWeight},
+    {"ablation", "Ablation of coarse tracking", studyAblation},
+    {"repeatability", "Repeatability", studyRepeatability},
+    {"efficiency", "Efficiency", studyEfficiency},
+};
+
+std::vector<Study> chosenStudies(const std::vector<std::string>& names) {
+    std::vector<Study> chosen;
+    std::string known;
+    for (const Study& study : kStudies) known += std::string(study.name) + ", ";
+    for (const std::string& name : names) {
+        const auto found = std::find_if(std::begin(kStudies), std::end(kStudies),
+                                        [&](const Study& study) { return name == study.name; });
+        if (found == std::end(kStudies) && name != "all")
+            throw UsageError("--experiment: there is no '" + name + "'; known are " + known + "all");
+    }
+    for (const Study& study : kStudies)
+        if (std::any_of(names.begin(), names.end(),
+                        [&](const std::string& name) { return name == study.name || name == "all"; }))
+            chosen.push_back(study);
+    return chosen;
+}
+
+// Runs all of them: one that fails leaves the others be.
+int runStudies(const std::vector<Study>& studies, const std::vector<StudyInput>& inputs,
+               const std::string& folder, StudyIndex index) {
+    std::string plot_fault, failure;
+    for (const Study& study : studies) {
+        IndexEntry entry;
+        entry.title = study.title;
+        try {
+            entry.report = study.run(inputs, folder);
+            std::printf("%-14s %s\n", study.name, entry.report.summary.c_str());
+            for (const std::string& note : entry.report.notes) std::printf("%-14s %s\n", "", note.c_str());
+            if (plot_fault.empty()) plot_fault = entry.report.plot_fault;
+        } catch (const std::exception& e) {
+            entry.failure = firstLine(e.what());
+            std::printf("%-14s failed: %s\n", study.name, entry.failure.c_str());
+            if (failure.empty()) failure = std::string(study.name) + ": " + entry.failure;
+        }
+        std::fflush(stdout);
+        index.entries.push_back(std::move(entry));
+        writeIndex(folder, inputs, index);
+    }
+    if (!failure.empty()) throw std::runtime_error(failure);
+    if (!plot_fault.empty()) throw std::runtime_error(plot_fault + "; the tables are in " + folder);
+    return 0;
+}
+
+int run(int argc, char** argv) {
+    InputSettings settings;
+    std::string output, config_file, mode;
+    std::vector<std::string> experiments, sets;
+    CLI::App app("The paper's experiments on any recording: tables (CSV) and plots (SVG).", kName);
+    app.add_option("--experiment", experiments,
+                   "canny, depth-weight, ablation, repeatability, efficiency or all; one or more")
+        ->required();
+    app.add_option("--input", settings.paths, "Recordings: .rawlog files or dataset folders")->required();
+    app.add_option("--output", output, "Folder for the results; created when missing")->required();
+    app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");
+    app.add_option("--set", sets, "section.key=value: one option on top of the config; may be repeated")
+        ->allow_extra_args(false);
+    app.add_option("--mode", mode,
+                   "Of the odometry, where the experiment does not choose it: ct, tr or ba (default)");
+    app.add_option("--ground-truth", settings.ground_truth,
+                   "TUM trajectory to compare with, for a single input (default: what is found beside each)");
+    app.add_flag(
+        "--no-ground-truth", settings.ignore_ground_truth,
+        "Do without, even where some is beside a recording: repeatability is then judged by the odometry's "
+        "own poses");
+    app.add_option("--first", settings.first, "Use at most so many frames of each recording");
+    app.add_option("--skip", settings.skip, "Leave out so many frames at the start of each");
+    app.add_option("--sensor-label", settings.sensor_label, "Rawlogs with several cameras: which one");
+    app.footer(kFooter);
+    if (auto code = parseCommandLine(app, argc, argv)) return *code;
+
+    const std::vector<Study> studies = chosenStudies(experiments);
+    if (!settings.ground_truth.empty() && settings.paths.size() > 1)
+        throw UsageError("--ground-truth is for a single --input, and there are " +
+                         std::to_string(settings.paths.size()));
+    if (!settings.ground_truth.empty() && settings.ignore_ground_truth)
+        throw UsageError("--ground-truth and --no-ground-truth exclude each other");
+    if (settings.first > 0 && settings.first < kFewestFrames)
+        throw UsageError("--first " + std::to_string(settings.first) + ": a study needs at least " +
+                         std::to_string(kFewestFrames) + " frames");
+    settings.options = collectOptions(config_file, sets, mode);
+    cv::setNumThreads(1);  // times are of one core
+    const std::vector<StudyInput> inputs = openInputs(settings);
+    prepareOutputFolder(output);
+    return runStudies(studies, inputs, output, {commandLine(argc, argv), {}});
+}
+
+}  // namespace
+}  // namespace roevo
+
+int main(int argc, char** argv) {
+    return roevo::runProgram(roevo::kName, [&] { return roevo::run(argc, argv); });
+}

@@ -1,0 +1,93 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/evaluate.h"
+#include "recording/frame_source.h"
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/options.h"
+#include "roevo/types.h"
+
+namespace roevo {
+
+/// One recording under study. Frames are streamed: experiments open it anew for every pass.
+struct StudyInput {
+    std::string name;  ///< short and unique among the inputs: a column of the tables, a legend's entry
+    std::string path;  ///< as given on the command line
+    PinholeCamera camera;
+    /// A fresh source of the frames under study (--skip left out, at most --first), decoding ahead.
+    std::function<std::unique_ptr<FrameSource>()> open;
+    std::vector<StampedPose> ground_truth;  ///< T_world_camera in time order; empty: none
+    std::string ground_truth_note;          ///< where it comes from, or why there is none
+    OdometryOptions options;                ///< from --config and --set
+};
+
+/// What an experiment has to say once its tables and plots are in the folder.
+struct StudyReport {
+    std::string summary;             ///< one line for the terminal, with the figures that matter
+    std::vector<std::string> files;  ///< names in the folder: CSV and SVG, in the order of the index
+    std::vector<std::string> notes;  ///< what a reader must know: no ground truth, frames left out
+    std::string plot_fault;          ///< why a plot is missing; empty when all were drawn
+};
+
+/// Runs over the inputs and writes its CSV and SVG files into the folder, which exists.
+/// @throws std::runtime_error in one line when it cannot do anything
+using Experiment = StudyReport (*)(const std::vector<StudyInput>& inputs, const std::string& folder);
+
+StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std::string& folder);
+StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::string& folder);
+StudyReport studyAblation(const std::vector<StudyInput>& inputs, const std::string& folder);
+StudyReport studyRepeatability(const std::vector<StudyInput>& inputs, const std::string& folder);
+StudyReport studyEfficiency(const std::vector<StudyInput>& inputs, const std::string& folder);
+
+/// One run of the odometry over an input.
+struct StudyRun {
+    std::vector<StampedPose> trajectory;
+    std::vector<double> keyframe_times;    ///< s, ascending
+    std::size_t frames = 0, tracked = 0;   ///< tracked: measured, or the first; the others are not
+    double points = 0;                     ///< on organized edges, mean over the frames
+    std::optional<Evaluation> evaluation;  ///< none without ground truth, see `fault`
+    std::string fault;                     ///< why there is no evaluation, in words
+};
+StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options);
+
+/// Rows of a CSV file, held until all are there.
+class CsvTable {
+  public:
+    explicit CsvTable(std::vector<std::string> head);
+
+    /// Adds a row; text with commas or quotes is quoted. @throws std::logic_error for a wrong number of
+    /// fields
+    void add(const std::vector<std::string>& fields);
+    /// @throws std::runtime_error
+    void write(const std::string& path) const;
+
+    /// A number with `digits` significant digits; empty for none and for what is not finite.
+    static std::string number(std::optional<double> value, int digits = 6);
+
+  private:
+    std::size_t columns_;
+    std::string text_;
+};
+
+/// Draws `folder`/`name` with gnuplot and lists it in the report; what hinders it goes into plot_fault,
+/// because the tables are worth having without it.
+void addPlot(StudyReport& report, const std::string& folder, const std::string& name,
+             const std::string& script, int width = 860, int height = 500);
+
+/// Writes the table to `folder`/`name` and lists it in the report. @throws std::runtime_error
+void addTable(StudyReport& report, const std::string& folder, const std::string& name, const CsvTable& table);
+
+/// Middle value, the mean of the two in the middle where their number is even; none of an empty list.
+std::optional<double> median(std::vector<double> values);
+
+/// "1 frame", "2 frames". @param noun  in the singular
+std::string counted(std::size_t count, const std::string& noun);
+
+/// As printf.
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+}  // namespace roevo

@@ -1,0 +1,21 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace roevo {
+
+/// Draws one figure with gnuplot: a common look (typeface, grid, colours that the colour-blind can tell apart
+/// as line types 1 to 8), then `script`. The file appears when whole.
+/// @param path    of the SVG
+/// @param script  gnuplot commands without `set terminal` and `set output`, `plot` or `multiplot` among them
+/// @param width, height  px
+/// @throws std::runtime_error in one line when gnuplot is missing, complains or draws nothing
+void drawSvg(const std::string& path, const std::string& script, int width = 860, int height = 480);
+
+/// A text as gnuplot writes it, in quotes, every character as it is (no sub- and superscripts).
+std::string gnuplotText(const std::string& text);
+
+/// A data block `$name` for a script. Numbers that are not finite leave a gap in a line.
+std::string gnuplotData(const std::string& name, const std::vector<std::vector<double>>& rows);
+
+}  // namespace roevo

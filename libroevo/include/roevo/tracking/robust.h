@@ -1,0 +1,27 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace roevo {
+
+inline constexpr float kStudentNu =
+    5;  ///< degrees of freedom of the t-distribution that residuals of edges follow
+
+/// Spread (one sigma) of residuals in pixels from the median of their magnitudes, within what edges in real
+/// images can have: sub-pixel edges never agree better than 0.1 px. Not to be called without residuals.
+/// @param magnitudes  are put in another order
+inline double robustScale(std::vector<float>& magnitudes) {
+    constexpr double kMinScale = 0.1, kMaxScale = 2.0;  // px
+    const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
+    std::nth_element(magnitudes.begin(), middle, magnitudes.end());
+    return std::clamp(1.4826 * static_cast<double>(*middle), kMinScale, kMaxScale);
+}
+
+/// `weight` times what iteratively reweighted least squares gives a residual of the t-distribution.
+/// @param squared  residual over its spread, squared
+inline float studentWeight(float weight, float squared) {
+    return weight * (kStudentNu + 1) / (kStudentNu + squared);
+}
+
+}  // namespace roevo

@@ -1,0 +1,309 @@
+// Lists of sequences, names of recordings, and roevo-compare --benchmark.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "roevo-compare/benchmark_list.h"
+#include "roevo-compare/machine_info.h"
+#include "roevo-compare/method_run.h"
+#include "support/run_program.h"
+#include "support/tum_folder.h"
+
+namespace roevo {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::expectError;
+using test::readFile;
+using test::TemporaryFolder;
+using test::writeFile;
+
+constexpr char kName[] = "roevo-compare";
+
+json entry(const std::string& name, const json& folder) {
+    return {{"name", name},
+            {"folder", folder},
+            {"ground_truth", "groundtruth.txt"},
+            {"truncation", nullptr},
+            {"paper", {{"ate_cm", {{"ROEVO-TR+BA", 1.5}, {"ROEVO-CT", 9.5}}}}}};
+}
+
+TEST(SequenceNames, AreUniqueAndFitForFolders) {
+    const TemporaryFolder folder;
+    for (const char* name : {"a/clip", "b/clip", "c.v2"}) fs::create_directories(folder / name);
+    EXPECT_EQ(sequenceNames({folder / "a/clip", folder / "b/clip/", folder / "c.v2", folder / "d.x.rawlog"}),
+              (std::vector<std::string>{"a_clip", "b_clip", "c.v2", "d.x"}));
+    EXPECT_EQ(sequenceNames({folder / "a/clip", folder / "a/clip"}),
+              (std::vector<std::string>{"a_clip", "a_clip_2"}));
+    EXPECT_EQ(sequenceNames({folder / "a/../b/clip/."}), std::vector<std::string>{"clip"});
+    for (const std::string& name : sequenceNames({"/", ".", ".."})) {
+        EXPECT_NE(name, "");
+        EXPECT_NE(name[0], '.');
+        EXPECT_EQ(name.find('/'), std::string::npos);
+    }
+}
+
+TEST(RecordingState, ChangesWithTheFilesOnly) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "clip");
+    writeFile(folder / "clip/rgb.txt", "1 a");
+    writeFile(folder / "clip/depth.txt", "1 b");
+    writeFile(folder / "other.rawlog", "abc");
+    const std::string before = recordingState(folder / "clip"),
+                      file = recordingState(folder / "other.rawlog");
+    EXPECT_EQ(recordingState(folder / "clip/"), before);
+    EXPECT_EQ(recordingState(folder / "other.rawlog"), file);
+    EXPECT_NE(before, file);
+    writeFile(folder / "clip/rgb.txt", "1 a\n2 c");
+    EXPECT_NE(recordingState(folder / "clip"), before);
+    writeFile(folder / "other.rawlog", "abcd");
+    EXPECT_NE(recordingState(folder / "other.rawlog"), file);
+    const std::string longer = recordingState(folder / "other.rawlog");
+    fs::last_write_time(folder / "other.rawlog",
+                        fs::last_write_time(folder / "other.rawlog") + std::chrono::seconds(1));
+    EXPECT_NE(recordingState(folder / "other.rawlog"), longer);
+}
+
+TEST(MachineInfo, CommandLinesCanBePastedIntoAShell) {
+    EXPECT_EQ(shellCommand({"bin/roevo-compare", "--first", "5", "--set", "edges.min_length=3"}),
+              "bin/roevo-compare --first 5 --set edges.min_length=3");
+    const std::vector<std::string> words{"it's", "a b", "$HOME", "", "*", "~", "#x", "ä\n;"};
+    const std::string command = shellCommand(words);
+    const auto result = test::runProgram("/bin/sh", {"-c", "printf '<%s>' " + command});
+    std::string expected;
+    for (const std::string& word : words) expected += "<" + word + ">";
+    EXPECT_EQ(result.out, expected) << command;
+}
+
+TEST(MachineInfo, NamesTheMachineAndTheLibraries) {
+    const std::string machine = machineText();
+    EXPECT_EQ(machine.find('\n'), std::string::npos);
+    EXPECT_NE(machine.find("core"), std::string::npos) << machine;
+    EXPECT_NE(machine.find(" GB"), std::string::npos) << machine;
+    std::vector<std::string> names;
+    for (const auto& [name, version] : softwareVersions()) {
+        names.push_back(name);
+        EXPECT_NE(version.find('.'), std::string::npos) << name << ' ' << version;
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"ROEVO", "MRPT", "OpenCV", "Eigen", "compiler"}));
+    EXPECT_EQ(utcNow().size(), std::string("2026-01-31T12:00:00Z").size());
+    EXPECT_EQ(programState(), programState());
+}
+
+class List : public testing::Test {
+  protected:
+    List() { fs::create_directory(data()); }
+    std::string data() const { return folder / "data"; }
+    std::string file() const { return folder / "list.json"; }
+
+    BenchmarkList read(const json& sequences) const {
+        writeFile(file(), json{{"sequences", sequences}}.dump());
+        return readBenchmarkList(file(), data());
+    }
+    std::string fault(const std::string& text) const {
+        writeFile(file(), text);
+        try {
+            readBenchmarkList(file(), data());
+        } catch (const std::runtime_error& e) {
+            EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+            return e.what();
+        }
+        return "it was read";
+    }
+    void expectFault(const std::string& text, const std::vector<std::string>& words) const {
+        const std::string what = fault(text);
+        EXPECT_NE(what.find(file()), std::string::npos) << what;
+        for (const std::string& word : words)
+            EXPECT_NE(what.find(word), std::string::npos) << word << " in: " << what;
+    }
+    void expectEntryFault(const json& sequence, const std::vector<std::string>& words) const {
+        expectFault(json{{"sequences", json::array({sequence})}}.dump(), words);
+    }
+
+    TemporaryFolder folder;
+};
+
+TEST_F(List, TheProjectsOwnIsUnderstood) {
+    const auto list =
+        readBenchmarkList(std::string(ROEVO_SOURCE_DIR) + "/datasets_readme/sequences.json", data());
+    EXPECT_EQ(list.sequences.size(), 0u);
+    ASSERT_EQ(list.missing.size(), 24u);
+    EXPECT_EQ(list.missing[4].rfind("fr1_desk: ", 0), 0u) << list.missing[4];
+    EXPECT_NE(list.missing[4].find("rgbd_dataset_freiburg1_desk"), std::string::npos) << list.missing[4];
+}
+
+TEST_F(List, FindsFoldersAndRawlogs) {
+    fs::create_directory(data() + "/folder_a");
+    writeFile(data() + "/folder_b.rawlog", "");
+    writeFile(data() + "/c.rawlog", "");
+    fs::create_directory(data() + "/d");
+    const auto list = read({entry("a", "folder_a"), entry("b", "folder_b"), entry("c", "folder_c"),
+                            entry("d", nullptr), entry("e", "folder_e"), entry("f", nullptr)});
+    ASSERT_EQ(list.sequences.size(), 4u);
+    EXPECT_EQ(list.sequences[0].name, "a");
+    EXPECT_EQ(list.sequences[0].input, data() + "/folder_a");
+    EXPECT_EQ(list.sequences[1].input, data() + "/folder_b.rawlog");
+    EXPECT_EQ(list.sequences[2].input, data() + "/c.rawlog");
+    EXPECT_EQ(list.sequences[3].input, data() + "/d");
+    for (const SequenceInput& sequence : list.sequences) {
+        EXPECT_EQ(sequence.paper_ate_cm, 1.5);
+        EXPECT_EQ(sequence.skip, 0u);
+        EXPECT_EQ(sequence.first, 0u);
+        EXPECT_EQ(sequence.note, "");
+    }
+    ASSERT_EQ(list.missing.size(), 2u);
+    EXPECT_EQ(list.missing[0].rfind("e: ", 0), 0u);
+    EXPECT_NE(list.missing[0].find("folder_e"), std::string::npos);
+}
+
+TEST_F(List, FramesThatThePaperLeavesOut) {
+    for (const char* name : {"one", "two", "unknown"}) fs::create_directory(data() + "/" + name);
+    json one = entry("one", "one"), two = entry("two", "two"), unknown = entry("unknown", "unknown");
+    one["truncation"] = {{"frames", {10, 25}}, {"note", "the rest is a wall"}};
+    two["truncation"] = {{"frames", {{0, 5}, {8, 20}}}};
+    unknown["truncation"] = {{"frames", nullptr}, {"note", "nobody knows which"}};
+    const auto list = read({one, two, unknown});
+    ASSERT_EQ(list.sequences.size(), 4u);
+    EXPECT_EQ(list.sequences[0].skip, 10u);
+    EXPECT_EQ(list.sequences[0].first, 15u);
+    EXPECT_EQ(list.sequences[0].note, "the rest is a wall");
+    EXPECT_EQ(list.sequences[0].paper_ate_cm, 1.5) << "it is of these frames";
+    EXPECT_EQ(list.sequences[1].name, "two_0_5");
+    EXPECT_EQ(list.sequences[1].first, 5u);
+    EXPECT_EQ(list.sequences[2].name, "two_8_20");
+    EXPECT_EQ(list.sequences[2].skip, 8u);
+    EXPECT_EQ(list.sequences[2].first, 12u);
+    EXPECT_FALSE(list.sequences[2].paper_ate_cm) << "it is of both segments together";
+    EXPECT_EQ(list.sequences[3].first, 0u);
+    EXPECT_NE(list.sequences[3].note.find("nobody knows which"), std::string::npos);
+    EXPECT_FALSE(list.sequences[3].paper_ate_cm) << "it is of other frames";
+}
+
+TEST_F(List, WhatIsWrongWithItIsSaid) {
+    expectFault("{\"sequences\": [", {"JSON"});
+    expectFault("", {"JSON"});
+    expectFault("[]", {"no object"});
+    expectFault("{}", {"'sequences' is missing"});
+    expectFault("{\"sequences\": []}", {"empty"});
+    expectFault("{\"sequences\": 3}", {"'sequences'"});
+    expectFault("{\"sequences\": [3]}", {"sequence 1", "no object"});
+    for (const char* key : {"name", "folder", "ground_truth", "truncation"}) {
+        json lacking = entry("a", "folder_a");
+        lacking.erase(key);
+        expectEntryFault(lacking, {"sequence 1", "'" + std::string(key) + "' is missing"});
+    }
+    for (const char* name : {"", "..", "a/b", ".a"})
+        expectEntryFault(entry(name, "x"), {"sequence 1", "name"});
+    expectEntryFault(entry("a", 5), {"'a'", "'folder'"});
+    expectFault(json{{"sequences", {entry("a", "x"), entry("a", "y")}}}.dump(),
+                {"sequence 2", "of that name"});
+    for (const json& frames : {json(5), json({5}), json({5, 5}), json({-1, 5}), json({"a", "b"}),
+                               json::array(), json({{1, 2}, {3}})}) {
+        json truncated = entry("a", "x");
+        truncated["truncation"] = {{"frames", frames}};
+        expectEntryFault(truncated, {"'a'", "truncation.frames"});
+    }
+    json truncated = entry("a", "x");
+    truncated["truncation"] = 5;
+    expectEntryFault(truncated, {"'a'", "'truncation'"});
+    EXPECT_THROW(readBenchmarkList(folder / "none.json", data()), std::runtime_error);
+    EXPECT_THROW(readBenchmarkList(data(), data()), std::runtime_error);
+    writeFile(file(), json{{"sequences", {entry("a", "x")}}}.dump());
+    EXPECT_THROW(readBenchmarkList(file(), folder / "none"), std::runtime_error);
+}
+
+class Benchmark : public List {
+  protected:
+    test::ProgramResult run(const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{"--benchmark", file(),         "--data",    data(),
+                                           "--output",    folder / "out", "--methods", "roevo-tr,roevo-ct"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return test::runProgram(kName, arguments);
+    }
+    MethodRun kept(const std::string& sequence, const std::string& method) const {
+        return readMethodRun(folder / ("out/runs/" + sequence + "/" + method));
+    }
+    auto madeAt(const std::string& sequence, const std::string& method) const {
+        return fs::last_write_time(folder / ("out/runs/" + sequence + "/" + method + "/run.json"));
+    }
+};
+
+TEST_F(Benchmark, PresentMissingAndBrokenSequences) {
+    test::writeTumFolder(data() + "/whole", test::slidingRecording(8));
+    test::writeTumFolder(data() + "/part", test::slidingRecording(8));
+    fs::create_directory(data() + "/broken");
+    json part = entry("part", "part");
+    part["truncation"] = {{"frames", {2, 6}}};
+    writeFile(file(),
+              json{{"sequences",
+                    {entry("whole", "whole"), entry("gone", "nowhere"), entry("broken", "broken"), part}}}
+                  .dump());
+    const auto result = run();
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_NE(result.err.find("skipped gone: not in "), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("broken: cannot be used: "), std::string::npos) << result.err;
+    EXPECT_EQ(kept("whole", "roevo-tr").frames, 8u);
+    EXPECT_EQ(kept("part", "roevo-tr").frames, 4u);
+    EXPECT_EQ(kept("part", "roevo-tr").trajectory.front().timestamp,
+              kept("whole", "roevo-tr").trajectory.at(2).timestamp);
+
+    const std::string table = readFile(folder / "out/table.csv"), text = readFile(folder / "out/table.md");
+    for (const char* row : {"\nwhole,roevo-tr,", "\nwhole,roevo-ct,", "\npart,roevo-tr,", "\nbroken,"})
+        EXPECT_NE(table.find(row), std::string::npos) << row << " in:\n" << table;
+    EXPECT_NE(text.find("gone"), std::string::npos) << "what was skipped belongs into the report:\n" << text;
+    EXPECT_TRUE(fs::exists(folder / "out/report.html"));
+
+    // The same command again: all is there; a sequence that has come is run alone
+    const auto before = madeAt("whole", "roevo-tr");
+    test::writeTumFolder(data() + "/nowhere", test::slidingRecording(6));
+    const auto again = run();
+    ASSERT_EQ(again.exit_code, 0) << again.all();
+    EXPECT_EQ(madeAt("whole", "roevo-tr"), before);
+    EXPECT_NE(again.err.find("4 of 6 runs are there already"), std::string::npos) << again.err;
+    EXPECT_NE(again.err.find("[2 of 2] gone, roevo-ct: 6 frames"), std::string::npos) << again.err;
+    EXPECT_NE(readFile(folder / "out/table.csv").find("\nwhole,roevo-tr,"), std::string::npos);
+    EXPECT_NE(readFile(folder / "out/table.csv").find("\ngone,roevo-tr,"), std::string::npos);
+}
+
+TEST_F(Benchmark, NothingThereIsAnError) {
+    writeFile(file(), json{{"sequences", {entry("gone", "nowhere")}}}.dump());
+    expectError(run(), 1, kName, {"not one sequence", "gone", "nowhere"});
+    EXPECT_FALSE(fs::exists(folder / "out"));
+    fs::create_directory(data() + "/nowhere");
+    expectError(run(), 1, kName, {"nowhere", "rgb.txt"});
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST_F(Benchmark, GroundTruthThatTheListNamesIsMissed) {
+    test::writeTumFolder(data() + "/clip", test::slidingRecording(4));
+    fs::remove(data() + "/clip/groundtruth.txt");
+    writeFile(file(), json{{"sequences", {entry("clip", "clip")}}}.dump());
+    const auto result = run();
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_NE(result.out.find("the list says groundtruth.txt"), std::string::npos) << result.out;
+    EXPECT_NE(readFile(folder / "out/table.csv").find("the list says groundtruth.txt"), std::string::npos);
+}
+
+TEST_F(Benchmark, WrongUsageAndBadLists) {
+    expectError(run(), 1, kName, {file(), "No such file"});
+    writeFile(file(), "[");
+    expectError(run(), 1, kName, {file(), "JSON"});
+    writeFile(file(), json{{"sequences", {entry("a", "a")}}}.dump());
+    expectError(run({"--input", data()}), 2, kName, {"--input and --benchmark"});
+    expectError(run({"--ground-truth", file()}), 2, kName, {"--ground-truth"});
+    expectError(test::runProgram(kName, {"--benchmark", file(), "--output", folder / "out"}), 2, kName,
+                {"--data"});
+    expectError(test::runProgram(kName, {"--input", data(), "--data", data(), "--output", folder / "out"}), 2,
+                kName, {"--data"});
+    json part = entry("part", "part");
+    part["truncation"] = {{"frames", {2, 6}}};
+    fs::create_directory(data() + "/part");
+    writeFile(file(), json{{"sequences", {part}}}.dump());
+    expectError(run({"--skip", "4"}), 2, kName, {"--skip 4", "part", "4 frames"});
+    EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+}  // namespace
+}  // namespace roevo

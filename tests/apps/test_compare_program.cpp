@@ -1,0 +1,396 @@
+// roevo-compare over recordings that are given one by one.
+#include <gtest/gtest.h>
+#include <sys/file.h>
+
+#include <csignal>
+#include <filesystem>
+#include <functional>
+#include <thread>
+
+#include "roevo-compare/compare.h"
+#include "roevo-compare/terminal_table.h"
+#include "support/run_program.h"
+#include "support/tum_folder.h"
+
+namespace roevo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::expectError;
+using test::readFile;
+using test::slidingRecording;
+using test::TemporaryFolder;
+using test::writeFile;
+using test::writeTumFolder;
+
+constexpr char kName[] = "roevo-compare";
+
+class Compare : public testing::Test {
+  protected:
+    std::vector<std::string> arguments(const std::vector<std::string>& inputs,
+                                       const std::vector<std::string>& more) const {
+        std::vector<std::string> all{"--input"};
+        all.insert(all.end(), inputs.begin(), inputs.end());
+        all.insert(all.end(), {"--output", output()});
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+    test::ProgramResult run(const std::vector<std::string>& inputs,
+                            const std::vector<std::string>& more = {}) const {
+        return test::runProgram(kName, arguments(inputs, more));
+    }
+    std::string clip(const std::string& name, int frames = 6) const {
+        writeTumFolder(folder / name, slidingRecording(frames));
+        return folder / name;
+    }
+    // Runs the program and does something while it is at it.
+    test::ProgramResult runMeanwhile(const std::vector<std::string>& all,
+                                     const std::function<void(pid_t program)>& act) const {
+        std::vector<std::string> words{"-c", "echo $$ > " + (folder / "pid") + "; exec \"$@\"", "sh",
+                                       std::string(ROEVO_BIN_DIR) + "/" + kName};
+        words.insert(words.end(), all.begin(), all.end());
+        test::ProgramResult result;
+        std::thread program([&] { result = test::runProgram("/bin/sh", words); });
+        while (!fs::exists(folder / "pid") || readFile(folder / "pid").empty()) usleep(5'000);
+        act(std::stoi(readFile(folder / "pid")));
+        program.join();
+        return result;
+    }
+    std::string output() const { return folder / "out"; }
+    std::string runFolder(const std::string& sequence, const std::string& method) const {
+        return output() + "/runs/" + sequence + "/" + method;
+    }
+    MethodRun kept(const std::string& sequence, const std::string& method) const {
+        return readMethodRun(runFolder(sequence, method));
+    }
+    auto madeAt(const std::string& sequence, const std::string& method) const {
+        return fs::last_write_time(runFolder(sequence, method) + "/run.json");
+    }
+    std::string table() const { return readFile(output() + "/table.csv"); }
+    void expectRow(const std::string& begin) const {
+        EXPECT_NE(table().find("\n" + begin), std::string::npos) << begin << " in:\n" << table();
+    }
+    void expectNoRow(const std::string& begin) const {
+        EXPECT_EQ(table().find("\n" + begin), std::string::npos) << begin << " in:\n" << table();
+    }
+
+    TemporaryFolder folder;
+};
+
+TEST_F(Compare, RunsEveryMethodAsRoevoOdometryWould) {
+    const std::string input = clip("clip", 8);
+    const auto result = run({input}, {"--methods", "roevo-ba,roevo-tr,roevo-ct"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    for (const char* mode : {"ct", "tr", "ba"}) {
+        const std::string method = std::string("roevo-") + mode;
+        expectRow("clip," + method + ",");
+        const MethodRun made = kept("clip", method);
+        EXPECT_TRUE(made.ok()) << made.failure;
+        EXPECT_EQ(made.frames, 8u);
+        EXPECT_EQ(made.tracked, 8u);
+        EXPECT_GT(made.total.median, 0);
+        EXPECT_GT(made.decode.median, 0);
+        EXPECT_GT(made.cpu_ms_per_frame, 0);
+        EXPECT_GT(made.memory_peak_mb, 1);
+        EXPECT_TRUE(fs::exists(runFolder("clip", method) + "/map.3Dscene"));
+        EXPECT_TRUE(fs::exists(runFolder("clip", method) + "/frames.csv"));
+        const auto alone = test::runProgram(
+            "roevo-odometry", {"--input", input, "--output", folder / "alone", "--mode", mode, "--quiet"});
+        ASSERT_EQ(alone.exit_code, 0) << alone.all();
+        EXPECT_EQ(readFile(runFolder("clip", method) + "/trajectory.txt"),
+                  readFile(folder / "alone/trajectory.txt"))
+            << method;
+        EXPECT_NE(result.err.find("clip, " + method + ": 8 frames"), std::string::npos) << result.err;
+    }
+    EXPECT_LT(table().find("\nclip,roevo-ba,"), table().find("\nclip,roevo-ct,")) << "in the order asked for";
+    EXPECT_NE(result.out.find("ATE cm"), std::string::npos) << result.out;
+    for (const char* file : {"table.md", "report.html", "config_used.ini"})
+        EXPECT_TRUE(fs::exists(output() + "/" + file)) << file;
+    EXPECT_NE(readFile(output() + "/table.md").find("--methods roevo-ba,roevo-tr,roevo-ct"),
+              std::string::npos)
+        << "the exact command";
+}
+
+TEST_F(Compare, OptionsAndFramesReachTheMethods) {
+    const std::string input = clip("clip", 8);
+    const std::vector<std::string> more{"--methods", "roevo-tr", "--skip",    "2",
+                                        "--first",   "4",        "--set",     "edges.min_length=15",
+                                        "--jobs",    "1",        "--timeout", "100"};
+    ASSERT_EQ(run({input}, more).exit_code, 0);
+    const auto alone = test::runProgram(
+        "roevo-odometry", {"--input", input, "--output", folder / "alone", "--mode", "tr", "--skip", "2",
+                           "--first", "4", "--set", "edges.min_length=15", "--quiet"});
+    ASSERT_EQ(alone.exit_code, 0) << alone.all();
+    EXPECT_EQ(kept("clip", "roevo-tr").frames, 4u);
+    EXPECT_EQ(readFile(runFolder("clip", "roevo-tr") + "/trajectory.txt"),
+              readFile(folder / "alone/trajectory.txt"));
+    EXPECT_NE(readFile(output() + "/config_used.ini").find("min_length = 15"), std::string::npos);
+}
+
+TEST_F(Compare, QuietSaysNothing) {
+    const auto result = run({clip("clip", 4)}, {"--methods", "roevo-ct", "--quiet"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err, "");
+}
+
+TEST_F(Compare, ListsItsMethods) {
+    const auto result = test::runProgram(kName, {"--list-methods"});
+    EXPECT_EQ(result.exit_code, 0);
+    for (const char* name : {"roevo-ct", "roevo-tr", "roevo-ba"})
+        EXPECT_NE(result.out.find(name), std::string::npos) << result.out;
+}
+
+TEST_F(Compare, ResumeTakesFinishedRunsAgainUnlessSomethingChanged) {
+    const std::string input = clip("clip", 6);
+    const std::vector<std::string> methods{"--methods", "roevo-ct,roevo-tr"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.end(), methods.begin(), methods.end());
+        const auto result = run({input}, more);
+        EXPECT_EQ(result.exit_code, 0) << result.all();
+        return result;
+    };
+    with({});
+    auto ct = madeAt("clip", "roevo-ct");
+    const std::string rows = table();
+    const auto resumed = with({"--resume"});
+    EXPECT_EQ(madeAt("clip", "roevo-ct"), ct);
+    EXPECT_NE(resumed.err.find("2 of 2 runs are there already"), std::string::npos) << resumed.err;
+    EXPECT_EQ(table(), rows);
+
+    const auto expectMadeAgain = [&](const std::vector<std::string>& more, const char* why) {
+        with(more);
+        EXPECT_NE(madeAt("clip", "roevo-ct"), ct) << why;
+        ct = madeAt("clip", "roevo-ct");
+    };
+    expectMadeAgain({"--resume", "--set", "edges.min_length=15"}, "an option has changed");
+    expectMadeAgain({"--resume", "--skip", "1", "--first", "5"}, "other frames");
+    writeTumFolder(input, slidingRecording(7));
+    expectMadeAgain({"--resume", "--skip", "1", "--first", "5"}, "another recording");
+
+    // One that is not whole is made again, alone
+    fs::remove(runFolder("clip", "roevo-tr") + "/trajectory.txt");
+    const auto repaired = with({"--resume", "--skip", "1", "--first", "5"});
+    EXPECT_EQ(madeAt("clip", "roevo-ct"), ct);
+    EXPECT_NE(repaired.err.find("1 of 2 runs are there already"), std::string::npos) << repaired.err;
+    EXPECT_TRUE(kept("clip", "roevo-tr").ok());
+}
+
+TEST_F(Compare, SeveralRecordingsOneOfThemBroken) {
+    fs::create_directories(folder / "b");
+    fs::create_directories(folder / "broken");
+    const std::string first = clip("a/clip", 4), second = clip("b/clip", 5);
+    const auto result = run({first, folder / "broken", second}, {"--methods", "roevo-ct"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_EQ(kept("a_clip", "roevo-ct").frames, 4u);
+    EXPECT_EQ(kept("b_clip", "roevo-ct").frames, 5u);
+    expectRow("a_clip,roevo-ct,");
+    expectRow("broken,");
+    expectRow("b_clip,roevo-ct,");
+    EXPECT_NE(table().find("rgb.txt"), std::string::npos) << "the reason:\n" << table();
+}
+
+TEST_F(Compare, RawlogsAreRecordingsToo) {
+    const std::string input = clip("clip", 5);
+    const auto converted =
+        test::runProgram("rgbd2rawlog", {"--input", input, "--output", folder / "my.rawlog"});
+    ASSERT_EQ(converted.exit_code, 0) << converted.all();
+    const auto result = run({folder / "my.rawlog", input}, {"--methods", "roevo-tr"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_EQ(readFile(runFolder("my", "roevo-tr") + "/trajectory.txt"),
+              readFile(runFolder("clip", "roevo-tr") + "/trajectory.txt"));
+    expectError(run({folder / "my.rawlog"}, {"--sensor-label", "nose"}), 1, kName, {"nose"});
+    expectError(run({input}, {"--sensor-label", "nose"}), 2, kName, {"--sensor-label"});
+}
+
+TEST_F(Compare, UnreadableFramesAreForNoMethod) {
+    const std::string input = clip("clip", 6);
+    writeFile(input + "/rgb/0002.png", "no image");
+    ASSERT_EQ(run({input}, {"--methods", "roevo-ct,roevo-tr"}).exit_code, 0);
+    for (const char* method : {"roevo-ct", "roevo-tr"}) {
+        EXPECT_EQ(kept("clip", method).frames, 6u);
+        EXPECT_EQ(kept("clip", method).rejected, 1u);
+        EXPECT_EQ(kept("clip", method).trajectory.size(), 5u);
+        EXPECT_NE(readFile(runFolder("clip", method) + "/frames.csv").find("0002.png"), std::string::npos);
+    }
+}
+
+TEST_F(Compare, NoGroundTruthLeavesEverythingButErrors) {
+    const std::string input = clip("clip", 5);
+    fs::remove(input + "/groundtruth.txt");
+    const auto result = run({input}, {"--methods", "roevo-ct"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    expectRow("clip,roevo-ct,");
+    EXPECT_NE(result.out.find("no errors: no ground truth"), std::string::npos) << result.out;
+    EXPECT_EQ(result.out.find("nan"), std::string::npos);
+    EXPECT_TRUE(kept("clip", "roevo-ct").ok());
+}
+
+TEST_F(Compare, GroundTruthThatWasAskedForMustBeGood) {
+    const std::string input = clip("clip", 5);
+    const auto with = [&](const std::string& file, std::vector<std::string> inputs = {}) {
+        inputs.push_back(input);
+        return run(inputs, {"--methods", "roevo-ct", "--ground-truth", file});
+    };
+    expectError(with(folder / "none.txt"), 1, kName, {"none.txt", "No such file"});
+    writeFile(folder / "bad.txt", "1 2 3\n");
+    expectError(with(folder / "bad.txt"), 1, kName, {"bad.txt:1:", "found 3"});
+    expectError(with(input + "/groundtruth.txt", {input}), 2, kName, {"--ground-truth", "single"});
+    EXPECT_FALSE(fs::exists(output())) << "no run was made for it";
+
+    // Another clock: said with both ranges, and the runs are not lost
+    std::string shifted;
+    for (int i = 0; i < 5; ++i) shifted += std::to_string(9000 + i) + " 0 0 0 0 0 0 1\n";
+    writeFile(folder / "shifted.txt", shifted);
+    expectError(with(folder / "shifted.txt"), 1, kName, {"shifted.txt", "9000", "100."});
+    expectRow("clip,roevo-ct,");
+    EXPECT_NE(readFile(output() + "/table.md").find("9000"), std::string::npos);
+    ASSERT_EQ(with(input + "/groundtruth.txt").exit_code, 0);
+}
+
+TEST_F(Compare, RecordingsThatCannotBeUsedAtAll) {
+    expectError(run({folder / "none.rawlog"}), 1, kName, {"none.rawlog", "no such file"});
+    const std::string input = clip("clip", 3);
+    expectError(run({input, folder / "none.rawlog"}), 1, kName, {"none.rawlog", "no such file"});
+    expectError(run({input}, {"--skip", "3"}), 1, kName, {"clip", "no frame"});
+    expectError(run({input}, {"--skip", "4"}), 1, kName, {"clip", "only 3 frames"});
+    writeFile(input + "/camera.txt", test::cameraText(5));
+    expectError(run({input}), 1, kName, {"clip", "depth", "5000"});
+    for (int i = 0; i < 3; ++i) writeFile(input + "/rgb/000" + std::to_string(i) + ".png", "no image");
+    writeFile(input + "/camera.txt", test::cameraText());
+    expectError(run({input}), 1, kName, {"clip", "none of its 3 frames", "0000.png"});
+    EXPECT_FALSE(fs::exists(output()));
+}
+
+TEST_F(Compare, WrongUsage) {
+    const std::string input = clip("clip", 3);
+    expectError(test::runProgram(kName, {"--input", input}), 2, kName, {"--output is required"});
+    expectError(test::runProgram(kName, {"--output", output()}), 2, kName, {"required"});
+    expectError(run({input}, {"--methods", "roevo-xy"}), 2, kName, {"roevo-xy", "roevo-ba"});
+    expectError(run({input}, {"--methods", "roevo-ba,roevo-ba"}), 2, kName, {"twice"});
+    expectError(run({input}, {"--jobs", "0"}), 2, kName, {"--jobs"});
+    expectError(run({input}, {"--jobs", "100000"}), 2, kName, {"--jobs 100000", "core"});
+    expectError(run({input}, {"--jobs", "-1"}), 2, kName, {"--jobs"});
+    expectError(run({input}, {"--timeout", "0"}), 2, kName, {"--timeout"});
+    expectError(run({input}, {"--timeout", "nan"}), 2, kName, {"--timeout"});
+    expectError(run({input}, {"--first", "-3"}), 2, kName, {"--first"});
+    expectError(run({input}, {"--skip", "-3"}), 2, kName, {"--skip"});
+    expectError(run({input}, {"--first", "many"}), 2, kName, {"--first"});
+    expectError(run({input}, {"--set", "edges.nonsense=1"}), 2, kName, {"edges.nonsense"});
+    expectError(run({input}, {"--set", "odometry.mode=ct"}), 2, kName, {"--methods"});
+    expectError(run({input}, {"--config", folder / "none.ini"}), 1, kName, {"none.ini"});
+    EXPECT_FALSE(fs::exists(output()));
+    writeFile(output(), "a file");
+    expectError(run({input}, {"--methods", "roevo-ct"}), 1, kName, {"output folder", output()});
+}
+
+TEST_F(Compare, RunsThatTakeTooLongAreFailuresInTheTable) {
+    const std::string input = clip("clip", 30);
+    const auto result = run({input}, {"--methods", "roevo-tr", "--timeout", "0.05"});
+    expectError(result, 1, kName, {"no method gave a result", "0.05 s"});
+    expectRow("clip,roevo-tr,");
+    EXPECT_NE(table().find("not done within 0.05 s"), std::string::npos) << table();
+    ASSERT_EQ(run({input}, {"--methods", "roevo-tr", "--resume"}).exit_code, 0) << "given more time";
+    EXPECT_TRUE(kept("clip", "roevo-tr").ok());
+}
+
+TEST_F(Compare, MethodsThatAreNotAvailableAreSkippedWithTheReason) {
+    CompareSettings settings;
+    SequenceInput sequence;
+    sequence.name = "clip";
+    sequence.input = clip("clip", 3);
+    settings.sequences = {sequence};
+    MethodInfo method;
+    method.name = "lacking";
+    method.label = "Lacking";
+    method.unavailable = "this build has no such library";
+    settings.methods = {method};
+    settings.output = output();
+    settings.queue = {{-1}, 10};
+    settings.quiet = true;
+    const CompareResult result = compare(settings);
+    ASSERT_EQ(result.sequences.size(), 1u);
+    ASSERT_EQ(result.sequences[0].runs.size(), 1u);
+    EXPECT_EQ(result.sequences[0].runs[0].skipped, method.unavailable);
+    EXPECT_FALSE(result.sequences[0].runs[0].ok());
+    expectRow("clip,lacking,");
+    EXPECT_NE(table().find(method.unavailable), std::string::npos) << table();
+    EXPECT_NE(terminalTable(result.sequences).find("skipped: " + method.unavailable), std::string::npos)
+        << terminalTable(result.sequences);
+    EXPECT_FALSE(fs::exists(runFolder("clip", "lacking")));
+}
+
+TEST_F(Compare, TwoProgramsDoNotShareAnOutputFolder) {
+    const std::string input = clip("clip", 3);
+    fs::create_directory(output());
+    const int fd = open(output().c_str(), O_RDONLY | O_DIRECTORY);
+    ASSERT_EQ(flock(fd, LOCK_EX), 0);
+    expectError(run({input}, {"--methods", "roevo-ct"}), 1, kName, {"another roevo-compare", output()});
+    close(fd);
+    EXPECT_EQ(run({input}, {"--methods", "roevo-ct"}).exit_code, 0);
+}
+
+TEST_F(Compare, AMethodThatCrashesIsARowAndTheNextOneRuns) {
+    const std::string input = clip("clip", 80), myself = std::to_string(getpid());
+    const std::string children = "/proc/" + myself + "/task/" + myself + "/children";
+    if (!fs::exists(children)) GTEST_SKIP() << "no " << children;
+    const auto result =
+        runMeanwhile(arguments({input}, {"--methods", "roevo-tr,roevo-ct"}), [&](pid_t program) {
+            const std::string id = std::to_string(program);
+            std::string child;
+            for (int i = 0; i < 6000 && child.empty(); ++i) {
+                usleep(5'000);
+                child = readFile("/proc/" + id + "/task/" + id + "/children");
+                if (readFile("/proc/" + std::to_string(std::atoi(child.c_str())) + "/cmdline")
+                        .find("--run-method") == std::string::npos)
+                    child.clear();  // before its exec it still is this program
+            }
+            ASSERT_FALSE(child.empty());
+            kill(std::stoi(child), SIGSEGV);
+        });
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    expectRow("clip,roevo-tr,");
+    expectRow("clip,roevo-ct,");
+    EXPECT_NE(kept("clip", "roevo-tr").failure.find("signal 11"), std::string::npos)
+        << kept("clip", "roevo-tr").failure;
+    EXPECT_TRUE(kept("clip", "roevo-ct").ok());
+    EXPECT_NE(result.out.find("failed: it died of signal 11"), std::string::npos) << result.out;
+    EXPECT_NE(readFile(output() + "/table.md").find("signal 11"), std::string::npos);
+}
+
+// Interrupts the program as soon as the first run is there. The second takes long enough for that.
+TEST_F(Compare, AnInterruptLeavesWhatIsFinishedAndResumeGoesOn) {
+    const std::string quick = clip("quick", 3), slow = clip("slow", 80);
+    const std::string first = runFolder("quick", "roevo-tr") + "/run.json";
+    const auto result = runMeanwhile(arguments({quick, slow}, {"--methods", "roevo-tr"}), [&](pid_t program) {
+        for (int i = 0; i < 6000 && !fs::exists(first); ++i) usleep(5'000);
+        kill(program, SIGINT);
+    });
+    expectError(result, 1, kName, {"interrupted", "1 runs are missing", "--resume"});
+    expectRow("quick,roevo-tr,");
+    expectNoRow("slow,roevo-tr,");
+    EXPECT_NE(result.out.find(" not run"), std::string::npos) << result.out;
+    EXPECT_NE(readFile(output() + "/table.md").find("interrupted"), std::string::npos);
+    EXPECT_FALSE(fs::exists(runFolder("slow", "roevo-tr")));
+    for (const auto& entry : fs::recursive_directory_iterator(output()))
+        EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+
+    const auto time = madeAt("quick", "roevo-tr");
+    const auto resumed = run({quick, slow}, {"--methods", "roevo-tr", "--resume"});
+    ASSERT_EQ(resumed.exit_code, 0) << resumed.all();
+    EXPECT_EQ(madeAt("quick", "roevo-tr"), time);
+    expectRow("quick,roevo-tr,");
+    expectRow("slow,roevo-tr,");
+}
+
+TEST_F(Compare, JobsAreToldInTheReport) {
+    if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core only";
+    const auto result = run({clip("clip", 6)}, {"--methods", "roevo-ct,roevo-tr", "--jobs", "2"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_EQ(kept("clip", "roevo-ct").jobs, 2u);
+    EXPECT_NE(readFile(output() + "/table.md").find("side by side"), std::string::npos);
+    EXPECT_NE(result.out.find("side by side"), std::string::npos) << result.out;
+}
+
+}  // namespace
+}  // namespace roevo

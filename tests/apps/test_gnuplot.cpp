@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "support/gnuplot.h"
+#include "support/run_program.h"
+
+namespace roevo {
+namespace {
+
+using test::readFile;
+using test::TemporaryFolder;
+
+// What drawSvg() throws; empty when it does not.
+std::string complaint(const std::string& path, const std::string& script) {
+    try {
+        drawSvg(path, script);
+    } catch (const std::exception& e) {
+        return e.what();
+    }
+    return {};
+}
+
+bool isEmpty(const TemporaryFolder& folder) {
+    return std::filesystem::is_empty(folder.path());
+}
+
+TEST(Gnuplot, DrawsDataWithGapsAndAnyText) {
+    const TemporaryFolder folder;
+    const std::string name = "a_b's {x} & <y> ^ @ ~ \\ %";
+    drawSvg(folder / "plot.svg",
+            gnuplotData("data", {{0, 1}, {1, std::nan("")}, {2, 3}}) + "plot $data with linespoints title " +
+                gnuplotText(name),
+            400, 300);
+    const std::string svg = readFile(folder / "plot.svg");
+    EXPECT_NE(svg.find("<svg"), std::string::npos);
+    EXPECT_NE(svg.find("width=\"400\" height=\"300\""), std::string::npos);
+    EXPECT_NE(svg.find("a_b's {x} &amp; &lt;y> ^ @ ~ \\ %"), std::string::npos) << svg;
+    EXPECT_EQ(svg.find("baseline-shift"), std::string::npos) << "text was taken for a formula";
+}
+
+TEST(Gnuplot, TheSameInputGivesTheSameBytes) {
+    const TemporaryFolder folder;
+    for (const char* name : {"a.svg", "b.svg"}) drawSvg(folder / name, "plot x");
+    EXPECT_EQ(readFile(folder / "a.svg"), readFile(folder / "b.svg"));
+}
+
+TEST(Gnuplot, FaultsAreOneLineAndLeaveNothingBehind) {
+    const TemporaryFolder folder;
+    for (const char* script :
+         {"plot no_such_function(x)", "plot $nothing with lines", "plot '", "set title 'no plot'"}) {
+        const std::string text = complaint(folder / "plot.svg", script);
+        EXPECT_NE(text.find("plot.svg: gnuplot"), std::string::npos) << script << ": " << text;
+        EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+        EXPECT_TRUE(isEmpty(folder)) << script;
+    }
+    const std::string text = complaint(folder / "missing/plot.svg", "plot x");
+    EXPECT_NE(text.find("missing/plot.svg: No such file"), std::string::npos) << text;
+}
+
+TEST(Gnuplot, IsMissed) {
+    const TemporaryFolder folder, empty;
+    const std::string path = std::getenv("PATH");
+    setenv("PATH", empty.path().c_str(), 1);
+    const std::string text = complaint(folder / "plot.svg", "plot x");
+    setenv("PATH", path.c_str(), 1);
+    EXPECT_NE(text.find("gnuplot is not installed"), std::string::npos) << text;
+    EXPECT_TRUE(isEmpty(folder));
+}
+
+}  // namespace
+}  // namespace roevo
