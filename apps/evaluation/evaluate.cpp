@@ -60,7 +60,7 @@ std::string advice(const std::vector<StampedPose>& reference, const std::vector<
     auto shifted = estimate;
     for (StampedPose& pose : shifted) pose.timestamp += offset;
     const std::size_t common = associate(reference, shifted, max_dt).size();
-    if (common < kMinPairs) return "; starting together they would have " + count(common) + " in common, too";
+    if (common < kMinPairs) return "; even if both began together only " + count(common) + " would be common";
     return "; to let both start together add " + seconds(offset) +
            " to the estimate's stamps (roevo-eval --offset), then " + count(common) + " are common";
 }

@@ -131,7 +131,9 @@ TEST_F(BadFolder, ListsWithRepeatedAndBackwardStamps) {
 TEST_F(BadFolder, GroundTruthThatDoesNotFit) {
     test::writeTumFolder(folder_ / "recording", slidingRecording(4));
     expectError(run(folder_ / "recording", {"--ground-truth", folder_ / "none.txt"}), 1, kName, {"none.txt"});
-    test::writeFile(folder_ / "late.txt", "5000 0 0 0 0 0 0 1\n5001 0 0 0 0 0 0 1\n");
+    test::writeFile(
+        folder_ / "late.txt",
+        "5000 0 0 0 0 0 0 1\n5000.033333 0 0 0 0 0 0 1\n5000.066667 0 0 0 0 0 0 1\n5001 0 0 0 0 0 0 1\n");
     expectError(run(folder_ / "recording", {"--ground-truth", folder_ / "late.txt"}), 1, kName,
                 {"late.txt", "4900", "5000"});
     EXPECT_TRUE(fs::exists(output() + "/trajectory.txt")) << "the run itself was good";
