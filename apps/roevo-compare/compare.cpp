@@ -104,6 +104,7 @@ std::vector<std::string> notesOf(const CompareSettings& settings, const CompareR
 CompareResult compare(const CompareSettings& settings) {
     CompareResult result;
     std::optional<FolderLock> lock;
+    std::exception_ptr fault;
     {
         const InterruptGuard guard;  // gone before the report is written: a second Ctrl-C ends that
         result.sequences = openAll(settings);
@@ -119,6 +120,8 @@ CompareResult compare(const CompareSettings& settings) {
             runs.make(config);
         } catch (const Interrupted&) {
             result.interrupted = true;
+        } catch (const std::exception&) {
+            fault = std::current_exception();  // what is finished is reported first
         }
         result.runs = runs.count();
         result.left = runs.total() - runs.count();
@@ -128,6 +131,7 @@ CompareResult compare(const CompareSettings& settings) {
         throw Interrupted("interrupted before any run was finished; no report was written");
     result.info = {settings.command, utcNow(), machineText(), softwareVersions(), notesOf(settings, result)};
     writeComparison(settings.output, result.sequences, result.info);
+    if (fault) std::rethrow_exception(fault);
     return result;
 }
 

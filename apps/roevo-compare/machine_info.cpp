@@ -10,7 +10,7 @@
 #include <iterator>
 #include <opencv2/core/version.hpp>
 
-#include "process.h"
+#include "support/process.h"
 #include "support/program.h"
 
 namespace roevo {

@@ -7,7 +7,7 @@
 
 #include "method.h"
 #include "method_run.h"
-#include "process.h"
+#include "support/process.h"
 
 namespace roevo {
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "machine_info.h"
-#include "report/text.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {
@@ -61,18 +61,24 @@ Runs::Runs(const CompareSettings& settings, std::vector<SequenceComparison>& seq
     }
 }
 
-void Runs::plan(std::size_t s, std::size_t m, const std::map<std::string, std::string>& run_settings) {
+MethodRun Runs::notRun(std::size_t s, std::size_t m, const std::string& reason) const {
     const MethodInfo& method = settings_.methods[m];
     MethodRun run;
+    run.method = method.name;
+    run.label = method.label;
+    run.note = method.note;
+    run.input = sequences_[s].input;
+    run.skipped = reason;
+    return run;
+}
+
+void Runs::plan(std::size_t s, std::size_t m, const std::map<std::string, std::string>& run_settings) {
+    const MethodInfo& method = settings_.methods[m];
     if (!method.unavailable.empty()) {
-        run.method = method.name;
-        run.label = method.label;
-        run.note = method.note;
-        run.input = sequences_[s].input;
-        run.skipped = method.unavailable;
-        place_[s][m] = run;
+        place_[s][m] = notRun(s, m, method.unavailable);
         return;
     }
+    MethodRun run;
     RunTask task{sequences_[s].name, sequences_[s].input, method, folder(s, m), run_settings};
     if (settings_.resume && findFinishedRun(task, settings_.queue.timeout_s, run)) {
         place_[s][m] = run;
@@ -117,8 +123,8 @@ void Runs::deliver() {
     for (std::size_t s = 0; s < sequences_.size(); ++s) {
         std::set<std::string> warnings;
         for (std::size_t m = 0; m < place_[s].size(); ++m) {
-            if (!place_[s][m]) continue;
-            const MethodRun& run = *place_[s][m];
+            const MethodRun run =
+                place_[s][m] ? *place_[s][m] : notRun(s, m, "not run: the comparison was ended before");
             if (!run.warning.empty() && warnings.insert(run.warning).second)
                 sequences_[s].note += (sequences_[s].note.empty() ? "" : "; ") + run.warning;
             sequences_[s].runs.push_back(run);

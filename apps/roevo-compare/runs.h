@@ -37,6 +37,7 @@ class Runs : public QueueObserver {
     std::size_t reused() const { return reused_; }  ///< runs that were there from the start
 
   private:
+    MethodRun notRun(std::size_t s, std::size_t m, const std::string& reason) const;
     void plan(std::size_t s, std::size_t m, const std::map<std::string, std::string>& run_settings);
     std::string folder(std::size_t s, std::size_t m) const;
 

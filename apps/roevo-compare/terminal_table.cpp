@@ -6,7 +6,7 @@
 #include <set>
 
 #include "report/results.h"
-#include "report/text.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {

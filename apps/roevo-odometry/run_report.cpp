@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <map>
 
+#include "support/text.h"
+
 namespace roevo {
 namespace {
 
@@ -16,14 +18,6 @@ std::string format(const char* pattern, ...) {
     std::vsnprintf(text, sizeof text, pattern, arguments);
     va_end(arguments);
     return text;
-}
-
-// RFC 4180: quoted when it holds a separator, quotes doubled.
-std::string csvField(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
 }
 
 }  // namespace

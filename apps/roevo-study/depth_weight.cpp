@@ -141,9 +141,11 @@ StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::s
     addPlot(report, folder, "depth_weight.svg", script, 1000, 440);
 
     report.summary = counted(names.size(), "recording") + ", ATE relative to no weight (median):";
-    for (std::size_t s = 1; s < sets.size(); ++s)
-        report.summary +=
-            format("%s %s %.2f", s > 1 ? "," : "", sets[s].name.c_str(), median(ratios[s]).value_or(0));
+    for (std::size_t s = 1; s < sets.size(); ++s) {
+        const auto ratio = median(ratios[s]);
+        report.summary += format("%s %s ", s > 1 ? "," : "", sets[s].name.c_str()) +
+                          (ratio ? format("%.2f", *ratio) : std::string("none"));
+    }
     return report;
 }
 

@@ -10,7 +10,7 @@ double memoryPeakMb() {
     std::ifstream status("/proc/self/status");
     for (std::string word; status >> word;) {
         double kilobytes = 0;
-        if (word == "VmHWM:" && status >> kilobytes) return kilobytes / 1024;
+        if (word == "VmHWM:" && status >> kilobytes) return kilobytes * 1024 / 1e6;
     }
     return 0;
 }

@@ -28,6 +28,8 @@ int fail(const char* name, const std::string& message, int code) {
 }  // namespace
 
 int runProgram(const char* name, const std::function<int()>& body) {
+    std::signal(SIGCHLD,
+                SIG_DFL);  // whoever started this may have ignored it: children could not be waited for
     std::signal(SIGINT, onSignal);
     std::signal(SIGTERM, onSignal);
     try {

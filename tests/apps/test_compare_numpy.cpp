@@ -8,6 +8,7 @@
 
 #include "evaluation/trajectory_io.h"
 #include "report_fixture.h"
+#include "support/data_folder.h"
 #include "support/tum_folder.h"
 
 namespace roevo {
@@ -124,9 +125,7 @@ TEST_F(AgainstNumpy, ShorterThanASecond) {
 }
 
 TEST_F(AgainstNumpy, PublishedTrajectoryOfFr2Desk) {
-    const char* from_environment = std::getenv("ROEVO_DATA_DIR");
-    const std::string data =
-        std::string(from_environment ? from_environment : ROEVO_DATA_DIR) + "/eval_fr2_desk/";
+    const std::string data = test::dataFolder() + "/eval_fr2_desk/";
     if (!fs::exists(data)) GTEST_SKIP() << data << " is not there; set ROEVO_DATA_DIR";
     expectSame(readTumTrajectory(data + "groundtruth.txt"), readTumTrajectory(data + "estimate.txt"));
 }

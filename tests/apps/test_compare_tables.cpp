@@ -7,7 +7,7 @@
 
 #include "report_fixture.h"
 #include "roevo-compare/report/ranking.h"
-#include "roevo-compare/report/text.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {

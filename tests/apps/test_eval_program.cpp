@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "support/data_folder.h"
 #include "support/run_program.h"
 
 namespace roevo {
@@ -17,7 +18,7 @@ constexpr char kName[] = "roevo-eval";
 const std::string kReference = "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n3 1 1 0 0 0 0 1\n4 1 1 1 0 0 0 1\n";
 
 TEST(EvalProgram, GoldenFiguresOfFr2Desk) {
-    const std::string data = std::string(ROEVO_DATA_DIR) + "/eval_fr2_desk/";
+    const std::string data = test::dataFolder() + "/eval_fr2_desk/";
     if (!std::filesystem::exists(data)) GTEST_SKIP() << "no " << data;
     const TemporaryFolder folder;
     const auto result = test::runProgram(kName, {"--reference", data + "groundtruth.txt", "--estimate",

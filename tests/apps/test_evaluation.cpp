@@ -7,6 +7,7 @@
 #include "evaluation/alignment.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/trajectory_io.h"
+#include "support/data_folder.h"
 
 namespace roevo {
 namespace {
@@ -159,7 +160,7 @@ TEST(Evaluation, SuggestsOnlyWhatWouldHelp) {
 }
 
 TEST(Evaluation, GoldenFiguresOfFr2Desk) {
-    const std::string folder = std::string(ROEVO_DATA_DIR) + "/eval_fr2_desk/";
+    const std::string folder = test::dataFolder() + "/eval_fr2_desk/";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
     const auto reference = readTumTrajectory(folder + "groundtruth.txt");
     const auto estimate = readTumTrajectory(folder + "estimate.txt");

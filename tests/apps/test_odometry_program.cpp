@@ -2,6 +2,7 @@
 
 #include "evaluation/trajectory_io.h"
 #include "odometry_fixture.h"
+#include "support/data_folder.h"
 
 namespace roevo {
 namespace {
@@ -90,7 +91,7 @@ TEST_F(OdometryProgram, FolderAndItsRawlogGiveSameBytes) {
 }
 
 TEST_F(OdometryProgram, RealFolderAndItsRawlogGiveSameBytes) {
-    const std::string clip = std::string(ROEVO_DATA_DIR) + "/tum_fr1_desk_9";
+    const std::string clip = test::dataFolder() + "/tum_fr1_desk_9";
     if (!fs::exists(clip)) GTEST_SKIP() << "no " << clip;
     ASSERT_EQ(run(clip).exit_code, 0);
     const std::string from_folder = readFile(output() + "/trajectory.txt");

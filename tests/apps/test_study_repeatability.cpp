@@ -9,6 +9,7 @@
 #include "repeatability/judge.h"
 #include "repeatability/measure.h"
 #include "roevo/tracking/se3.h"
+#include "support/data_folder.h"
 #include "support/tum_folder.h"
 
 namespace roevo {
@@ -272,7 +273,7 @@ TEST(Repeatability, AnotherSceneIsNotRecognised) {
 // The paper's order at larger changes of viewpoint, where the poses that judge are exact. Measured from 30
 // frames on: nearest 0.44, normals 0.56, disjoint set 0.72.
 TEST(Repeatability, OrderOfThePaperOnARealClip) {
-    const std::string clip = std::string(ROEVO_DATA_DIR) + "/icl_office_kt0_50";
+    const std::string clip = test::dataFolder() + "/icl_office_kt0_50";
     if (!std::filesystem::exists(clip)) GTEST_SKIP() << "no " << clip;
     InputSettings settings;
     settings.paths = {clip};

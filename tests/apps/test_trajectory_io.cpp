@@ -24,7 +24,8 @@ std::string complaint(const std::string& text) {
 TEST(TrajectoryIo, ReadsCommentsBlankLinesTabsAndCarriageReturns) {
     const TemporaryFolder folder;
     writeFile(folder / "t.txt",
-              "\xEF\xBB\xBF# head\r\n\r\n  \n2.5 1 2 3 0 0 0 1\r\n1.25\t0 0 -1e-3 0 0 0.6 0.8 # turned\n3 0 0 0 0 0 0 1");
+              "\xEF\xBB\xBF# head\r\n\r\n  \n2.5 1 2 3 0 0 0 1\r\n1.25\t0 0 -1e-3 0 0 0.6 0.8 # turned\n3 0 "
+              "0 0 0 0 0 1");
     const auto poses = readTumTrajectory(folder / "t.txt");
     ASSERT_EQ(poses.size(), 3u);
     EXPECT_EQ(poses[0].timestamp, 1.25) << "sorted";

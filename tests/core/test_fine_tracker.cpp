@@ -39,7 +39,8 @@ class FineTracking : public ::testing::Test {
         frame.pyramid = &pyramid_;
         frame.depth = &sequence_->frames[4].depth;
         frame.raw_camera = frame.camera = &sequence_->camera;
-        return tracker.track(keyframe_, frame, start, {likely, 1, 1}, RollingShutter(), Brightness());
+        const Pose better = tracker.betterStart(keyframe_, frame, start, likely, RollingShutter());
+        return tracker.track(keyframe_, frame, better, {likely, 1, 1}, RollingShutter(), Brightness());
     }
     double errorOf(const FineResult& result) const {
         return (truth_.inverse() * result.T_current_keyframe).translation().norm();

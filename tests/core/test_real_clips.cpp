@@ -9,14 +9,10 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/trajectory_io.h"
 #include "roevo/odometry.h"
+#include "support/data_folder.h"
 
 namespace roevo {
 namespace {
-
-std::string dataFolder() {
-    const char* from_environment = std::getenv("ROEVO_DATA_DIR");
-    return from_environment != nullptr && *from_environment != '\0' ? from_environment : ROEVO_DATA_DIR;
-}
 
 struct Clip {
     const char* name;
@@ -34,7 +30,7 @@ class RealClip : public ::testing::TestWithParam<Clip> {
             GTEST_SKIP() << folder() << " is not there; set ROEVO_DATA_DIR to the folder with the clips";
         }
     }
-    static std::string folder() { return dataFolder() + "/" + GetParam().name; }
+    static std::string folder() { return test::dataFolder() + "/" + GetParam().name; }
 
     /// ATE RMSE, m; every frame must be tracked.
     static double ate(Mode mode) {

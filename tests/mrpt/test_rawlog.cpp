@@ -228,8 +228,9 @@ TEST(RawlogReader, ChoosesASensorByLabel) {
     EXPECT_EQ(right.next()->sensorLabel, "right");
     EXPECT_EQ(countScans(right), 3u);
     RawlogReader any(folder / "a.rawlog");
-    EXPECT_NE(errorOf([&] { countScans(any); })
-                  .find("several sensors have range images (4 left, 4 right): choose one with --sensor-label"),
+    EXPECT_NE(errorOf([&] {
+                  countScans(any);
+              }).find("several sensors have range images (4 left, 4 right): choose one with --sensor-label"),
               std::string::npos);
     RawlogReader none(folder / "a.rawlog", "top");
     const std::string error = errorOf([&] { none.next(); });

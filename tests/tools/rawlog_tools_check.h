@@ -13,6 +13,7 @@
 #include "mrpt/test_helpers.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
+#include "support/data_folder.h"
 
 #define EXPECT_CONTAINS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
@@ -96,12 +97,6 @@ inline mrpt::obs::CObservation3DRangeScan::Ptr scanAt(int i, const cv::Mat& imag
 }
 inline mrpt::obs::CObservation3DRangeScan::Ptr scanAt(int i, const std::string& label = "RGBD") {
     return scanAt(i, patternColour(smallCamera(), i), label);
-}
-
-/// The folder with the real clips.
-inline std::string dataFolder() {
-    const char* from_environment = std::getenv("ROEVO_DATA_DIR");
-    return from_environment != nullptr && *from_environment != '\0' ? from_environment : ROEVO_DATA_DIR;
 }
 
 /// Streams objects into a rawlog as other programs do.

@@ -8,6 +8,7 @@
 
 #include "datasets/dataset_reader.h"
 #include "roevo_mrpt/pose_conversions.h"
+#include "support/data_folder.h"
 #include "tools/bag_fixture.h"
 
 namespace roevo {
@@ -243,8 +244,7 @@ TEST_F(Bag2Rawlog, PathsMayHaveSpacesAndOtherLetters) {
 
 // The odometry sees the same bytes, whether it reads a folder or a bag made of the same images.
 TEST_F(Bag2Rawlog, GivesTheFramesOfTheFolderThatTheBagWasMadeOf) {
-    const char* data = std::getenv("ROEVO_DATA_DIR");
-    const std::filesystem::path clip = std::filesystem::path(data ? data : ROEVO_DATA_DIR) / "tum_fr1_desk_9";
+    const std::filesystem::path clip = std::filesystem::path(test::dataFolder()) / "tum_fr1_desk_9";
     if (!std::filesystem::is_directory(clip)) GTEST_SKIP() << "no clip " << clip;
     const DatasetReader dataset = openDataset(clip.string());
     const auto stamp = [](double seconds) {

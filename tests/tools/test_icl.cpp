@@ -7,6 +7,7 @@
 #include "datasets/handedness.h"
 #include "evaluation/trajectory_io.h"
 #include "roevo_simulator/simulator.h"
+#include "support/data_folder.h"
 #include "tools/small_dataset.h"
 
 namespace roevo {
@@ -195,7 +196,7 @@ TEST(Icl, OfSeveralTrajectoriesNoneIsTaken) {
 
 /// The real clip, put back into the dataset's own form.
 TEST(Icl, HandednessOfTheRealClip) {
-    const fs::path clip = fs::path(ROEVO_DATA_DIR) / "icl_office_kt0_50";
+    const fs::path clip = fs::path(test::dataFolder()) / "icl_office_kt0_50";
     if (!fs::exists(clip)) GTEST_SKIP() << clip << " is not there";
     const auto published = readTumTrajectory((clip / "groundtruth.txt").string());
     const auto number = [](double time) { return std::lround((time - 1000) * 30); };

@@ -28,8 +28,9 @@ class DistanceField {
 
 /// Registration as edge-based odometries before organized edges have it: a keyframe's 3-D edge points slide
 /// down the distance field of the current frame's edge mask. No association; a residual is the interpolated
-/// distance where a point is reprojected, never negative. Weights, narrowing radius, prior and number of
-/// steps are those of FineTracker, so that only the residual differs.
+/// distance where a point is reprojected, never negative. Weights, narrowing radius, prior and largest number
+/// of steps are those of FineTracker. Two things of it are missing: the residual in depth, since without
+/// association no point of the frame is there to have one, and the longer late steps, which overshoot here.
 class DistanceFieldTracker {
   public:
     /// @param photometric_weight  FineOptions::photometric_weight for the residual joined with the

@@ -36,7 +36,6 @@ class DistanceFieldMethod : public Method {
   private:
     static OdometryOptions trackingOnly(OdometryOptions options) {
         options.mode = Mode::kTracking;
-        options.mapping.semi_dense_points = 0;  // no scene is written
         return options;
     }
     static OdometryStages stagesOf(DistanceFieldTracker& tracker) {
@@ -61,8 +60,11 @@ std::vector<MethodInfo> distanceFieldMethods() {
     alone.name = kAlone;
     alone.label = "Distance field";
     alone.note =
-        "exact Euclidean distance field of the edge mask in place of ROEVO's fine tracking; edges, depth, "
-        "coarse tracking, keyframe rule and motion model are ROEVO's, so compare it with ROEVO TR";
+        "exact Euclidean distance field of the edge mask in place of ROEVO's fine tracking; edges, lifting "
+        "to "
+        "3-D, coarse tracking, choice of the start, motion model, keyframe rule and the test of being lost "
+        "(which associate edges once more) are ROEVO's, so compare it with ROEVO TR; without association it "
+        "has no residual in depth";
     joined.name = kJoined;
     joined.label = "Distance field + photometric";
     joined.note = "the same, its residual joined with the photometric one as in ROEVO's fine tracking";

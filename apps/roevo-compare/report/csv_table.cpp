@@ -6,7 +6,7 @@
 #include "roevo-compare/report/metrics.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
-#include "roevo-compare/report/text.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "roevo-compare/report/text.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {

@@ -7,8 +7,8 @@
 #include "roevo-compare/report/html_sequence.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
-#include "roevo-compare/report/text.h"
 #include "support/program.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {

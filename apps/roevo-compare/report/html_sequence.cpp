@@ -9,7 +9,7 @@
 #include "roevo-compare/report/html_parts.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/scene_picture.h"
-#include "roevo-compare/report/text.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {

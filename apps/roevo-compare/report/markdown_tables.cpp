@@ -4,7 +4,7 @@
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/tables.h"
-#include "roevo-compare/report/text.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {

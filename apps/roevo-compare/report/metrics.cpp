@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roevo-compare/report/text.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "roevo-compare/report/scratch_folder.h"
-#include "roevo-compare/report/text.h"
 #include "support/gnuplot.h"
+#include "support/text.h"
 
 namespace roevo {
 

@@ -13,13 +13,12 @@ const std::vector<std::string>& protocolLines() {
         "0.1 s); RMSE in cm/s and deg/s. RPE per frame: the same to the next pose, in cm and deg. Neither "
         "needs "
         "an alignment.",
-        "Same frames for every method, in the same order, undistorted, depth registered to colour. Frames "
-        "that "
-        "cannot be read are given to none and do not count.",
-        "Frames tracked: share of these frames to which the method measured the motion. Errors are over the "
-        "poses that a method gave, so those of a method that lost frames are of fewer, usually easier "
-        "frames: "
-        "below 90 % it ranks behind all that tracked more, and its errors are marked.",
+        "Same frames for every method, in the same order, as the lens saw them, depth registered to "
+        "colour. Frames that cannot be read are given to none and do not count. All use depth within the "
+        "same limits; options of the sensor and of the motion model hold for all that know them.",
+        "Frames tracked: share of these frames to which the method measured the motion. Errors are over all "
+        "poses that a method gave, those that it predicted where it had lost track, too. Below 90 % it ranks "
+        "behind all that tracked more, and its errors are marked.",
         "One configuration for all sequences; no option is tuned to a sequence.",
         "One processor core for each run. Times per frame are over tracked frames, without reading and "
         "decoding; "

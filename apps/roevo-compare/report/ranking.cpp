@@ -58,11 +58,14 @@ bool isOurs(const std::string& method) {
 }
 
 std::vector<TableMethod> oneRoevo(const std::vector<TableMethod>& methods) {
-    const auto last =
-        std::find_if(methods.rbegin(), methods.rend(), [](const TableMethod& m) { return isOurs(m.name); });
+    std::string fullest;
+    for (const char* mode : {"roevo-ct", "roevo-tr", "roevo-ba"})
+        if (std::any_of(methods.begin(), methods.end(),
+                        [&](const TableMethod& method) { return method.name == mode; }))
+            fullest = mode;
     std::vector<TableMethod> chosen;
     for (const TableMethod& method : methods)
-        if (!isOurs(method.name) || method.name == last->name) chosen.push_back(method);
+        if (!isOurs(method.name) || method.name == fullest) chosen.push_back(method);
     return chosen;
 }
 

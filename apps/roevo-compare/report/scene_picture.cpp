@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <thread>
 
-#include "roevo-compare/process.h"
 #include "roevo-compare/report/scratch_folder.h"
-#include "roevo-compare/report/text.h"
+#include "support/process.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {

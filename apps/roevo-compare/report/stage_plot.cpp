@@ -3,8 +3,8 @@
 
 #include "evaluation/error_statistics.h"
 #include "roevo-compare/report/plots.h"
-#include "roevo-compare/report/text.h"
 #include "support/gnuplot.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
-#include "roevo-compare/report/text.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {
@@ -272,8 +272,13 @@ std::string verdict(const std::vector<SequenceResults>& results) {
         const auto ranks = rankRuns(ate, result, std::vector<bool>(result.evaluated.size(), true));
         ranked += std::any_of(ranks.begin(), ranks.end(), [](const auto& r) { return r.has_value(); });
     }
-    return first->method.label + " has the smallest ATE on " + std::to_string(first->top[0]) + " of " +
-           std::to_string(ranked) + " sequence" + (ranked == 1 ? "" : "s") + " that could be ranked.";
+    std::string best;
+    for (const RankRow& row : rows)
+        if (row.top[0] == first->top[0]) best += (best.empty() ? "" : " and ") + row.method.label;
+    const bool tied = best != first->method.label;
+    return best + (tied ? " each have" : " has") + " the smallest ATE on " + std::to_string(first->top[0]) +
+           " of " + std::to_string(ranked) + " sequence" + (ranked == 1 ? "" : "s") +
+           " that could be ranked.";
 }
 
 }  // namespace roevo

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "roevo/mapping/edge_smoothing.h"
 #include "roevo/tracking/se3.h"
@@ -20,6 +21,12 @@ constexpr double kLargestJump = 0.1, kLargestTurn = 5;
 /// further from keyframe to keyframe than from frame to frame, and misleads the map more than it does
 /// tracking.
 constexpr double kMostSigmas = 4;
+
+/// Whether tracking told how well it knows the motion from the parent.
+bool hasInformation(const MapKeyframe& keyframe) {
+    return keyframe.parent_information.allFinite() &&
+           (keyframe.parent_information.diagonal().array() > 0).all();
+}
 
 }  // namespace
 
@@ -109,14 +116,11 @@ void LocalMapper::buildWindow(int newest, const std::vector<const MapKeyframe*>&
 
 double LocalMapper::sigmasFromTracked(const WindowKeyframe& view) const {
     const MapKeyframe& keyframe = *view.keyframe;
-    const auto kept = keyframes_.find(keyframe.parent);
-    if (kept == keyframes_.end() || !(keyframe.parent_information.diagonal().array() > 0).all()) return 0;
     const auto parent = std::find_if(window_.begin(), window_.end(), [&](const WindowKeyframe& other) {
         return other.keyframe->id == keyframe.parent;
     });
-    const Pose& T_world_parent =
-        parent == window_.end() ? kept->second.T_world_camera : parent->T_world_camera;
-    const Pose change = (T_world_parent * keyframe.T_parent_camera).inverse() * view.T_world_camera;
+    if (parent == window_.end() || !hasInformation(keyframe)) return 0;
+    const Pose change = (parent->T_world_camera * keyframe.T_parent_camera).inverse() * view.T_world_camera;
     const Matrix6d covariance = keyframe.parent_information.inverse();
     const double sigma_translation = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
     const double sigma_rotation = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
@@ -139,10 +143,12 @@ bool LocalMapper::acceptable(const WindowKeyframe& view, int inliers, std::strin
                  std::to_string(std::lround(1000 * jump.translation().norm())) + " mm";
         return false;
     }
-    if (const double sigmas = sigmasFromTracked(view); sigmas > kMostSigmas) {
-        reason = "keyframe " + std::to_string(keyframe.id) +
-                 " left as it was: bundle adjustment contradicts tracking by " +
-                 std::to_string(std::lround(sigmas)) + " sigmas";
+    if (const double sigmas = sigmasFromTracked(view); !(sigmas <= kMostSigmas)) {
+        char text[96];
+        std::snprintf(text, sizeof text,
+                      "keyframe %d left as it was tracked: bundle adjustment contradicts that by %.1f sigmas",
+                      keyframe.id, sigmas);
+        reason = text;
         return false;
     }
     return true;
@@ -154,7 +160,7 @@ void LocalMapper::addPriors() {
     for (std::size_t to = 0; to < window_.size(); ++to) {
         const MapKeyframe& keyframe = *window_[to].keyframe;
         for (std::size_t from = 0; from < to; ++from) {
-            if (window_[from].keyframe->id != keyframe.parent) continue;
+            if (window_[from].keyframe->id != keyframe.parent || !hasInformation(keyframe)) continue;
             RelativePrior prior;
             prior.from = static_cast<int>(from);
             prior.to = static_cast<int>(to);
@@ -204,22 +210,37 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
         adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kReusedScale);
     judge_.judge(window_, fused_, first.scale);
     update.refinement = adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
-    for (std::size_t slot = 0; slot < window_.size(); ++slot) {
-        WindowKeyframe& view = window_[slot];
-        const int inliers = slot < update.refinement.inliers.size() ? update.refinement.inliers[slot] : 0;
-        if (view.fixed) continue;
-        if (std::string fault; !acceptable(view, inliers, fault)) {
-            update.reason += (update.reason.empty() ? "" : "; ") + fault;
-            view.T_world_camera = view.keyframe->T_world_camera;
-            continue;
-        }
-        keyframes_.at(view.keyframe->id).T_world_camera = view.T_world_camera;
-        update.poses.emplace_back(view.keyframe->id, view.T_world_camera);
-    }
+    takePoses(update);
     keepVerdicts();
     if (options_.mapping.refine_depth) describeNewest(update);
     leaveWindow(keyframe);
     return update;
+}
+
+void LocalMapper::takePoses(MapUpdate& update) {
+    // All are judged before any is put back, else those that moved with one that is refused would be, too
+    std::vector<bool> refused(window_.size(), false);
+    for (std::size_t slot = 0; slot < window_.size(); ++slot) {
+        const int inliers = slot < update.refinement.inliers.size() ? update.refinement.inliers[slot] : 0;
+        std::string fault;
+        refused[slot] = !window_[slot].fixed && !acceptable(window_[slot], inliers, fault);
+        if (refused[slot]) update.reason += (update.reason.empty() ? "" : "; ") + fault;
+    }
+    for (std::size_t slot = 0; slot < window_.size(); ++slot) {
+        WindowKeyframe& view = window_[slot];
+        if (view.fixed) continue;
+        MapKeyframe& keyframe = keyframes_.at(view.keyframe->id);
+        if (refused[slot]) {
+            // Parents come before their children, so that this one's has its final pose
+            const auto parent = keyframes_.find(keyframe.parent);
+            view.T_world_camera = parent == keyframes_.end()
+                                      ? keyframe.T_world_camera
+                                      : parent->second.T_world_camera * keyframe.T_parent_camera;
+        }
+        if (refused[slot] && view.T_world_camera.matrix() == keyframe.T_world_camera.matrix()) continue;
+        keyframe.T_world_camera = view.T_world_camera;
+        update.poses.emplace_back(keyframe.id, view.T_world_camera);
+    }
 }
 
 EdgeVerdict LocalMapper::keptVerdict(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,

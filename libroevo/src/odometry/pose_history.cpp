@@ -1,10 +1,13 @@
 #include "pose_history.h"
 
+#include <algorithm>
+
 #include "roevo/tracking/se3.h"
 
 namespace roevo {
 namespace {
 
+constexpr double kStill = 0.02;      // m; less change of view than this is hardly any
 constexpr double kTypicalDepth = 2;  // m; at this depth a turn by 1 rad changes a view like so many metres
 
 double changeOfView(const Pose& motion) {
@@ -40,21 +43,25 @@ void PoseHistory::apply(const MapUpdate& update) {
     }
 }
 
-Pose PoseHistory::finalPose(const Link& link) const {
+Pose PoseHistory::finalPose(const Frame& frame) const {
+    const Link& link = frame.link;
     if (link.keyframe < 0) return link.T_parent_camera;
     const Pose from_parent = keyframePose(link.keyframe) * link.T_parent_camera;
     const auto next = static_cast<std::size_t>(link.keyframe) + 1;
     if (next >= links_.size() || links_[next].keyframe != link.keyframe) return from_parent;
     const Pose T_next_camera = links_[next].T_parent_camera.inverse() * link.T_parent_camera;
     const Pose from_next = keyframes_[next].T_world_camera * T_next_camera;
-    const double since = changeOfView(link.T_parent_camera), left = changeOfView(T_next_camera);
-    if (since + left <= 0) return from_parent;
+    // Where the camera hardly moves, changes are noise of tracking, and time shares better
+    const double begin = keyframes_[next - 1].timestamp, end = keyframes_[next].timestamp;
+    const double passed = end > begin ? std::clamp((frame.timestamp - begin) / (end - begin), 0.0, 1.0) : 1;
+    const double since = changeOfView(link.T_parent_camera) + kStill * passed;
+    const double left = changeOfView(T_next_camera) + kStill * (1 - passed);
     return interpolate(from_parent, from_next, since / (since + left));
 }
 
 std::vector<StampedPose> PoseHistory::frames() const {
     std::vector<StampedPose> poses;
-    for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame.link)});
+    for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame)});
     return poses;
 }
 

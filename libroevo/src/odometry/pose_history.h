@@ -37,7 +37,7 @@ class PoseHistory {
         double timestamp = 0;
         Link link;
     };
-    Pose finalPose(const Link& link) const;
+    Pose finalPose(const Frame& frame) const;
 
     std::vector<KeyframeInfo> keyframes_;
     std::vector<Link> links_;  ///< of the keyframes

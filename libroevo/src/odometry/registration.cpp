@@ -5,7 +5,7 @@ namespace roevo {
 FineResult refinePose(const OdometryStages& stages, FineTracker& fine, const Keyframe& keyframe,
                       const FineFrame& frame, const CoarseResult& aligned, const PosePrior& prior,
                       const RollingShutter& shutter) {
-    const Pose& T_start = aligned.T_current_keyframe;
+    const Pose T_start = fine.betterStart(keyframe, frame, aligned.T_current_keyframe, prior.mean, shutter);
     if (!stages.registration) return fine.track(keyframe, frame, T_start, prior, shutter, aligned.brightness);
     const FineResult found =
         stages.registration(keyframe, frame, T_start, prior, shutter, aligned.brightness);

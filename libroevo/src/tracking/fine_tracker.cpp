@@ -209,8 +209,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
     const PinholeCamera& camera = *frame.camera;
     const double depth = std::max(keyframe.median_depth, 0.1);
     current_depth_.assign(current.size(), kUnknown);
-    // Moving shadows and blur lead photometry astray before they do edges
-    Pose pose = betterStart(keyframe, frame, T_start, prior.mean, shutter);
+    Pose pose = T_start;
     Brightness gain = brightness;
     PoseSystem system;
     const double narrowing = std::clamp(options_.max_iterations - 1.0, 1.0, 4.0);

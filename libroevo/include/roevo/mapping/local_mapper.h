@@ -35,7 +35,7 @@ class LocalMapper {
     /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
     void setFound(int keyframe, std::vector<float> shares);
 
-    /// All of them at their present poses; points only of those in the window.
+    /// All of them at their present poses; points only of the newest, which the next window begins with.
     const std::map<int, MapKeyframe>& keyframes() const { return keyframes_; }
 
     /// All keyframes' edges fused at the present poses.
@@ -50,6 +50,7 @@ class LocalMapper {
     std::map<int, MapKeyframe> unpacked() const;
     std::vector<const MapKeyframe*> nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const;
     void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
+    void takePoses(MapUpdate& update);
     double sigmasFromTracked(const WindowKeyframe& view) const;
     bool acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const;
     void addPriors();

@@ -41,7 +41,6 @@ class FineTracker {
     FineTracker(const FineOptions& fine, const EdgeOptions& edges, const SensorOptions& sensor)
         : options_(fine), edge_options_(edges), sensor_(sensor), associator_(fine) {}
 
-    /// @param T_start  from coarse tracking; where more edges are found at the prior's mean, that is the start
     FineResult track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
                      const PosePrior& prior, const RollingShutter& shutter, const Brightness& brightness);
 
@@ -63,9 +62,12 @@ class FineTracker {
 
     const EdgeMatches& matches() const { return matches_; }  ///< of the last frame
 
-  private:
+    /// The coarse pose or the one that is likely beforehand: where they are apart, whichever finds more
+    /// edges. Moving shadows and blur lead photometry astray before they do edges.
     Pose betterStart(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_coarse,
                      const Pose& T_likely, const RollingShutter& shutter);
+
+  private:
     void project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera,
                  const RowMotion& rows);
     void geometricResiduals(const OrganizedEdges& current);

@@ -1,4 +1,4 @@
-#include "process.h"
+#include "support/process.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -98,18 +98,19 @@ bool ChildProcess::update() {
     }
     // Its own children go while its number still is its own, that is before it is waited for
     siginfo_t info{};
-    waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT);
-    const bool ended = info.si_pid == pid_;
-    if (ended) kill(-pid_, SIGKILL);
+    const bool unknown =
+        waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 && errno == ECHILD;
+    const bool ended = info.si_pid == pid_ || unknown;
+    if (ended && !unknown) kill(-pid_, SIGKILL);
     output_.read();
     error_.read();
     if (!ended) return true;
 
     int status = 0;
-    waitpid(pid_, &status, 0);
+    if (waitpid(pid_, &status, 0) != pid_) end_.exit_code = 1;  // nobody can tell any more
     running_ = false;
-    if (WIFEXITED(status)) end_.exit_code = WEXITSTATUS(status);
-    if (WIFSIGNALED(status)) end_.signal = WTERMSIG(status);
+    if (!unknown && WIFEXITED(status)) end_.exit_code = WEXITSTATUS(status);
+    if (!unknown && WIFSIGNALED(status)) end_.signal = WTERMSIG(status);
     output_.finish();
     error_.finish();
     return false;

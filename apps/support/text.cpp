@@ -1,4 +1,4 @@
-#include "roevo-compare/report/text.h"
+#include "support/text.h"
 
 #include <algorithm>
 #include <charconv>
