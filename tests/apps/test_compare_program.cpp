@@ -9,6 +9,7 @@
 
 #include "roevo-compare/compare.h"
 #include "roevo-compare/terminal_table.h"
+#include "support/process.h"
 #include "support/run_program.h"
 #include "support/tum_folder.h"
 
@@ -383,7 +384,7 @@ TEST_F(Compare, AnInterruptLeavesWhatIsFinishedAndResumeGoesOn) {
 }
 
 TEST_F(Compare, JobsAreToldInTheReport) {
-    if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core only";
+    if (allowedCores().size() < 2) GTEST_SKIP() << "one core only";
     const auto result = run({clip("clip", 6)}, {"--methods", "roevo-ct,roevo-tr", "--jobs", "2"});
     ASSERT_EQ(result.exit_code, 0) << result.all();
     EXPECT_EQ(kept("clip", "roevo-ct").jobs, 2u);

@@ -36,6 +36,14 @@ TEST_F(FileCopy, LinksToTheFileAndNotToALink) {
     EXPECT_FALSE(fs::is_symlink(folder_ / "b"));
 }
 
+TEST_F(FileCopy, NeverWritesIntoAFileThatIsThere) {
+    linkOrCopyFile(folder_ / "a", folder_ / "b");
+    const std::string before = test::readFile(folder_ / "a");
+    EXPECT_NE(errorOf([&] { linkOrCopyFile(folder_ / "a", folder_ / "b"); }).find("File exists"),
+              std::string::npos);
+    EXPECT_EQ(test::readFile(folder_ / "a"), before);
+}
+
 TEST_F(FileCopy, CopiesWhereLinksCannotReach) {
     if (!fs::is_directory("/dev/shm")) GTEST_SKIP() << "no /dev/shm";
     const fs::path other = fs::path("/dev/shm") / fs::path(folder_.path()).filename();

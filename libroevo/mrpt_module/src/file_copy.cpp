@@ -35,7 +35,7 @@ void copyFile(const std::string& source, const std::string& target) {
     };
     const int from = open(source.c_str(), O_RDONLY | O_CLOEXEC);
     if (from < 0) fail(errno);
-    const int to = open(target.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const int to = open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     int fault = to < 0 ? errno : copyBytes(from, to);
     if (to >= 0 && close(to) != 0 && fault == 0) fault = errno;
     close(from);
@@ -47,6 +47,9 @@ void linkOrCopyFile(const std::string& source, const std::string& target) {
     const auto file = std::filesystem::canonical(source, error);
     if (error) throw std::runtime_error("cannot read " + source + ": " + error.message());
     std::filesystem::create_hard_link(file, target, error);
+    // Writing into a link of an earlier time would write into the file that it shares
+    if (error == std::errc::file_exists)
+        throw std::runtime_error("cannot link " + source + " to " + target + ": " + error.message());
     if (error) copyFile(source, target);
 }
 
