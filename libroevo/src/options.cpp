@@ -269,6 +269,10 @@ std::string checkOptions(const OdometryOptions& options) {
         return "option sensor.depth_limit = " + numberToText(copy.sensor.depth_limit) +
                " must exceed sensor.min_depth = " + numberToText(copy.sensor.min_depth);
     }
+    if (copy.fine.final_radius > copy.fine.search_radius) {
+        return "option fine.final_radius = " + numberToText(copy.fine.final_radius) +
+               " must not exceed fine.search_radius = " + numberToText(copy.fine.search_radius);
+    }
     return {};
 }
 

@@ -219,5 +219,15 @@ TEST(Options, OdometryRefusesBadOnesWithTheirLine) {
     EXPECT_THROW(Odometry(PinholeCamera(), OdometryOptions()), std::invalid_argument);
 }
 
+TEST(Options, ThoseThatMustFitEachOtherAreNamedTogether) {
+    OdometryOptions radii;
+    radii.fine.final_radius = 7;
+    EXPECT_EQ(checkOptions(radii), "option fine.final_radius = 7 must not exceed fine.search_radius = 6");
+    OdometryOptions depths;
+    depths.sensor.depth_limit = depths.sensor.min_depth;
+    EXPECT_NE(checkOptions(depths).find("sensor.depth_limit"), std::string::npos) << checkOptions(depths);
+    EXPECT_EQ(checkOptions(OdometryOptions()), "");
+}
+
 }  // namespace
 }  // namespace roevo
