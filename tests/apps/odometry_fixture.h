@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "support/csv_lines.h"
 #include "support/run_program.h"
 #include "support/tum_folder.h"
 
@@ -36,21 +37,7 @@ class OdometryProgram : public testing::Test {
 
     /// Rows of frames.csv without the head; commas inside quotes do not separate.
     std::vector<std::vector<std::string>> rows() const {
-        std::vector<std::vector<std::string>> all;
-        std::istringstream text(readFile(output() + "/frames.csv"));
-        for (std::string line; std::getline(text, line);) {
-            std::vector<std::string> fields(1);
-            bool quoted = false;
-            for (const char c : line) {
-                if (c == '"')
-                    quoted = !quoted;
-                else if (c == ',' && !quoted)
-                    fields.emplace_back();
-                else
-                    fields.back() += c;
-            }
-            all.push_back(fields);
-        }
+        auto all = test::csvLines(readFile(output() + "/frames.csv"));
         if (!all.empty()) all.erase(all.begin());
         return all;
     }

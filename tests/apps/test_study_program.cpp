@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include "support/csv_lines.h"
 #include "support/run_program.h"
 #include "support/tum_folder.h"
 
@@ -33,20 +34,7 @@ class StudyProgram : public testing::Test {
 
     // Rows by column; no field may be anything but a finite number or a text.
     std::vector<Row> table(const std::string& name) const {
-        std::istringstream text(readFile(folder_ / ("out/" + name)));
-        std::vector<std::vector<std::string>> lines;
-        for (std::string line; std::getline(text, line);) {
-            auto& fields = lines.emplace_back(1);
-            bool quoted = false;
-            for (const char c : line) {
-                if (c == '"')
-                    quoted = !quoted;
-                else if (c == ',' && !quoted)
-                    fields.emplace_back();
-                else
-                    fields.back() += c;
-            }
-        }
+        const auto lines = test::csvLines(readFile(folder_ / ("out/" + name)));
         std::vector<Row> rows;
         for (std::size_t i = 1; i < lines.size(); ++i) {
             EXPECT_EQ(lines[i].size(), lines[0].size()) << name << ", line " << i + 1;
