@@ -17,12 +17,12 @@ roevo_test(test_core_mapping
           core/test_local_mapper.cpp core/test_packed_keyframe.cpp
   LIBS roevo Ceres::ceres)
 # One ctest entry per suite, since the cases of a suite share a rendered sequence.
-add_executable(test_core_odometry core/test_pose_history.cpp core/test_fine_tracker.cpp core/test_odometry_accuracy.cpp core/test_odometry_status.cpp
+add_executable(test_core_odometry core/test_pose_history.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp core/test_odometry_accuracy.cpp core/test_odometry_status.cpp
                core/test_odometry_covariance.cpp core/test_odometry_semi_dense.cpp core/test_odometry_stages.cpp)
 target_link_libraries(test_core_odometry PRIVATE roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
 # How the odometry is made inside
 target_include_directories(test_core_odometry PRIVATE ${PROJECT_SOURCE_DIR}/libroevo/src)
-foreach(suite PoseHistory FineTracking OdometryAccuracy OdometryStatus OdometryCovariance OdometrySemiDense OdometryStages)
+foreach(suite PoseHistory KeyframeFromMap FineTracking OdometryAccuracy OdometryStatus OdometryCovariance OdometrySemiDense OdometryStages)
   add_test(NAME ${suite} COMMAND test_core_odometry --gtest_filter=${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()

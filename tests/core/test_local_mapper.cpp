@@ -274,5 +274,37 @@ TEST_F(Mapper, RefinedDepthIsNearerToTheTruth) {
     }
 }
 
+TEST_F(Mapper, TellsWhichPointsTheTrackerShouldTrustLess) {
+    // The border of a shadow that wanders 3 px across itself from keyframe to keyframe
+    constexpr int kShadow = 2;
+    const auto curves = room();
+    for (const double weight : {1.0, 0.4}) {
+        options_.mapping.pseudo_weight = weight;
+        LocalMapper mapper(mappingCamera(), options_);
+        for (int k = 0; k < 5; ++k) {
+            auto sightings = seeAll(curves, std::fmod(0.37 * k, 1.0));
+            for (Sighting& sighting : sightings)
+                if (sighting.curve == kShadow) sighting.shift = 3.0 * k * Eigen::Vector2d(0.857, -0.514);
+            const TestKeyframe made = makeKeyframe(k, placeOnPath(k), curves, sightings);
+            const MapUpdate update = mapper.insert(made.keyframe);
+            if (k < 4) continue;
+            if (weight == 1) {
+                EXPECT_TRUE(update.weight.empty());
+                continue;
+            }
+            ASSERT_EQ(update.weight.size(), made.keyframe.size());
+            EXPECT_TRUE(update.depth_ratio.empty()) << "nobody asked for it";
+            int of_shadow = 0;
+            for (std::size_t i = 0; i < update.weight.size(); ++i) {
+                const auto edge = static_cast<std::size_t>(made.keyframe.image.edge_of[i]);
+                const bool is_shadow = made.curve_of_edge[edge] == kShadow;
+                of_shadow += is_shadow ? 1 : 0;
+                ASSERT_FLOAT_EQ(update.weight[i], is_shadow ? 0.4F : 1.0F) << "point " << i;
+            }
+            EXPECT_GT(of_shadow, 100);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace roevo

@@ -98,6 +98,7 @@ struct MappingOptions {
     bool deterministic = true;     ///< the tracker waits for the map; else it takes what is ready
     int latency = 4;               ///< frames after which the mapping of a keyframe takes effect
     bool refine_depth = false;      ///< the tracker uses the fused depth of its keyframe
+    double pseudo_weight = 0.3;     ///< what pseudo-edges of the keyframe still count in tracking
     /// Surface points kept of a keyframe, next to its edges (0: none); in all modes. 10 bytes each.
     int semi_dense_points = 2500;
 };

@@ -212,7 +212,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     update.refinement = adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
     takePoses(update);
     keepVerdicts();
-    if (options_.mapping.refine_depth) describeNewest(update);
+    describeNewest(update);
     leaveWindow(keyframe);
     return update;
 }
@@ -305,10 +305,13 @@ EdgeMap LocalMapper::fusedMap() const {
 }
 
 void LocalMapper::describeNewest(MapUpdate& update) const {
-    // Where the newest keyframe's points are according to all that see them
+    // Where the newest keyframe's points are according to all that see them, and which are no true edges
+    const bool depth = options_.mapping.refine_depth, weight = options_.mapping.pseudo_weight < 1;
+    if (!depth && !weight) return;
     const MapKeyframe& keyframe = *window_.back().keyframe;
     const auto newest = static_cast<std::int32_t>(window_.size()) - 1;
-    update.depth_ratio.assign(keyframe.size(), 1);
+    if (depth) update.depth_ratio.assign(keyframe.size(), 1);
+    if (weight) update.weight.assign(keyframe.size(), 1);
     update.source = keyframe.source;
     const Pose T_camera_world = keyframe.T_world_camera.inverse();
     for (int e = 0; e < fused_.numEdges(); ++e) {
@@ -320,7 +323,9 @@ void LocalMapper::describeNewest(MapUpdate& update) const {
             for (std::size_t k = first; k < end; ++k) {
                 if (fused_.observations[k].slot != newest) continue;
                 const auto i = static_cast<std::size_t>(fused_.observations[k].point);
-                if (end - first < 2 || fused_.verdicts[edge] != EdgeVerdict::kTrue) continue;
+                if (weight && isPseudo(fused_.verdicts[edge]))
+                    update.weight[i] = static_cast<float>(options_.mapping.pseudo_weight);
+                if (!depth || end - first < 2 || fused_.verdicts[edge] != EdgeVerdict::kTrue) continue;
                 const double z = (T_camera_world * fused_.points[p]).z();
                 const double ratio = z / static_cast<double>(keyframe.z[i]);
                 if (std::abs(ratio - 1) < 0.1) update.depth_ratio[i] = static_cast<float>(ratio);

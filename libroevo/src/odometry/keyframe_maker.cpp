@@ -6,6 +6,31 @@
 #include "roevo/tracking/se3.h"
 
 namespace roevo {
+namespace {
+
+/// One value for each of an image's edge points from those of the points that the map keeps, every n-th
+/// (`source`): points between take the nearest one's. All 1 where the map has none.
+std::vector<float> ofAllPoints(const OrganizedEdges& image, const std::vector<std::int32_t>& source,
+                               const std::vector<float>& values) {
+    std::vector<float> all(image.size(), 1);
+    if (values.empty()) return all;
+    for (std::size_t k = 0; k < source.size(); ++k) {
+        const auto edgeOf = [&](std::size_t other) {
+            return image.edge_of[static_cast<std::size_t>(source[other])];
+        };
+        const std::int32_t edge = edgeOf(k);
+        const bool has_before = k > 0 && edgeOf(k - 1) == edge;
+        const bool has_after = k + 1 < source.size() && edgeOf(k + 1) == edge;
+        const std::int32_t from =
+            has_before ? (source[k - 1] + source[k] + 1) / 2 : image.begin[static_cast<std::size_t>(edge)];
+        const std::int32_t to =
+            has_after ? (source[k] + source[k + 1] + 1) / 2 : image.begin[static_cast<std::size_t>(edge) + 1];
+        for (std::int32_t i = from; i < to; ++i) all[static_cast<std::size_t>(i)] = values[k];
+    }
+    return all;
+}
+
+}  // namespace
 
 bool keyframeIsDue(const Keyframe& keyframe, const FrameResult& result, const KeyframeOptions& options) {
     const Pose T_keyframe_current = keyframe.T_world_camera.inverse() * result.T_world_camera;
@@ -54,28 +79,15 @@ std::vector<float> foundShares(const Keyframe& keyframe) {
     return shares;
 }
 
-void refineDepth(Keyframe& keyframe, const MapUpdate& update) {
+void takeFromMap(Keyframe& keyframe, const MapUpdate& update) {
     EdgePoints3D& edges = keyframe.edges;
-    std::vector<float> ratio(edges.size(), 1);
-    // The map keeps every n-th point; those between take the nearest one's
-    for (std::size_t k = 0; k < update.source.size(); ++k) {
-        const std::int32_t edge = edges.image.edge_of[static_cast<std::size_t>(update.source[k])];
-        const bool has_before =
-            k > 0 && edges.image.edge_of[static_cast<std::size_t>(update.source[k - 1])] == edge;
-        const bool has_after = k + 1 < update.source.size() &&
-                               edges.image.edge_of[static_cast<std::size_t>(update.source[k + 1])] == edge;
-        const std::int32_t from = has_before ? (update.source[k - 1] + update.source[k] + 1) / 2
-                                             : edges.image.begin[static_cast<std::size_t>(edge)];
-        const std::int32_t to = has_after ? (update.source[k] + update.source[k + 1] + 1) / 2
-                                          : edges.image.begin[static_cast<std::size_t>(edge) + 1];
-        for (std::int32_t i = from; i < to; ++i) {
-            ratio[static_cast<std::size_t>(i)] = update.depth_ratio[k];
-        }
-    }
+    const std::vector<float> ratio = ofAllPoints(edges.image, update.source, update.depth_ratio);
+    const std::vector<float> weight = ofAllPoints(edges.image, update.source, update.weight);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         edges.x[i] *= ratio[i];
         edges.y[i] *= ratio[i];
         edges.z[i] *= ratio[i];
+        edges.weight[i] *= weight[i];
     }
     PhotometricPoints& points = keyframe.photometric;
     for (std::size_t k = 0; k < points.source.size(); ++k) {
@@ -83,6 +95,7 @@ void refineDepth(Keyframe& keyframe, const MapUpdate& update) {
         points.x[k] = edges.x[i];
         points.y[k] = edges.y[i];
         points.z[k] = edges.z[i];
+        points.weight[k] *= weight[i];
     }
 }
 

@@ -22,8 +22,9 @@ std::string makeKeyframe(const FrameData& data, int id, const PinholeCamera& cam
 /// Share of the frames that looked for each edge of the keyframe and found it; negative where too few did.
 std::vector<float> foundShares(const Keyframe& keyframe);
 
-/// Gives the keyframe's points the depth that all keyframes together found.
-void refineDepth(Keyframe& keyframe, const MapUpdate& update);
+/// Gives the keyframe's points the depth and the weight that all keyframes together found, where the update
+/// has them. Once per update: both are factors.
+void takeFromMap(Keyframe& keyframe, const MapUpdate& update);
 
 /// The keyframe's edges in the world, coloured from its image.
 EdgeMap mapEdgesOf(const Keyframe& keyframe, const RgbdFrame& frame, const PinholeCamera& camera);

@@ -128,7 +128,7 @@ void Odometry::Impl::applyMapUpdate(const MapUpdate& update, FrameResult& result
     motion.moveWorld(correction);
     result.map_turn += rotationAngle(correction);
     result.map_correction += (T_world_camera.translation() - position).norm();
-    if (update.keyframe == keyframe->id && options.mapping.refine_depth) refineDepth(*keyframe, update);
+    if (update.keyframe == keyframe->id) takeFromMap(*keyframe, update);
 }
 
 PoseHistory Odometry::Impl::finalPoses() const {

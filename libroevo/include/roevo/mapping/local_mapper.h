@@ -18,6 +18,8 @@ struct MapUpdate {
     std::vector<std::pair<int, Pose>> poses;  ///< T_world_camera of all keyframes that were refined
     /// Of the inserted keyframe's points: refined / measured depth. Empty without mapping.refine_depth.
     std::vector<float> depth_ratio;
+    /// Of the inserted keyframe's points: 1, or mapping.pseudo_weight on pseudo-edges. Empty where that is 1.
+    std::vector<float> weight;
     std::vector<std::int32_t> source;  ///< tracker's point of each of them
     int reused = 0;                    ///< old keyframes that took part
     RefinementResult refinement;
