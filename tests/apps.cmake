@@ -29,7 +29,7 @@ roevo_test(test_distance_field
 target_include_directories(test_distance_field PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 
 roevo_test(test_study_ablation
-  SOURCES apps/test_study_ablation.cpp
+  SOURCES apps/test_study_ablation.cpp apps/test_study_efficiency.cpp apps/test_study_points.cpp
   LIBS roevo_study roevo_simulator)
 target_include_directories(test_study_ablation PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 

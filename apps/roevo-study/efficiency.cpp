@@ -2,6 +2,7 @@
 #include "efficiency.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "evaluation/error_statistics.h"
 #include "support/gnuplot.h"
@@ -113,28 +114,21 @@ StudyReport studyEfficiency(const std::vector<StudyInput>& inputs, const std::st
     Measured together;
     Progress progress("efficiency", 0);
     std::size_t done = 0;
-    for (const StudyInput& input : inputs) {
+    forEachInput(inputs, report, [&](const StudyInput& input) {
         Measured measured = measureEfficiency(input, progress, done);
-        if (measured.frames.empty()) {
-            report.notes.push_back(input.name + ": no frame was tracked by both methods");
-            continue;
-        }
+        if (measured.frames.empty()) throw std::runtime_error("no frame was tracked by both methods");
         addRows(table, measured);
         together.mapping.insert(together.mapping.end(), measured.mapping.begin(), measured.mapping.end());
         together.all_frames += measured.all_frames;
         together.frames.insert(together.frames.end(), measured.frames.begin(), measured.frames.end());
         all.push_back(std::move(measured));
-    }
+    });
     progress.finish();
     addTable(report, folder, "efficiency.csv", table);
     report.notes.push_back("efficiency: only frames that both tracked, the least of " +
                            std::to_string(kEfficiencyPasses) +
                            " runs; the field is exact (OpenCV, DIST_MASK_PRECISE); left out on both sides: "
                            "undistortion, image pyramid, lifting a keyframe's edges, the keyframe rule");
-    if (all.empty()) {
-        report.summary = "no frame was tracked by both methods";
-        return report;
-    }
     draw(report, folder, all);
     const auto ms = [&](const std::vector<Operation>& parts) { return middle(together, parts); };
     report.summary = format(

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "support/program.h"
+
 namespace roevo {
 namespace {
 
@@ -88,23 +90,39 @@ void setGroundTruth(StudyInput& input, const InputSettings& settings, const Fram
         input.ground_truth_note = truth.note.empty() ? "no ground truth" : "no ground truth: " + truth.note;
 }
 
+StudyInput openInput(const std::string& path, const InputSettings& settings,
+                     const std::vector<StudyInput>& others) {
+    const auto source = openFrames(path, settings);
+    StudyInput input;
+    input.name = shortName(path, others);
+    input.path = path;
+    input.camera = source->camera();
+    input.options = settings.options;
+    setGroundTruth(input, settings, *source);
+    checkFrames(*source, path);
+    input.open = [path, settings] { return prefetch(openFrames(path, settings)); };
+    return input;
+}
+
 }  // namespace
 
-std::vector<StudyInput> openInputs(const InputSettings& settings) {
-    std::vector<StudyInput> inputs;
+OpenedInputs openInputs(const InputSettings& settings) {
+    OpenedInputs opened;
     for (const std::string& path : settings.paths) {
-        const auto source = openFrames(path, settings);
-        StudyInput input;
-        input.name = shortName(path, inputs);
-        input.path = path;
-        input.camera = source->camera();
-        input.options = settings.options;
-        setGroundTruth(input, settings, *source);
-        checkFrames(*source, path);
-        input.open = [path, settings] { return prefetch(openFrames(path, settings)); };
-        inputs.push_back(std::move(input));
+        try {
+            opened.usable.push_back(openInput(path, settings, opened.usable));
+        } catch (const std::exception& e) {
+            opened.left_out.push_back({path, firstLine(e.what())});
+        }
     }
-    return inputs;
+    if (opened.usable.empty())
+        throw std::runtime_error(
+            opened.left_out.empty() ? "no recording"
+            : opened.left_out.size() == 1
+                ? opened.left_out.front().reason
+                : "none of the " + std::to_string(opened.left_out.size()) +
+                      " recordings can be used; the first: " + opened.left_out.front().reason);
+    return opened;
 }
 
 }  // namespace roevo

@@ -7,6 +7,7 @@
 #include "index.h"
 #include "inputs.h"
 #include "recording/option_arguments.h"
+#include "roevo-compare/machine_info.h"
 #include "study.h"
 #include "support/output_folder.h"
 #include "support/program.h"
@@ -68,6 +69,8 @@ int runStudies(const std::vector<Study>& studies, const std::vector<StudyInput>&
         try {
             entry.report = study.run(inputs, folder);
             std::printf("%-14s %s\n", study.name, entry.report.summary.c_str());
+            for (const LeftOut& left_out : entry.report.left_out)
+                std::printf("%-14s %s: left out: %s\n", "", left_out.name.c_str(), left_out.reason.c_str());
             for (const std::string& note : entry.report.notes) std::printf("%-14s %s\n", "", note.c_str());
             if (plot_fault.empty()) plot_fault = entry.report.plot_fault;
         } catch (const std::exception& e) {
@@ -113,6 +116,8 @@ int run(int argc, char** argv) {
     app.footer(kFooter);
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
 
+    std::vector<std::string> words(argv, argv + argc);
+    words.front() = kName;
     const std::vector<Study> studies = chosenStudies(experiments);
     if (!settings.ground_truth.empty() && settings.paths.size() > 1)
         throw UsageError("--ground-truth is for a single --input, and there are " +
@@ -124,9 +129,15 @@ int run(int argc, char** argv) {
                          std::to_string(kFewestFrames) + " frames");
     settings.options = collectOptions(config_file, sets, mode);
     cv::setNumThreads(1);  // times are of one core
-    const std::vector<StudyInput> inputs = openInputs(settings);
+    StudyIndex index;
+    index.command = shellCommand(words);
+    index.time = utcNow();
+    const OpenedInputs inputs = openInputs(settings);
+    index.left_out = inputs.left_out;
     prepareOutputFolder(output);
-    return runStudies(studies, inputs, output, {commandLine(argc, argv), {}});
+    for (const LeftOut& left_out : inputs.left_out)
+        std::printf("%-14s %s: %s\n", "not used", left_out.name.c_str(), left_out.reason.c_str());
+    return runStudies(studies, inputs.usable, output, std::move(index));
 }
 
 }  // namespace

@@ -166,6 +166,48 @@ TEST_F(StudyProgram, GroundTruthOfAnotherTimeIsSaid) {
                 {"repeatability", "no two frames"});
 }
 
+TEST_F(StudyProgram, ABadRecordingIsALineAndTheOthersGoOn) {
+    write(4);
+    // Opened without a fault, but its ground truth is of another time
+    test::writeTumFolder(folder_ / "other_time", test::slidingRecording(4));
+    writeFile(folder_ / "other_time/groundtruth.txt",
+              "5 0 0 0 0 0 0 1\n5.1 0 0 0 0 0 0 1\n5.2 0 0 0 0 0 0 1\n");
+    const std::vector<std::string> more{"--input", folder_ / "none", folder_ / "other_time"};
+    ProgramResult result = run("repeatability", more);
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    const std::string line = "other_time: left out: " + (folder_ / "other_time: no two frames");
+    EXPECT_NE(result.out.find(line), std::string::npos) << result.out;
+    EXPECT_NE(index().find("- " + line), std::string::npos) << index();
+    EXPECT_NE(result.out.find("not used       " + (folder_ / "none") + ": "), std::string::npos)
+        << result.out;
+    EXPECT_NE(index().find("| not used | " + (folder_ / "none") + " | | "), std::string::npos) << index();
+    for (const Row& row : table("repeatability.csv")) EXPECT_EQ(row.at("recording"), "recording");
+
+    result = run("canny", more);
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_EQ(table("canny.csv").size(), 18u);
+    EXPECT_NE(result.out.find("other_time: errors at Otsu's threshold are not known"), std::string::npos)
+        << result.out;
+
+    std::filesystem::remove_all(folder_ / "recording");
+    expectError(run("repeatability", more), 1, kName, {"repeatability: other_time: ", "no two frames"});
+    std::filesystem::remove_all(folder_ / "other_time");
+    expectError(run("canny", more), 1, kName, {"none of the 3 recordings", folder_ / "recording"});
+}
+
+TEST_F(StudyProgram, TheReportTellsHowItWasMade) {
+    write(3);
+    ASSERT_EQ(run("depth-weight", {"--mode", "tr"}).exit_code, 0);
+    const std::string text = index();
+    EXPECT_NE(text.find("    roevo-study --experiment depth-weight --input " + (folder_ / "recording") +
+                        " --output " + (folder_ / "out") + " --mode tr\n"),
+              std::string::npos)
+        << text;
+    for (const char* word : {"Machine: ", " core", "ROEVO ", "MRPT ", "OpenCV ", "Eigen ", "compiler ",
+                             "Protocol of errors: ", "0.02 s", "SE(3)", "RPE over 1 s", "UTC"})
+        EXPECT_NE(text.find(word), std::string::npos) << word << " in\n" << text;
+}
+
 TEST_F(StudyProgram, WithoutGnuplotTheTablesAreWritten) {
     write(4);
     const test::TemporaryFolder empty;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
 
+#include "apps/memory_source.h"
 #include "inputs.h"
 #include "repeatability/bins.h"
 #include "repeatability/judge.h"
@@ -164,31 +165,6 @@ TEST(RepeatabilityPoses, AreInterpolatedOverShortGapsOnly) {
 
 // ---- whole recordings ----
 
-class MemorySource : public FrameSource {
-  public:
-    explicit MemorySource(std::vector<RgbdFrame> frames) : frames_(std::move(frames)) {}
-    bool next(SourceFrame& frame) override {
-        if (next_ == frames_.size()) return false;
-        frame = SourceFrame();
-        frame.frame = frames_[next_++];
-        frame.timestamp = frame.frame.timestamp;
-        return true;
-    }
-    bool skip() override { return next_ < frames_.size() && ++next_; }
-    const PinholeCamera& camera() const override { return camera_; }
-    std::string kind() const override { return "memory"; }
-    std::string cameraSource() const override { return "the test"; }
-    GroundTruth groundTruth() const override { return {}; }
-    std::vector<std::string> notes() const override { return {}; }
-    std::size_t size() const override { return frames_.size(); }
-    std::string warning() const override { return {}; }
-
-  private:
-    std::vector<RgbdFrame> frames_;
-    PinholeCamera camera_ = smallCamera();
-    std::size_t next_ = 0;
-};
-
 StudyInput inputOf(const std::vector<test::TumFrame>& recording, double step) {
     std::vector<RgbdFrame> frames;
     StudyInput input;
@@ -204,7 +180,7 @@ StudyInput inputOf(const std::vector<test::TumFrame>& recording, double step) {
         pose.T_world_camera.translation().x() = step * static_cast<double>(i);
         input.ground_truth.push_back(pose);
     }
-    input.open = [frames] { return std::make_unique<MemorySource>(frames); };
+    input.open = [frames] { return std::make_unique<test::MemorySource>(smallCamera(), frames); };
     return input;
 }
 
@@ -277,7 +253,7 @@ TEST(Repeatability, OrderOfThePaperOnARealClip) {
     if (!std::filesystem::exists(clip)) GTEST_SKIP() << "no " << clip;
     InputSettings settings;
     settings.paths = {clip};
-    const Repeatability measured = measureRepeatability(openInputs(settings).front(), {50, 50});
+    const Repeatability measured = measureRepeatability(openInputs(settings).usable.front(), {50, 50});
     const auto share = meanShares(measured.rows, 30, 49);
     const auto of = [&](AssociationMethod method) { return share[static_cast<std::size_t>(method)].value(); };
     EXPECT_GT(of(AssociationMethod::kDisjointSet), of(AssociationMethod::kNormals) + 0.1);

@@ -190,7 +190,7 @@ StudyReport studyRepeatability(const std::vector<StudyInput>& inputs, const std:
     std::vector<Repeatability> measured;
     std::vector<std::string> names;
     std::vector<RepeatabilityRow> pooled;
-    for (const StudyInput& input : inputs) {
+    forEachInput(inputs, report, [&](const StudyInput& input) {
         measured.push_back(measureRepeatability(input, plan));
         const Repeatability& of_input = measured.back();
         names.push_back(input.name);
@@ -210,7 +210,7 @@ StudyReport studyRepeatability(const std::vector<StudyInput>& inputs, const std:
         if (of_input.left_out > 0)
             note += "; " + counted(of_input.left_out, "frame") + " left out (unreadable or without a pose)";
         report.notes.push_back(note);
-    }
+    });
     addBins(bins, "all", pooled);
     addTable(report, folder, "repeatability.csv", rows);
     addTable(report, folder, "repeatability_binned.csv", bins);
