@@ -118,6 +118,10 @@ TEST_F(StudyProgram, Repeatability) {
     const auto rows = table("repeatability.csv");
     ASSERT_EQ(rows.size(), 3u);
     EXPECT_EQ(rows[2].at("judged_by"), "ground truth");
+    EXPECT_EQ(rows[2].at("reprojected_by"), "ground truth");
+    EXPECT_NE(index().find("recording: judged by ground truth; edges reprojected at ground truth"),
+              std::string::npos)
+        << index();
     EXPECT_NEAR(number(rows[2], "translation_m"), 0.03, 1e-9);
     for (const char* method : {"lk", "nearest", "normals", "keyframe", "disjoint_set"}) {
         EXPECT_GT(number(rows[0], std::string(method) + "_share"), 0.7) << method;
@@ -148,6 +152,10 @@ TEST_F(StudyProgram, NoGroundTruthIsSaidAndErrorsStayEmpty) {
     EXPECT_FALSE(exists("depth_weight.svg"));
     ASSERT_EQ(run("repeatability").exit_code, 0);
     EXPECT_EQ(table("repeatability.csv").at(0).at("judged_by"), "roevo-ba");
+    const std::string poses =
+        "judged by final poses of ROEVO ba; edges reprojected at final poses of ROEVO ba";
+    EXPECT_NE(index().find(poses), std::string::npos) << index();
+    EXPECT_NE(readFile(folder_ / "out/repeatability.svg").find(poses), std::string::npos);
 }
 
 TEST_F(StudyProgram, GroundTruthOfAnotherTimeIsSaid) {
