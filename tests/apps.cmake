@@ -34,7 +34,8 @@ roevo_test(test_study_ablation
 target_include_directories(test_study_ablation PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 
 roevo_test(test_compare
-  SOURCES apps/test_method_run.cpp apps/test_kept_run.cpp apps/test_run_queue.cpp apps/test_compare_benchmark.cpp apps/test_compare_program.cpp
+  SOURCES apps/test_method_run.cpp apps/test_kept_run.cpp apps/test_process.cpp apps/test_run_queue.cpp
+          apps/test_compare_benchmark.cpp apps/test_compare_program.cpp apps/test_compare_resume.cpp
   LIBS roevo_compare roevo_support roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog)
 

@@ -117,8 +117,8 @@ Figure errorFigure(const SequenceResults& results, const Legend& legend) {
         plot += (i == 0 ? "plot " : ", ") + std::string("$") + block + " using 1:2 with lines " +
                 gnuplotStyle(lines[i].style);
     }
-    return {drawInline(script + plot + "\n", kWidth, kHeight),
-            results.sequence->name + ": position error over time", ""};
+    return drawFigure(script + plot + "\n", kWidth, kHeight,
+                      results.sequence->name + ": position error over time", "");
 }
 
 }  // namespace roevo

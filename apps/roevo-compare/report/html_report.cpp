@@ -7,6 +7,7 @@
 #include "roevo-compare/report/html_sequence.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/remarks.h"
 #include "support/program.h"
 #include "support/text.h"
 
@@ -55,8 +56,8 @@ std::string summary(const std::vector<SequenceResults>& results, const Legend& l
 
 std::string ranking(const std::vector<SequenceResults>& results, const Legend& legend) {
     std::string html =
-        "<section id=\"Ranking\">\n<h2>Ranking</h2>\n<p>Number of sequences on which a method is among the "
-        "first 1, 2 and 3, and its mean rank.</p>\n";
+        "<section id=\"Ranking\">\n<h2>Ranking</h2>\n<p>Number of sequences, as they were run here, on "
+        "which a method is among the first 1, 2 and 3, and its mean rank.</p>\n";
     const auto one = oneRoevo(legend.methods);
     if (one.size() != legend.methods.size())
         html +=
@@ -75,10 +76,9 @@ std::string methodList(const Legend& legend) {
     return html + "</dl>\n</section>\n";
 }
 
-std::string protocol(const ComparisonInfo& info) {
+std::string protocol(bool pinned) {
     std::string html = "<section id=\"Protocol\">\n<h2>Protocol</h2>\n<ul class=\"lines\">\n";
-    for (const std::string& line : protocolLines()) html += element("li", line) + "\n";
-    for (const std::string& note : info.notes) html += element("li", note) + "\n";
+    for (const std::string& line : protocolLines(pinned)) html += element("li", line) + "\n";
     return html + "</ul>\n</section>\n";
 }
 
@@ -111,7 +111,8 @@ std::string htmlReport(const std::vector<SequenceResults>& results, const Compar
         std::string(pageStyle()) + "</style>\n</head>\n<body>\n" + header(results, legend, info);
     if (!writer.plotFault().empty()) html += remark("No plots: " + writer.plotFault());
     return html + "<main>\n" + summary(results, legend, folder) + sequences + ranking(results, legend) +
-           methodList(legend) + protocol(info) + repeating(info) + "</main>\n</body>\n</html>\n";
+           methodList(legend) + protocol(allPinned(results)) + repeating(info) +
+           "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace roevo

@@ -52,16 +52,31 @@ std::vector<Bar> barsOf(const SequenceComparison& sequence, std::vector<std::str
     return bars;
 }
 
-std::string barLabel(const Bar& bar) {
-    return shownNumber(bar.total.mean, bar.total.mean < 10 ? 2 : 1) + " ms";
+std::string timeText(double ms) {
+    return shownNumber(ms, ms < 10 ? 2 : 1);
 }
 
-}  // namespace
+// What a bar's label says, with what lies beyond the right edge and cannot be drawn.
+struct BarLabel {
+    std::string text;
+    bool beyond = false;
+};
 
-Figure stageFigure(const SequenceResults& results, std::vector<std::string>& stages) {
-    const std::vector<Bar> bars = barsOf(*results.sequence, stages);
-    if (bars.empty()) return {"", "", "No run has times that could be drawn."};
+BarLabel labelOf(const Bar& bar, double end) {
+    BarLabel label{timeText(bar.total.mean) + " ms", bar.total.mean > end};
+    if (label.beyond) label.text += " ▶";
+    const auto say = [&](const char* what, double ms) {
+        if (!isTime(ms) || ms <= end) return;
+        label.text += std::string(", ") + what + " " + timeText(ms) + " ▶";
+        label.beyond = true;
+    };
+    say("95th percentile", bar.total.p95);
+    say("processor", bar.processor);
+    return label;
+}
 
+// Right edge of the picture: all bars and marks, but for what is so far out that it would squash the others.
+double rightEdge(const std::vector<Bar>& bars) {
     std::vector<double> totals;
     for (const Bar& bar : bars) totals.push_back(bar.total.mean);
     const double limit = kClipAt * percentile(totals, 0.5);
@@ -69,22 +84,42 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
     for (const Bar& bar : bars)
         for (const double ms : {bar.total.mean, bar.total.p95, bar.processor})
             if (isTime(ms) && ms <= limit) longest = std::max(longest, ms);
-    const double end = 1.12 * std::max(longest, percentile(totals, 0));
+    return 1.12 * std::max(longest, percentile(totals, 0));
+}
 
+std::string axes(const std::vector<Bar>& bars, double end) {
     std::size_t longest_label = 0;
-    for (const Bar& bar : bars) longest_label = std::max(longest_label, countCharacters(bar.label));
-    std::string script = "unset key\nset lmargin " +
-                         exactNumber(kMarginByCharacter * static_cast<double>(longest_label) + 2) +
-                         "\nset rmargin 3\nset tmargin 0.5\nset bmargin 3.2\nset border 1\n"
-                         "set xlabel 'time per frame [ms]'\nset grid noytics xtics\nset ytics scale 0\n";
-    script += "set xrange [0:" + exactNumber(end) + "]\nset yrange [" +
-              exactNumber(static_cast<double>(bars.size()) - 0.35) + ":-0.6]\nset ytics (";
+    std::string tics;
+    for (std::size_t i = 0; i < bars.size(); ++i) {
+        longest_label = std::max(longest_label, countCharacters(bars[i].label));
+        tics += (i == 0 ? "" : ", ") + gnuplotText(bars[i].label) + " " + std::to_string(i);
+    }
+    return "unset key\nset lmargin " +
+           exactNumber(kMarginByCharacter * static_cast<double>(longest_label) + 2) +
+           "\nset rmargin 3\nset tmargin 0.5\nset bmargin 3.2\nset border 1\n"
+           "set xlabel 'time per frame [ms]'\nset grid noytics xtics\nset ytics scale 0\nset xrange [0:" +
+           exactNumber(end) + "]\nset yrange [" + exactNumber(static_cast<double>(bars.size()) - 0.35) +
+           ":-0.6]\nset ytics (" + tics + ")\n";
+}
+
+// The label stands behind all that is drawn of the bar, or at the edge where something lies beyond it.
+std::string labelScript(const Bar& bar, std::size_t row, double end) {
+    const BarLabel label = labelOf(bar, end);
+    double behind = std::min(bar.total.mean, end);
+    for (const double ms : {bar.total.p95, bar.processor})
+        if (isTime(ms) && ms <= end) behind = std::max(behind, ms);
+    return "set label " + gnuplotText(label.text) + " at " +
+           (label.beyond ? "graph 0.995, first " : "first " + exactNumber(behind) + ",") +
+           std::to_string(row) + (label.beyond ? " right front" : " left offset 0.7,0 front") +
+           " textcolor rgb '#222222'\n";
+}
+
+std::string plotScript(const std::vector<Bar>& bars, double end) {
     std::vector<std::vector<double>> rectangles, ticks, processor;
-    std::string labels, cut;
+    std::string labels;
     for (std::size_t i = 0; i < bars.size(); ++i) {
         const Bar& bar = bars[i];
         const double y = static_cast<double>(i);
-        script += (i == 0 ? "" : ", ") + gnuplotText(bar.label) + " " + std::to_string(i);
         double x = 0;
         for (const auto& [stage, ms] : bar.pieces) {
             if (x < end)
@@ -95,27 +130,23 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
         if (isTime(bar.total.p95) && bar.total.p95 <= end)
             ticks.push_back({bar.total.p95, y - 0.38, 0, 0.76});
         if (isTime(bar.processor) && bar.processor <= end) processor.push_back({bar.processor, y});
-        const bool clipped = bar.total.mean > end;
-        // The label stands behind all that is drawn of the bar
-        double behind = std::min(bar.total.mean, end);
-        for (const double ms : {bar.total.p95, bar.processor})
-            if (isTime(ms) && ms <= end) behind = std::max(behind, ms);
-        labels += "set label " + gnuplotText(barLabel(bar) + (clipped ? " ▶" : "")) + " at " +
-                  (clipped ? "graph 0.995, first " : "first " + exactNumber(behind) + ",") +
-                  std::to_string(i) + (clipped ? " right front" : " left offset 0.7,0 front") +
-                  " textcolor rgb '#222222'\n";
-        if (clipped) cut += (cut.empty() ? "" : ", ") + bar.label;
+        labels += labelScript(bar, i, end);
     }
-    script += ")\n" + labels + gnuplotData("bars", rectangles);
+    std::string data = gnuplotData("bars", rectangles);
     std::string plot = "plot $bars using 1:2:3:4:5:6:7 with boxxyerror fc rgb variable fs solid 1 noborder";
     if (!ticks.empty()) {
-        script += gnuplotData("ticks", ticks);
+        data += gnuplotData("ticks", ticks);
         plot += ", $ticks using 1:2:3:4 with vectors nohead lc rgb '#222222' lw 1.6 dt 1";
     }
     if (!processor.empty()) {
-        script += gnuplotData("processor", processor);
+        data += gnuplotData("processor", processor);
         plot += ", $processor using 1:2 with points pt 13 ps 0.9 lc rgb '#222222'";
     }
+    return labels + data + plot + "\n";
+}
+
+std::vector<std::pair<std::string, unsigned>> fillsOf(const std::vector<Bar>& bars,
+                                                      const std::vector<std::string>& stages) {
     std::vector<std::pair<std::string, unsigned>> fills;
     const auto used = [&](std::size_t stage) {
         return std::any_of(bars.begin(), bars.end(), [&](const Bar& bar) {
@@ -126,10 +157,24 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
     for (std::size_t k = 0; k < stages.size(); ++k)
         if (used(k)) fills.emplace_back(stages[k], stageRgb(k));
     if (used(kNoStage)) fills.emplace_back("in no stage", stageRgb(kNoStage));
+    return fills;
+}
+
+}  // namespace
+
+Figure stageFigure(const SequenceResults& results, std::vector<std::string>& stages) {
+    const std::vector<Bar> bars = barsOf(*results.sequence, stages);
+    if (bars.empty()) return {"", "", "No run has times that could be drawn."};
+    const double end = rightEdge(bars);
+    std::string beyond;
+    for (const Bar& bar : bars)
+        if (labelOf(bar, end).beyond) beyond += (beyond.empty() ? "" : ", ") + bar.label;
     const int height = kBarHeight * static_cast<int>(bars.size()) + kBesideHeight;
-    return {drawInline(script + plot + "\n", kWidth, height),
-            results.sequence->name + ": time per frame by stage",
-            cut.empty() ? "" : "Bars cut off at the right: " + cut + ".", fills};
+    Figure figure = drawFigure(axes(bars, end) + plotScript(bars, end), kWidth, height,
+                               results.sequence->name + ": time per frame by stage",
+                               beyond.empty() ? "" : "▶ lies beyond the right edge: " + beyond + ".");
+    figure.fills = fillsOf(bars, stages);
+    return figure;
 }
 
 }  // namespace roevo

@@ -1,7 +1,6 @@
 #include "roevo-compare/report/tables.h"
 
 #include <algorithm>
-#include <set>
 
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
@@ -104,8 +103,10 @@ std::string inUnit(const Metric& metric) {
     return metric.title + " [" + metric.unit + "]";
 }
 
-std::string protocolOf(const Metric& metric) {
-    return metric.is_error ? errorProtocol() : metric.is_share ? shareProtocol() : costProtocol();
+std::string protocolOf(const Metric& metric, const std::vector<SequenceResults>& results) {
+    return metric.is_error   ? errorProtocol()
+           : metric.is_share ? shareProtocol()
+                             : costProtocol(allPinned(results));
 }
 
 void addPaperRow(Table& table, const std::vector<SequenceResults>& results) {
@@ -116,7 +117,12 @@ void addPaperRow(Table& table, const std::vector<SequenceResults>& results) {
         row.cells.push_back({shownNumber(result.sequence->paper_ate_cm, 3), false, false, {}});
     row.cells.resize(table.columns.size());
     table.rows.push_back(row);
-    table.protocol += " The paper's figures are of whole sequences, by its own protocol.";
+    table.protocol += " The paper's figures are by its own protocol, of whole sequences";
+    for (const SequenceResults& result : results)
+        if (known(result) && !result.sequence->part.empty())
+            table.protocol +=
+                "; that of " + result.sequence->name + ", as ours, of its " + result.sequence->part;
+    table.protocol += ".";
 }
 
 // Appends the four columns of a rank table to the rows.
@@ -139,21 +145,11 @@ void addRanks(Table& table, const std::vector<RankRow>& rows) {
     }
 }
 
-// Why no run that went well has errors; nothing when one has.
-std::optional<std::string> commonFault(const SequenceResults& results) {
-    std::optional<std::string> fault;
-    for (std::size_t i = 0; i < results.evaluated.size(); ++i) {
-        if (results.evaluated[i].evaluation) return std::nullopt;
-        if (results.sequence->runs[i].ok() && !fault) fault = results.evaluated[i].fault;
-    }
-    return fault;
-}
-
 }  // namespace
 
 Table figureTable(const Metric& metric, const std::vector<SequenceResults>& results,
                   const std::vector<TableMethod>& methods) {
-    Table table{inUnit(metric), "Method", {}, {}, protocolOf(metric)};
+    Table table{inUnit(metric), "Method", {}, {}, protocolOf(metric, results)};
     std::vector<std::vector<bool>> best;
     for (const SequenceResults& result : results) {
         table.columns.push_back(result.sequence->name);
@@ -176,7 +172,7 @@ Table sequenceTable(const SequenceResults& results) {
                 "Method",
                 {},
                 {},
-                "Errors and times per frame. " + errorProtocol() + " " + costProtocol()};
+                "Errors and times per frame. " + errorProtocol() + " " + costProtocol(allPinned({results}))};
     for (const MethodRun& run : results.sequence->runs)
         table.rows.push_back({labelOf(run), isOurs(run.method), false, {}, {}});
     for (const Metric& metric : shownMetrics()) {
@@ -193,7 +189,7 @@ Table stageTable(const SequenceResults& results) {
                 "Method",
                 {"In all", "Decoding, apart", "By stage"},
                 {},
-                costProtocol(),
+                costProtocol(allPinned({results})),
                 true};
     const auto show = [](const StageStatistics& s) {
         return shownNumber(s.median, 2) + " / " + shownNumber(s.p95, 2);
@@ -234,31 +230,6 @@ Table rankingTable(const std::vector<SequenceResults>& results, const std::vecto
         for (const int count : {rows[i].sequences, rows[i].failures})
             table.rows[i].cells.push_back({std::to_string(count), false, false, {}});
     return table;
-}
-
-std::vector<std::string> remarks(const std::vector<SequenceResults>& results) {
-    std::vector<std::string> sentences;
-    for (const SequenceResults& result : results) {
-        const SequenceComparison& sequence = *result.sequence;
-        const auto say = [&](const std::string& what) { sentences.push_back(sequence.name + ": " + what); };
-        if (!sequence.failure.empty()) {
-            say("nothing could be run on it: " + sequence.failure);
-            continue;
-        }
-        if (!sequence.ground_truth_fault.empty())
-            say("its ground truth could not be used: " + sequence.ground_truth_fault);
-        else if (sequence.reference.empty())
-            say("no ground truth, so no errors and no rank");
-        else if (const auto fault = commonFault(result))
-            say("no run could be compared with its ground truth: " + *fault);
-        std::set<std::size_t> counts;
-        for (const MethodRun& run : sequence.runs)
-            if (run.ok()) counts.insert(run.frames - std::min(run.rejected, run.frames));
-        if (counts.size() > 1)
-            say("the methods were given " + std::to_string(*counts.begin()) + " to " +
-                std::to_string(*counts.rbegin()) + " frames, so their figures are not of the same frames");
-    }
-    return sentences;
 }
 
 std::string verdict(const std::vector<SequenceResults>& results) {
