@@ -48,15 +48,16 @@ struct Poses {
 
 class Measurement {
   public:
-    Measurement(const StudyInput& input, const ReferencePlan& plan, const Poses& poses)
+    Measurement(const StudyInput& input, const ReferencePlan& plan, const Poses& poses, std::string label)
         : input_(input),
           plan_(plan),
           poses_(poses),
+          label_(std::move(label)),
           extractor_(input.camera, input.options),
           sets_(input.camera, input.options) {}
 
     Repeatability run() {
-        Progress progress("repeatability of " + input_.name, poses_.frames);
+        Progress progress(label_, poses_.frames);
         const auto source = input_.open();
         std::size_t number = 0;
         for (SourceFrame frame; source->next(frame); ++number) {
@@ -171,6 +172,7 @@ class Measurement {
     const StudyInput& input_;
     ReferencePlan plan_;
     const Poses& poses_;
+    std::string label_;
     FeatureExtractor extractor_;
     DisjointSets sets_;
     std::deque<Reference> references_;
@@ -210,13 +212,14 @@ Repeatability measureRepeatability(const StudyInput& input, const ReferencePlan&
         options.mode = Mode::kBundleAdjustment;
         poses.judging = trackRecording(input, options).trajectory;
     }
-    Repeatability measured = Measurement(input, plan, poses).run();
+    const std::string label = "repeatability of " + input.name;
+    Repeatability measured = Measurement(input, plan, poses, label).run();
     measured.disagreement = medianDisagreement(measured);
     const bool exact = truth && measured.disagreement <= kExactPoses;
     if (exact) {  // then the odometry, which saw these very associations, need not be asked
         const double disagreement = measured.disagreement;
         poses.searching = poses.judging;
-        measured = Measurement(input, plan, poses).run();
+        measured = Measurement(input, plan, poses, label + ", at the ground truth").run();
         measured.disagreement = disagreement;
     }
     measured.judged_by = truth ? "ground truth" : "roevo-ba";

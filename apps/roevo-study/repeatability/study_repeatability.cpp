@@ -101,6 +101,14 @@ std::string inWords(const std::string& poses) {
     return "final poses of ROEVO " + poses.substr(6);
 }
 
+// For the small space over a panel.
+std::string posesInShort(const Repeatability& measured) {
+    const auto shortly = [](const std::string& poses) {
+        return poses.rfind("roevo-", 0) == 0 ? "ROEVO " + poses.substr(6) : poses;
+    };
+    return "judged by " + shortly(measured.judged_by) + ", reprojected by " + shortly(measured.searched_by);
+}
+
 std::string posesInWords(const Repeatability& measured) {
     return "judged by " + inWords(measured.judged_by) + "; edges reprojected at " +
            inWords(measured.searched_by);
@@ -142,7 +150,7 @@ struct Sheet {
     int columns = 1, lines = 1, width = 0, height = 0, key_rows = 1;  // panels; px
 
     // A panel's axes, px left of, below, right of and above them.
-    static constexpr int kLeft = 80, kBelow = 60, kRight = 15, kAbove = 50, kKeyRow = 24;
+    static constexpr int kLeft = 80, kBelow = 60, kRight = 15, kAbove = 58, kKeyRow = 24;
 
     int keyHeight() const { return key_rows * kKeyRow + 16; }
     std::string head() const {
@@ -196,7 +204,7 @@ void drawRecordings(StudyReport& report, const std::string& folder, const std::v
     for (std::size_t i = 0; i < names.size(); ++i)
         script +=
             sheet.place(i) + "set title " + gnuplotText(names[i]) + ".\"\\n\".'{/=11 '." +
-            gnuplotText(posesInWords(measured[i])) + ".'}'\nset ylabel " +
+            gnuplotText(posesInShort(measured[i])) + ".'}'\nset ylabel " +
             gnuplotText(i % static_cast<std::size_t>(sheet.columns) == 0 ? "rightly associated (%)" : "") +
             '\n' + panel("recording" + std::to_string(i), measured[i].rows, kDistances[0]) + "unset key\n";
     addPlot(report, folder, "repeatability_recordings.svg", script + "unset multiplot", sheet.width,
