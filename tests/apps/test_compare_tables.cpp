@@ -234,6 +234,34 @@ TEST(CompareTable, ManySequencesAreRows) {
     EXPECT_EQ(out.row("seq3", "a").at("paper_roevo_ba_ate_cm"), "1.234");
 }
 
+TEST(CompareTable, SaysOfWhichFramesThePapersFiguresAre) {
+    auto whole = makeSequence("whole", {makeRun("a", 0.01)}),
+         part = makeSequence("part", {makeRun("a", 0.01)});
+    whole.paper_ate_cm = 1.5;
+    part.part = "frames 10 to 24";
+    const std::string words = "The paper's figures are by its own protocol, of whole sequences";
+    EXPECT_TRUE(contains(WrittenComparison({whole, part}).md, words + ".")) << "the part has none";
+    part.paper_ate_cm = 2.5;
+    EXPECT_TRUE(contains(WrittenComparison({whole, part}).md,
+                         words + "; that of part, as ours, of its frames 10 to 24."));
+}
+
+TEST(CompareTable, RunsThatAreNotPinnedAreNotSaidToBeOnOneCore) {
+    auto pinned = makeSequence("pinned", {makeRun("a", 0.01)}),
+         free = makeSequence("free", {makeRun("a", 0.01)});
+    free.runs[0].not_pinned = "core 1: it is not allowed";
+    const WrittenComparison good({pinned}), out({pinned, free});
+    EXPECT_FALSE(contains(good.md, "Not pinned") || contains(good.html, "Not pinned"));
+    for (const std::string* text : {&out.md, &out.html}) {
+        EXPECT_TRUE(contains(*text, "Not pinned: not every run was bound to one core. Times per frame"));
+        EXPECT_TRUE(contains(*text, "Not pinned to one core, reading and decoding apart"));
+        EXPECT_FALSE(contains(*text, "One processor core for each run"));
+    }
+    EXPECT_EQ(out.row("free", "a").at("not_pinned"), "core 1: it is not allowed");
+    EXPECT_TRUE(contains(out.row("free", "a").at("protocol"), "Not pinned"));
+    EXPECT_FALSE(contains(out.row("pinned", "a").at("protocol"), "Not pinned"));
+}
+
 // The figures of the paper's ATE tables in our ranking. Its own rank table says 13, 15, 18 for ROEVO and
 // slightly other numbers for the others; these follow from its own figures (counted by a script of its own).
 TEST(Ranking, OfThePapersFigures) {

@@ -121,8 +121,9 @@ std::string SequenceWriter::write(const SequenceResults& results, std::size_t nu
 std::string SequenceWriter::plots(const SequenceResults& results) {
     if (!plot_fault_.empty()) return {};
     try {
-        return trajectoryBlock(results, legend_) + errorBlock(results, legend_) +
-               stageBlock(results, stages_);
+        std::string html = trajectoryBlock(results, legend_);
+        html += errorBlock(results, legend_);
+        return html + stageBlock(results, stages_);
     } catch (const NoGnuplot& e) {
         plot_fault_ = e.what();  // the others need not be tried
         return {};
