@@ -37,9 +37,9 @@ target_include_directories(test_study_ablation PRIVATE ${CMAKE_CURRENT_SOURCE_DI
 roevo_test(test_compare
   SOURCES apps/test_method_run.cpp apps/test_kept_run.cpp apps/test_process.cpp apps/test_run_queue.cpp
           apps/test_compare_benchmark.cpp apps/test_compare_program.cpp apps/test_compare_resume.cpp
-          apps/test_compare_terminal.cpp
+          apps/test_compare_terminal.cpp apps/test_compare_ba_first.cpp
   LIBS roevo_compare roevo_support roevo_test_support nlohmann_json::nlohmann_json)
-add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog)
+add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog rawlog-simulate)
 
 # One ctest entry per method, since its cases share rendered frames.
 add_executable(test_compare_baselines apps/test_compare_baselines.cpp apps/test_depth_resampler.cpp)
