@@ -1,13 +1,14 @@
 // Ablation of coarse tracking (the paper's "Ablation Studies"): the same tracker on other points. Short
 // recordings are a matter of luck, so every one is tracked several ways.
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "ablation_pieces.h"
+#include "bar_chart.h"
 #include "roevo-compare/report/results.h"
 #include "roevo/odometry.h"
 #include "study.h"
-#include "support/gnuplot.h"
 #include "support/progress.h"
 
 namespace roevo {
@@ -126,57 +127,34 @@ struct Group {
     std::vector<PooledPieces> passes;  // dots; none for all recordings together
 };
 
-double barAt(std::size_t group, std::size_t variant) {
-    return static_cast<double>(group) + 0.2 * (static_cast<double>(variant) - 1.5);
-}
-
 /// Bars side by side for each recording and for all together; a dot for each way it was tracked.
 void draw(StudyReport& report, const std::string& folder, const std::vector<Group>& groups) {
-    std::vector<std::vector<double>> bars, dots;
-    std::vector<std::string> names;
-    std::string failed;
+    BarChart chart;
+    chart.title = "Coarse tracking alone: relative pose error over 1 s (RMSE)";
+    chart.dots_label = "each way of tracking";
+    chart.panels = {{"translation (cm/s)", {}}, {"rotation (deg/s)", {}}};
+    for (std::size_t v = 0; v < kVariants; ++v)
+        chart.series.push_back({label(kAllCoarsePoints[v]), static_cast<int>(v) + 1});
     for (std::size_t g = 0; g < groups.size(); ++g) {
-        names.push_back(groups[g].name);
-        bars.push_back({static_cast<double>(g)});
+        chart.groups.push_back(groups[g].name);
+        for (BarChart::Panel& panel : chart.panels) panel.bars.emplace_back();
         for (std::size_t v = 0; v < kVariants; ++v) {
-            const PooledErrors& errors = groups[g].pooled.variants[v].errors;
-            bars.back().push_back(100 * errors.metresPerSecond().value_or(kMissing));
-            bars.back().push_back(errors.degPerSecond().value_or(kMissing));
-            for (const PooledPieces& pass : groups[g].passes)
-                dots.push_back({barAt(g, v),
-                                100 * pass.variants[v].errors.metresPerSecond().value_or(kMissing),
-                                pass.variants[v].errors.degPerSecond().value_or(kMissing)});
+            const double x = chart.barAt(g, v);
+            const auto values = [v](const PooledPieces& pooled) {
+                const PooledErrors& errors = pooled.variants[v].errors;
+                return std::array<double, 2>{100 * errors.metresPerSecond().value_or(kMissing),
+                                             errors.degPerSecond().value_or(kMissing)};
+            };
+            for (std::size_t quantity = 0; quantity < 2; ++quantity) {
+                chart.panels[quantity].bars.back().push_back(values(groups[g].pooled)[quantity]);
+                for (const PooledPieces& pass : groups[g].passes)
+                    chart.panels[quantity].dots.emplace_back(x, values(pass)[quantity]);
+            }
             if (const std::size_t count = groups[g].pooled.failed[v]; count > 0)
-                failed += format(
-                    "set label 'left unfinished: %zu' at first %g, graph 0.03 rotate by 90 front "
-                    "font ',11'\n",
-                    count, barAt(g, v));
+                chart.marks.emplace_back(x, "not finished: " + std::to_string(count));
         }
     }
-    std::string script = gnuplotData("bars", bars) + gnuplotData("dots", dots) + failed +
-                         "set multiplot\nset xtics scale 0 " + plotTics(names) +
-                         format("\nset xrange [-0.6:%g]\n", static_cast<double>(names.size()) - 0.4) +
-                         "set boxwidth 0.18\nset lmargin at screen 0.085\nset rmargin at screen 0.98\n"
-                         "set grid noxtics\nset yrange [0:*]\n"
-                         "set key at screen 0.53, 0.92 center center horizontal Left reverse maxrows 2 width "
-                         "2\n";
-    for (std::size_t quantity = 0; quantity < 2; ++quantity) {
-        script +=
-            quantity == 0
-                ? "set tmargin at screen 0.85\nset bmargin at screen 0.55\nset ylabel 'translation "
-                  "(cm/s)'\nset label 'Coarse tracking alone: relative pose error over 1 s (RMSE)' at "
-                  "screen 0.53, 0.975 center\nplot "
-                : "unset key\nset tmargin at screen 0.42\nset bmargin at screen 0.12\nset ylabel 'rotation "
-                  "(deg/s)'\nplot ";
-        for (std::size_t v = 0; v < kVariants; ++v)
-            script += format("$bars using ($1%+.2f):%zu with boxes lt %zu title ", barAt(0, v),
-                             2 + 2 * v + quantity, v + 1) +
-                      gnuplotText(label(kAllCoarsePoints[v])) + ", ";
-        script += format(
-            "$dots using 1:%zu with points pt 7 ps 0.35 lc rgb '#222222' title 'each way of tracking'\n",
-            2 + quantity);
-    }
-    addPlot(report, folder, "ablation.svg", script + "unset multiplot\n", 980, 680);
+    addBarChart(report, folder, "ablation.svg", chart);
 }
 
 std::string faultOf(const StudyInput& input, const PooledPieces& pooled) {

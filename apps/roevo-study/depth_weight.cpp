@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bar_chart.h"
 #include "roevo/tracking/edge_points.h"
 #include "study.h"
 #include "support/gnuplot.h"
@@ -104,25 +105,19 @@ void addRows(CsvTable& table, const StudyInput& input, const std::vector<WeightS
 
 void drawErrors(StudyReport& report, const std::string& folder, const std::vector<WeightSet>& sets,
                 const std::vector<std::string>& names, const std::vector<Errors>& errors) {
-    std::vector<std::vector<double>> bars;
-    for (const Errors& of_input : errors) {
-        bars.push_back({static_cast<double>(bars.size())});
-        for (std::size_t s = 0; s < sets.size(); ++s)
-            bars.back().push_back(of_input.ratio(s).value_or(kMissing));
-    }
-    std::string script =
-        gnuplotData("bars", bars) +
-        "set title 'Error of the trajectory under the depth weight'\n"
-        "set ylabel 'ATE / ATE without weight'\nset yrange [0:*]\nset xtics scale 0 " +
-        plotTics(names) + format("\nset xrange [-0.6:%g]\n", static_cast<double>(names.size()) - 0.4) +
-        "set key outside right center Left reverse title 'k (1/m), d_{min} (m), d_{max} (m)'\n"
-        "set boxwidth 0.18\nset bmargin 5\nset grid noxtics\nplot 1 with lines lt 7 dt 2 lw 1.5 title 'none "
-        "(k = 0)'";
+    BarChart chart;
+    chart.title = "Error of the trajectory under the depth weight; in brackets k (1/m), d_min (m), d_max (m)";
+    chart.unit_label = label(sets[0]);
+    chart.groups = names;
+    chart.panels = {{"ATE / ATE without weight", {}}};
     for (std::size_t s = 1; s < sets.size(); ++s)
-        script += format(", $bars using ($1%+.2f):%zu with boxes lt %zu title ",
-                         0.2 * (static_cast<double>(s) - 2.5), s + 2, s) +
-                  gnuplotText(label(sets[s]));
-    addPlot(report, folder, "depth_weight.svg", script, plotWidth(names.size(), 420), 440);
+        chart.series.push_back({label(sets[s]), static_cast<int>(s)});
+    for (const Errors& of_input : errors) {
+        chart.panels[0].bars.emplace_back();
+        for (std::size_t s = 1; s < sets.size(); ++s)
+            chart.panels[0].bars.back().push_back(of_input.ratio(s).value_or(kMissing));
+    }
+    addBarChart(report, folder, "depth_weight.svg", chart);
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ void addPlot(StudyReport& report, const std::string& folder, const std::string& 
 }
 
 std::string plotLabel(const std::string& name) {
-    constexpr std::size_t kLongest = 17;  // characters in a line
+    constexpr std::size_t kLongest = 19;  // characters in a line
     std::vector<std::string> lines(1);
     std::string word;
     const auto takeWord = [&] {
@@ -144,7 +144,7 @@ std::string counted(std::size_t count, const std::string& noun) {
 }
 
 std::string format(const char* pattern, ...) {
-    char text[1024];
+    char text[2048];
     va_list arguments;
     va_start(arguments, pattern);
     std::vsnprintf(text, sizeof text, pattern, arguments);
