@@ -1,6 +1,7 @@
 // report.html: well-formed, nothing to be loaded, plots and pictures or the reason why there are none.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -8,6 +9,8 @@
 #include <regex>
 
 #include "report_fixture.h"
+#include "roevo-compare/report/line_style.h"
+#include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/scene_picture.h"
 #include "support/interrupt.h"
 #include "support/process.h"
@@ -236,6 +239,25 @@ TEST(CompareReport, WithoutGnuplotSaysSoOnce) {
     EXPECT_TRUE(contains(out.html, "<td class=\"best\">0.200</td>"));
 }
 
+TEST(CompareReport, TheFullestModeHasTheBoldestLineInWhateverOrder) {
+    const auto styleOf = [](const std::vector<std::string>& names, const char* wanted) {
+        std::vector<TableMethod> methods;
+        for (const std::string& name : names) methods.push_back({name, name, ""});
+        const auto styles = lineStyles(methods);
+        return styles[static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted) -
+                                               names.begin())];
+    };
+    for (const std::vector<std::string>& names :
+         {std::vector<std::string>{"roevo-ct", "roevo-tr", "difodo-240", "roevo-ba"},
+          {"roevo-ba", "difodo-240", "roevo-tr", "roevo-ct"}}) {
+        EXPECT_GT(styleOf(names, "roevo-ba").width, styleOf(names, "roevo-tr").width);
+        EXPECT_GT(styleOf(names, "roevo-tr").width, styleOf(names, "roevo-ct").width);
+        EXPECT_EQ(
+            oneRoevo({{names[0], "", ""}, {names[1], "", ""}, {names[2], "", ""}, {names[3], "", ""}}).size(),
+            2u);
+    }
+}
+
 // A gnuplot that fails with the first and the third of four plots.
 TEST(CompareReport, APlotThatFailsCostsOnlyThatPlot) {
     const std::string gnuplot = findProgram("gnuplot");
@@ -271,11 +293,14 @@ TEST(CompareReport, MarksBeyondTheEdgeOfAPlotAreWritten) {
     slow.total = {"total", 654, 765.4, 654.3};
     const std::string within = stageDrawing({makeRun("a", 0.01), makeRun("b", 0.01)});
     EXPECT_FALSE(contains(within, "▶")) << "all is drawn";
+    auto twice = makeRun("twice", 0.01);
+    twice.total.p95 = 13.9;
+    EXPECT_FALSE(contains(stageDrawing({makeRun("a", 0.01), twice}), "▶")) << "worth a longer axis";
     const std::string drawing =
         stageDrawing({makeRun("a", 0.01), makeRun("b", 0.01), makeRun("c", 0.01), outlier, busy, slow});
-    for (const char* label : {"7.00 ms, 95th percentile 432.1 ▶", "7.00 ms, processor 321.4 ▶",
-                              "654.3 ms ▶, 95th percentile 765.4 ▶",
-                              "beyond the right edge: label of outlier, label of busy, label of slow."})
+    for (const char* label : {"mean 7.00, 95th percentile 432.1 ▶, processor 7.25",
+                              "mean 7.00, 95th percentile 9.00, processor 321.4 ▶",
+                              "mean 654.3 ▶, 95th percentile 765.4 ▶, processor 7.25"})
         EXPECT_TRUE(contains(drawing, label)) << label << "\n" << drawing;
 }
 

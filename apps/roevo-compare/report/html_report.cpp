@@ -15,6 +15,7 @@ namespace roevo {
 namespace {
 
 // Of the figures in the summary of several sequences: the rest is with each sequence.
+constexpr std::size_t kFewSequences = 2;  // so many let two tables stand side by side on a wide page
 constexpr std::size_t kSummaryMetrics[] = {0, 1, 2, 5, 6};
 
 std::string count(std::size_t n, const std::string& what) {
@@ -48,10 +49,11 @@ std::string summary(const std::vector<SequenceResults>& results, const Legend& l
         "<section>\n<h2>Summary</h2>\n<p>The best figure is bold on blue. A dash is explained beneath the "
         "table; figures in italics are of runs that tracked less than 90 % of the frames.</p>\n";
     if (results.size() == 1) return html + allFigures(results[0], "summary", folder) + "</section>\n";
+    html += results.size() <= kFewSequences ? "<div class=\"few\">\n" : "<div>\n";
     for (const std::size_t m : kSummaryMetrics)
         html +=
             setTable(figureTable(shownMetrics()[m], results, legend.methods), "summary" + std::to_string(m));
-    return html + "</section>\n";
+    return html + "</div>\n</section>\n";
 }
 
 std::string ranking(const std::vector<SequenceResults>& results, const Legend& legend) {

@@ -9,10 +9,11 @@
 namespace roevo {
 namespace {
 
-constexpr int kWidth = 1120, kBarHeight = 30, kBesideHeight = 66;  // px
-constexpr std::size_t kLongestLabel = 42;                          // characters
-constexpr double kMarginByCharacter = 0.75;                        // gnuplot counts in widths of a wide one
+constexpr int kWidth = 960, kBarHeight = 30, kBesideHeight = 66;  // px
+constexpr std::size_t kLongestLabel = 42;                         // characters
+constexpr double kMarginByCharacter = 0.75;                       // gnuplot counts in widths of a wide one
 constexpr double kClipAt = 5;  // times the median bar: what is longer is cut off, so that others stay legible
+constexpr double kMarksAt = 2;       // times the longest bar: marks that lie further out are cut off, too
 constexpr double kLeastRest = 0.02;  // share of the total that is worth a piece of the bar
 
 struct Bar {
@@ -56,22 +57,22 @@ std::string timeText(double ms) {
     return shownNumber(ms, ms < 10 ? 2 : 1);
 }
 
-// What a bar's label says, with what lies beyond the right edge and cannot be drawn.
+// What a bar's label says. Where something lies beyond the right edge the label stands there, on what is
+// drawn of the bar, and names every figure.
 struct BarLabel {
     std::string text;
     bool beyond = false;
 };
 
 BarLabel labelOf(const Bar& bar, double end) {
-    BarLabel label{timeText(bar.total.mean) + " ms", bar.total.mean > end};
-    if (label.beyond) label.text += " ▶";
-    const auto say = [&](const char* what, double ms) {
-        if (!isTime(ms) || ms <= end) return;
-        label.text += std::string(", ") + what + " " + timeText(ms) + " ▶";
-        label.beyond = true;
-    };
-    say("95th percentile", bar.total.p95);
-    say("processor", bar.processor);
+    const auto isBeyond = [&](double ms) { return isTime(ms) && ms > end; };
+    const auto text = [&](double ms) { return timeText(ms) + (isBeyond(ms) ? " ▶" : ""); };
+    BarLabel label{timeText(bar.total.mean) + " ms",
+                   isBeyond(bar.total.mean) || isBeyond(bar.total.p95) || isBeyond(bar.processor)};
+    if (!label.beyond) return label;
+    label.text = "mean " + text(bar.total.mean);
+    if (isTime(bar.total.p95)) label.text += ", 95th percentile " + text(bar.total.p95);
+    if (isTime(bar.processor)) label.text += ", processor " + text(bar.processor);
     return label;
 }
 
@@ -79,12 +80,15 @@ BarLabel labelOf(const Bar& bar, double end) {
 double rightEdge(const std::vector<Bar>& bars) {
     std::vector<double> totals;
     for (const Bar& bar : bars) totals.push_back(bar.total.mean);
-    const double limit = kClipAt * percentile(totals, 0.5);
-    double longest = 0;
+    double longest = percentile(totals, 0);
+    const auto include = [&](double ms, double limit) {
+        if (isTime(ms) && ms <= limit) longest = std::max(longest, ms);
+    };
+    for (const double total : totals) include(total, kClipAt * percentile(totals, 0.5));
+    const double limit = kMarksAt * longest;
     for (const Bar& bar : bars)
-        for (const double ms : {bar.total.mean, bar.total.p95, bar.processor})
-            if (isTime(ms) && ms <= limit) longest = std::max(longest, ms);
-    return 1.12 * std::max(longest, percentile(totals, 0));
+        for (const double ms : {bar.total.p95, bar.processor}) include(ms, limit);
+    return 1.12 * longest;
 }
 
 std::string axes(const std::vector<Bar>& bars, double end) {
@@ -97,7 +101,9 @@ std::string axes(const std::vector<Bar>& bars, double end) {
     return "unset key\nset lmargin " +
            exactNumber(kMarginByCharacter * static_cast<double>(longest_label) + 2) +
            "\nset rmargin 3\nset tmargin 0.5\nset bmargin 3.2\nset border 1\n"
-           "set xlabel 'time per frame [ms]'\nset grid noytics xtics\nset ytics scale 0\nset xrange [0:" +
+           "set xlabel 'time per frame [ms]' offset 0,0.4\n"
+           "set style textbox opaque fc rgb 'white' noborder margins 0.6,0.3\nset grid noytics xtics\nset "
+           "ytics scale 0\nset xrange [0:" +
            exactNumber(end) + "]\nset yrange [" + exactNumber(static_cast<double>(bars.size()) - 0.35) +
            ":-0.6]\nset ytics (" + tics + ")\n";
 }
@@ -110,7 +116,7 @@ std::string labelScript(const Bar& bar, std::size_t row, double end) {
         if (isTime(ms) && ms <= end) behind = std::max(behind, ms);
     return "set label " + gnuplotText(label.text) + " at " +
            (label.beyond ? "graph 0.995, first " : "first " + exactNumber(behind) + ",") +
-           std::to_string(row) + (label.beyond ? " right front" : " left offset 0.7,0 front") +
+           std::to_string(row) + (label.beyond ? " right front boxed" : " left offset 0.7,0 front") +
            " textcolor rgb '#222222'\n";
 }
 
@@ -166,13 +172,12 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
     const std::vector<Bar> bars = barsOf(*results.sequence, stages);
     if (bars.empty()) return {"", "", "No run has times that could be drawn."};
     const double end = rightEdge(bars);
-    std::string beyond;
-    for (const Bar& bar : bars)
-        if (labelOf(bar, end).beyond) beyond += (beyond.empty() ? "" : ", ") + bar.label;
+    const bool beyond =
+        std::any_of(bars.begin(), bars.end(), [&](const Bar& bar) { return labelOf(bar, end).beyond; });
     const int height = kBarHeight * static_cast<int>(bars.size()) + kBesideHeight;
     Figure figure = drawFigure(axes(bars, end) + plotScript(bars, end), kWidth, height,
                                results.sequence->name + ": time per frame by stage",
-                               beyond.empty() ? "" : "▶ lies beyond the right edge: " + beyond + ".");
+                               !beyond ? "" : "▶ lies beyond the right edge.");
     figure.fills = fillsOf(bars, stages);
     return figure;
 }
