@@ -127,7 +127,7 @@ std::string draw(const Panel& panel, const std::vector<double>& factors, double 
     return script + "$" + panel.block +
            " using 1:2 with lines lw 4 lc rgb '#222222' title 'median of the recordings', 1/0 with "
            "lines lw 1.5 dt 2 lc rgb '#888888' title " +
-           gnuplotText(format("configured: %g", configured)) + "\nunset key\n";
+           gnuplotText(format("configured: %g x Otsu", configured)) + "\nunset key\n";
 }
 
 void plot(StudyReport& report, const std::string& folder, const std::vector<double>& factors,

@@ -158,11 +158,11 @@ StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::s
     report.summary = counted(names.size(), "recording") + ", ATE relative to no weight (median):";
     for (std::size_t s = 1; s < sets.size(); ++s) {
         std::vector<double> ratios;
-        for (const Errors& errors : measured)
-            if (const auto ratio = errors.ratio(s)) ratios.push_back(*ratio);
-        const auto middle = median(ratios);
+        for (const Errors& errors : measured)  // a run that failed has an infinite error
+            ratios.push_back(errors.ratio(s).value_or(std::numeric_limits<double>::infinity()));
+        const double middle = median(ratios).value_or(std::numeric_limits<double>::infinity());
         report.summary += format("%s %s ", s > 1 ? "," : "", sets[s].name.c_str()) +
-                          (middle ? format("%.2f", *middle) : std::string("none"));
+                          (std::isfinite(middle) ? format("%.2f", middle) : "most runs failed");
     }
     return report;
 }

@@ -93,12 +93,12 @@ void draw(StudyReport& report, const std::string& folder, const std::vector<Meas
     }
     std::string script =
         gnuplotData("bars", bars) + labels +
-        "set title 'Processor time per frame (medians); DF: the odometry with a distance field'\nset ylabel "
+        "set title 'Processor time per frame (medians)'\nset ylabel "
         "'ms'\n"
         "set yrange [0:*]\nset xtics scale 0 (" +
         tics + ")\n" + format("set xrange [-0.8:%g]\n", 4.0 * static_cast<double>(all.size()) - 1.2) +
         "set boxwidth 0.8\nset style fill solid 1.0 noborder\nset grid noxtics\nset bmargin 6\n"
-        "set key outside right center Left reverse invert\nplot ";
+        "set key outside right center Left reverse invert title 'DF: distance field instead'\nplot ";
     for (int block = kBlocks; block-- > 0;)  // the higher ones first, the lower ones over them
         script += format("$bars using 1:%d with boxes lt %d title ", block + 2,
                          kColours[static_cast<std::size_t>(block)]) +

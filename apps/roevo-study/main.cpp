@@ -22,13 +22,27 @@ constexpr char kFooter[] =
     "  roevo-study --experiment canny --input office.rawlog --output out\n"
     "  roevo-study --experiment all --input rgbd_dataset_freiburg1_desk rgbd_dataset_freiburg2_desk --output "
     "out --first 300\n"
-    "Experiments:\n"
-    "  canny          error of the trajectory under Canny thresholds from 0.25 to 4 times Otsu's\n"
-    "  depth-weight   curves of the depth weight w_s(d) and their effect on the error\n"
-    "  ablation       coarse tracking with other points: as DSO selects them, raw Canny, organized edges\n"
-    "  repeatability  share of features found again under growing change of viewpoint\n"
-    "  efficiency     time per stage, beside registration by a distance field\n"
-    "Each writes CSV tables and SVG plots into the output folder; study.md there lists them.";
+    "Experiments (name: what is varied; what is measured; files):\n"
+    "  canny          the threshold of edge detection, 0.25 to 4 times Otsu's; error of the trajectory; "
+    "canny.*\n"
+    "  depth-weight   how far points are trusted, w_s(d) of the paper's Eq. (20); curves, error of the "
+    "trajectory;\n"
+    "                 depth_weight*.*\n"
+    "  ablation       points that coarse tracking aligns: as DSO selects them, raw Canny pixels, organized "
+    "edges\n"
+    "                 without and with patches that turn with the camera; relative pose error; ablation.*\n"
+    "  repeatability  ways to find features again: optical flow of corners, nearest neighbour, normals, "
+    "disjoint set;\n"
+    "                 share rightly found under growing change of viewpoint; repeatability*.*\n"
+    "  efficiency     registration by organized edges or by a distance field; processor time per stage;\n"
+    "                 efficiency*.*\n"
+    "  all            all of these\n"
+    "Each writes CSV tables and SVG plots into the output folder; study.md there explains and lists them. A "
+    "recording\n"
+    "that cannot be used is named, and the others go on. canny, depth-weight and ablation need ground truth. "
+    "Run on an\n"
+    "idle machine for efficiency. Exit code 1 when an experiment could use no recording or a plot is "
+    "missing.";
 
 struct Study {
     const char *name, *title;
@@ -91,9 +105,12 @@ int run(int argc, char** argv) {
     InputSettings settings;
     std::string output, config_file, mode;
     std::vector<std::string> experiments, sets;
-    CLI::App app("The paper's experiments on any recording: tables (CSV) and plots (SVG).", kName);
+    CLI::App app(
+        "The experiments of the ROEVO paper (Liu et al.) on your own recordings: tables (CSV) and plots "
+        "(SVG).",
+        kName);
     app.add_option("--experiment", experiments,
-                   "canny, depth-weight, ablation, repeatability, efficiency or all; one or more")
+                   "canny, depth-weight, ablation, repeatability, efficiency or all; one or more; see below")
         ->required();
     app.add_option("--input", settings.paths, "Recordings: .rawlog files or dataset folders")->required();
     app.add_option("--output", output, "Folder for the results; created when missing")->required();

@@ -14,14 +14,14 @@ namespace roevo {
 namespace {
 
 struct MethodLook {
-    const char *key, *label, *colour;  // colours as in the paper's figure
+    const char *key, *name, *label, *colour;  // colours as in the paper's figure
 };
 constexpr MethodLook kMethods[kNumAssociationMethods] = {
-    {"lk", "Shi-Tomasi, LK optical flow", "#E69F00"},
-    {"nearest", "edges, nearest neighbour", "#D62728"},
-    {"normals", "edges, frame to frame, normals", "#0072B2"},
-    {"keyframe", "edges, keyframe to frame, normals", "#56B4E9"},
-    {"disjoint_set", "edges, disjoint set", "#009E73"},
+    {"lk", "optical flow", "Shi-Tomasi, LK optical flow", "#E69F00"},
+    {"nearest", "nearest neighbour", "edges, nearest neighbour", "#D62728"},
+    {"normals", "normals", "edges, frame to frame, normals", "#0072B2"},
+    {"keyframe", "keyframe to frame", "edges, keyframe to frame, normals", "#56B4E9"},
+    {"disjoint_set", "disjoint set", "edges, disjoint set", "#009E73"},
 };
 
 struct DistanceLook {
@@ -214,7 +214,7 @@ void drawRecordings(StudyReport& report, const std::string& folder, const std::v
 std::string percentages(const std::array<std::optional<double>, kNumAssociationMethods>& shares) {
     std::string text;
     for (std::size_t m = 0; m < kNumAssociationMethods; ++m)
-        text += (m > 0 ? ", " : "") + std::string(kMethods[m].key) + ' ' +
+        text += (m > 0 ? ", " : "") + std::string(kMethods[m].name) + ' ' +
                 (shares[m] ? format("%.0f %%", 100 * *shares[m]) : "-");
     return text;
 }
