@@ -104,7 +104,7 @@ Figure errorFigure(const SequenceResults& results, const Legend& legend) {
     const double low = std::max(percentile(all, 0.01), kMinError);
     const double high = std::max(percentile(all, 1) * 1.3, 10 * low);
     std::string script =
-        "unset key\nset logscale y\nset lmargin 9\nset rmargin 2\nset tmargin 1\nset bmargin 3.2\n"
+        "unset key\nset logscale y\nset lmargin 9\nset rmargin 2\nset tmargin 1\nset bmargin 2.6\n"
         "set xlabel 'time [s]' offset 0,0.4\nset ylabel 'position error [cm]'\nset format y '%g'\n"
         "set xrange [0:" +
         exactNumber(std::max(end, 1e-3)) + "]\nset yrange [" + exactNumber(low) + ":" + exactNumber(high) +

@@ -16,7 +16,7 @@ namespace {
 
 // Of the figures in the summary of several sequences: the rest is with each sequence.
 constexpr std::size_t kFewSequences = 2;  // so many let two tables stand side by side on a wide page
-constexpr std::size_t kSummaryMetrics[] = {0, 1, 2, 5, 6};
+constexpr std::size_t kSummaryMetrics[] = {0, 1, 2, 5, 6, 8};
 
 std::string count(std::size_t n, const std::string& what) {
     return std::to_string(n) + " " + what + (n == 1 ? "" : "s");

@@ -67,7 +67,12 @@ figcaption { font-size: 13px; color: var(--muted); margin: 2px 0 0; overflow-wra
 ul.lines { padding-left: 20px; max-width: 90ch; }
 ul.facts { font-size: 13.5px; line-height: 1.4; margin: 8px 0 14px; }
 ul.lines li { margin: 3px 0; }
-@media (min-width: 1100px) { .few { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 36px; } }
+@media (min-width: 1100px), print {
+  .few { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 36px; }
+  .few table { font-size: 13px; }
+  .few th, .few td { padding: 4px 12px 4px 5px; }
+  .few th:first-child { min-width: 130px; }
+}
 @media (max-width: 900px) {
   body { padding: 22px 18px 48px; }
   table.dense { font-size: 12px; }
@@ -88,9 +93,8 @@ ul.lines li { margin: 3px 0; }
   a { color: inherit; text-decoration: none; }
   .sequence { break-before: page; }
   .scroll { overflow: visible; }
-  table, table.dense { font-size: 7.6pt; width: 100%; }
-  th, td, .dense th, .dense td { padding: 2pt 9pt 2pt 3pt; }
-  .few { display: block; }
+  table, table.dense, .few table { font-size: 7.6pt; width: 100%; }
+  th, td, .dense th, .dense td, .few th, .few td { padding: 2pt 9pt 2pt 3pt; }
   th[scope=col] { min-width: 0; }
   th:first-child { position: static; min-width: 32mm; }
   thead { display: table-header-group; }

@@ -9,7 +9,7 @@
 namespace roevo {
 namespace {
 
-constexpr int kWidth = 960, kBarHeight = 30, kBesideHeight = 66;  // px
+constexpr int kWidth = 960, kBarHeight = 30, kBesideHeight = 56;  // px
 constexpr std::size_t kLongestLabel = 42;                         // characters
 constexpr double kMarginByCharacter = 0.75;                       // gnuplot counts in widths of a wide one
 constexpr double kClipAt = 5;  // times the median bar: what is longer is cut off, so that others stay legible
@@ -67,7 +67,7 @@ struct BarLabel {
 BarLabel labelOf(const Bar& bar, double end) {
     const auto isBeyond = [&](double ms) { return isTime(ms) && ms > end; };
     const auto text = [&](double ms) { return timeText(ms) + (isBeyond(ms) ? " ▶" : ""); };
-    BarLabel label{timeText(bar.total.mean) + " ms",
+    BarLabel label{"mean " + timeText(bar.total.mean) + " ms",
                    isBeyond(bar.total.mean) || isBeyond(bar.total.p95) || isBeyond(bar.processor)};
     if (!label.beyond) return label;
     label.text = "mean " + text(bar.total.mean);
@@ -88,7 +88,7 @@ double rightEdge(const std::vector<Bar>& bars) {
     const double limit = kMarksAt * longest;
     for (const Bar& bar : bars)
         for (const double ms : {bar.total.p95, bar.processor}) include(ms, limit);
-    return 1.12 * longest;
+    return 1.16 * longest;
 }
 
 std::string axes(const std::vector<Bar>& bars, double end) {
@@ -100,7 +100,7 @@ std::string axes(const std::vector<Bar>& bars, double end) {
     }
     return "unset key\nset lmargin " +
            exactNumber(kMarginByCharacter * static_cast<double>(longest_label) + 2) +
-           "\nset rmargin 3\nset tmargin 0.5\nset bmargin 3.2\nset border 1\n"
+           "\nset rmargin 3\nset tmargin 0.5\nset bmargin 2.6\nset border 1\n"
            "set xlabel 'time per frame [ms]' offset 0,0.4\n"
            "set style textbox opaque fc rgb 'white' noborder margins 0.6,0.3\nset grid noytics xtics\nset "
            "ytics scale 0\nset xrange [0:" +

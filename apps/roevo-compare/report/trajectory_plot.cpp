@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 1500;               // of a line; more are not seen
 constexpr int kWidth = 480;                            // px
-constexpr int kBesideWidth = 94, kBesideHeight = 84;   // px that the axes' texts take
+constexpr int kBesideWidth = 94, kBesideHeight = 76;   // px that the axes' texts take
 constexpr double kMargin = 0.12;                       // around the ground truth, as a share of its extent
 constexpr double kMinExtent = 0.02;                    // m: of a camera that stands
 constexpr double kMinAspect = 0.42, kMaxAspect = 0.8;  // height to width of a picture
@@ -88,7 +88,7 @@ std::string rangeText(const Range& range, bool flipped) {
 std::string scriptFor(const View& view, const Range& right, const Range& up, const std::vector<Line>& lines) {
     std::string script =
         "unset key\nset size ratio -1\nset border 15\nset lmargin 9\nset rmargin 2\nset tmargin "
-        "1\nset bmargin 3\nset xtics autofreq\n";
+        "1\nset bmargin 2.5\nset xtics autofreq\n";
     script +=
         "set xlabel " + axisLabel(view.right) + " offset 0,0.4\nset ylabel " + axisLabel(view.up) + "\n";
     std::string plot;
