@@ -33,7 +33,8 @@ std::string protocolText() {
            " RPE over 1 s: the error of the relative motion from each pose to the one nearest to 1 s later "
            "(within 0.1 s), without alignment. Over all poses that the odometry gave, those that it "
            "predicted "
-           "where it had lost track, too.\n";
+           "where it had lost track, too. Options are the same for all recordings, but for those under "
+           "study.\n";
 }
 
 std::string entryText(const IndexEntry& entry) {
@@ -53,6 +54,14 @@ std::string entryText(const IndexEntry& entry) {
 
 }  // namespace
 
+std::vector<std::string> damageLines(const std::vector<StudyInput>& inputs) {
+    std::vector<std::string> lines;
+    for (const StudyInput& input : inputs)
+        if (input.damage != nullptr && !input.damage->text().empty())
+            lines.push_back(input.name + ": " + input.damage->text());
+    return lines;
+}
+
 void writeIndex(const std::string& folder, const std::vector<StudyInput>& inputs, const StudyIndex& index) {
     std::string text = "# Study\n\nMade by roevo-study " + std::string(versionText()) + " on " + index.time +
                        " (UTC)" + ":\n\n    " + index.command + "\n\n" + machineLines() +
@@ -63,7 +72,9 @@ void writeIndex(const std::string& folder, const std::vector<StudyInput>& inputs
                 cell(input.ground_truth_note) + " |\n";
     for (const LeftOut& left_out : index.left_out)
         text += "| not used | " + cell(left_out.name) + " | | " + cell(left_out.reason) + " |\n";
-    text += "\n" + protocolText();
+    text += "\n";
+    for (const std::string& line : damageLines(inputs)) text += "- " + line + "\n\n";
+    text += protocolText();
     for (const IndexEntry& entry : index.entries) text += entryText(entry);
     writeTextAtomically((std::filesystem::path(folder) / "study.md").string(), text);
 }

@@ -20,6 +20,9 @@ struct StudyIndex {
     std::vector<IndexEntry> entries;
 };
 
+/// "name: what is wrong" of the recordings that are damaged, as far as they have been read.
+std::vector<std::string> damageLines(const std::vector<StudyInput>& inputs);
+
 /// Writes study.md: the command, the machine and the versions, the protocol, the recordings, and each
 /// experiment with its tables and plots.
 /// @throws std::runtime_error

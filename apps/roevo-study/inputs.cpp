@@ -5,45 +5,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "study_source.h"
 #include "support/program.h"
 
 namespace roevo {
 namespace {
 
-// Ends after so many frames.
-class FirstFrames : public FrameSource {
-  public:
-    FirstFrames(std::unique_ptr<FrameSource> source, std::size_t count)
-        : source_(std::move(source)), left_(count), count_(count) {}
-
-    bool next(SourceFrame& frame) override {
-        if (left_ == 0 || !source_->next(frame)) return false;
-        --left_;
-        return true;
-    }
-    bool skip() override {
-        if (left_ == 0 || !source_->skip()) return false;
-        --left_;
-        return true;
-    }
-    const PinholeCamera& camera() const override { return source_->camera(); }
-    std::string kind() const override { return source_->kind(); }
-    std::string cameraSource() const override { return source_->cameraSource(); }
-    GroundTruth groundTruth() const override { return source_->groundTruth(); }
-    std::vector<std::string> notes() const override { return source_->notes(); }
-    std::size_t size() const override { return std::min(source_->size(), count_); }
-    std::string warning() const override { return source_->warning(); }
-
-  private:
-    std::unique_ptr<FrameSource> source_;
-    std::size_t left_, count_;
-};
-
 std::unique_ptr<FrameSource> openFrames(const std::string& path, const InputSettings& settings) {
     auto source = openSource(path, settings.sensor_label);
     skipFrames(*source, settings.skip, path);
     if (settings.first == 0) return source;
-    return std::make_unique<FirstFrames>(std::move(source), settings.first);
+    return firstFrames(std::move(source), settings.first);
 }
 
 std::string shortName(const std::string& path, const std::vector<StudyInput>& others) {
@@ -100,7 +72,10 @@ StudyInput openInput(const std::string& path, const InputSettings& settings,
     input.options = settings.options;
     setGroundTruth(input, settings, *source);
     checkFrames(*source, path);
-    input.open = [path, settings] { return prefetch(openFrames(path, settings)); };
+    input.damage = std::make_shared<RecordingDamage>();
+    input.open = [path, settings, damage = input.damage] {
+        return watched(prefetch(openFrames(path, settings)), damage);
+    };
     return input;
 }
 

@@ -96,6 +96,8 @@ int runStudies(const std::vector<Study>& studies, const std::vector<StudyInput>&
         index.entries.push_back(std::move(entry));
         writeIndex(folder, inputs, index);
     }
+    for (const std::string& line : damageLines(inputs)) std::printf("%-14s %s\n", "damaged", line.c_str());
+    std::fflush(stdout);
     if (!failure.empty()) throw std::runtime_error(failure);
     if (!plot_fault.empty()) throw std::runtime_error(plot_fault + "; the tables are in " + folder);
     return 0;

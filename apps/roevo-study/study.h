@@ -13,6 +13,15 @@
 
 namespace roevo {
 
+/// What is wrong with a recording that can be used.
+struct RecordingDamage {
+    std::size_t frames = 0, unreadable = 0;
+    std::string first_fault;  ///< of the first unreadable frame
+    std::string warning;      ///< FrameSource::warning()
+
+    std::string text() const;  ///< one line; empty when all is well
+};
+
 /// One recording under study. Frames are streamed: experiments open it anew for every pass.
 struct StudyInput {
     std::string name;  ///< short and unique among the inputs: a column of the tables, a legend's entry
@@ -20,9 +29,10 @@ struct StudyInput {
     PinholeCamera camera;
     /// A fresh source of the frames under study (--skip left out, at most --first), decoding ahead.
     std::function<std::unique_ptr<FrameSource>()> open;
-    std::vector<StampedPose> ground_truth;  ///< T_world_camera in time order; empty: none
-    std::string ground_truth_note;          ///< where it comes from, or why there is none
-    OdometryOptions options;                ///< from --config and --set
+    std::vector<StampedPose> ground_truth;    ///< T_world_camera in time order; empty: none
+    std::string ground_truth_note;            ///< where it comes from, or why there is none
+    OdometryOptions options;                  ///< from --config and --set
+    std::shared_ptr<RecordingDamage> damage;  ///< known once it has been read; may be absent
 };
 
 /// A recording that could not be used.

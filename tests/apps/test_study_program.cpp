@@ -230,13 +230,18 @@ TEST_F(StudyProgram, WithoutGnuplotTheTablesAreWritten) {
     EXPECT_FALSE(exists("depth_weight.svg"));
 }
 
-TEST_F(StudyProgram, FramesThatCannotBeReadAreLeftOut) {
+TEST_F(StudyProgram, FramesThatCannotBeReadAreLeftOutAndSaid) {
     write(6);
     writeFile(folder_ / "recording/rgb/0003.png", "not an image");
     const ProgramResult result = run("repeatability");
     ASSERT_EQ(result.exit_code, 0) << result.all();
     EXPECT_NE(result.out.find("1 frame left out"), std::string::npos) << result.out;
     EXPECT_EQ(table("repeatability.csv").size(), 4u);
+    const ProgramResult canny = run("canny");
+    ASSERT_EQ(canny.exit_code, 0) << canny.all();
+    const std::string line = "recording: 1 of 6 frames could not be read and were left out, the first: ";
+    EXPECT_NE(canny.out.find("damaged        " + line), std::string::npos) << canny.out;
+    EXPECT_NE(index().find("- " + line), std::string::npos) << index();
 }
 
 TEST_F(StudyProgram, WrongUsage) {
