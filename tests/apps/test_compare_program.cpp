@@ -217,6 +217,21 @@ TEST_F(Compare, WrongUsage) {
     expectError(run({input}, {"--methods", "roevo-ct"}), 1, kName, {"output folder", output()});
 }
 
+TEST_F(Compare, AMethodThatFailsSaysWhyInItsOwnWords) {
+    const std::string input = folder / "clip";
+    auto frames = slidingRecording(4);
+    for (auto& frame : frames) frame.depth = 0;
+    writeTumFolder(input, frames);
+    expectError(run({input}, {"--methods", "icp-frame,roevo-ct"}), 1, kName,
+                {"no method gave a result; the first: none of the 4 frames has a pose"});
+    for (const char* method : {"icp-frame", "roevo-ct"}) {
+        EXPECT_EQ(kept("clip", method).failure.rfind("none of the 4 frames has a pose; the first says: ", 0),
+                  0u)
+            << kept("clip", method).failure;
+        EXPECT_EQ(kept("clip", method).frames, 4u);
+    }
+}
+
 TEST_F(Compare, RunsThatTakeTooLongAreFailuresInTheTable) {
     const std::string input = clip("clip", 30);
     const auto result = run({input}, {"--methods", "roevo-tr", "--timeout", "0.05"});

@@ -5,6 +5,7 @@
 
 #include "report_fixture.h"
 #include "roevo-compare/comparison_notes.h"
+#include "roevo-compare/queue_display.h"
 #include "roevo-compare/terminal_table.h"
 
 namespace roevo {
@@ -49,6 +50,26 @@ TEST(TerminalTable, SaysWhatIsOddOnce) {
     const std::string text = terminalTable({sequence});
     for (const char* words : {"the file ends early", "3 images had no partner", "only frames 2 to 5"})
         EXPECT_EQ(count(text, words), 1u) << words << " in " << text;
+}
+
+TEST(QueueDisplay, WarnsOnceOfRunsThatAreNotPinned) {
+    RunTask task;
+    task.sequence = "s";
+    const std::vector<RunTask> tasks(3, task);
+    auto bound = makeRun("a", 0.01), free = makeRun("b", 0.01);
+    free.not_pinned = "core 1: it is not allowed";
+    for (const bool enabled : {true, false}) {
+        testing::internal::CaptureStderr();
+        {
+            QueueDisplay display(tasks, enabled);
+            display.finished(0, bound, 1);
+            for (const std::size_t i : {1u, 2u}) display.finished(i, free, 1);
+        }
+        const std::string text = testing::internal::GetCapturedStderr();
+        EXPECT_EQ(count(text, "warning: runs are not pinned to one core: core 1: it is not allowed\n"),
+                  enabled ? 1u : 0u)
+            << text;
+    }
 }
 
 CompareResult resultOf(const std::vector<MethodRun>& runs) {
