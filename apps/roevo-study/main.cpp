@@ -56,16 +56,18 @@ constexpr Study kStudies[] = {
     {"efficiency", "Efficiency", studyEfficiency},
 };
 
+// What is wrong with the name of an experiment; empty when nothing is.
+std::string faultOfName(const std::string& name) {
+    std::string known;
+    for (const Study& study : kStudies) {
+        if (name == study.name) return "";
+        known += std::string(study.name) + ", ";
+    }
+    return name == "all" ? "" : "there is no '" + name + "'; known are " + known + "all";
+}
+
 std::vector<Study> chosenStudies(const std::vector<std::string>& names) {
     std::vector<Study> chosen;
-    std::string known;
-    for (const Study& study : kStudies) known += std::string(study.name) + ", ";
-    for (const std::string& name : names) {
-        const auto found = std::find_if(std::begin(kStudies), std::end(kStudies),
-                                        [&](const Study& study) { return name == study.name; });
-        if (found == std::end(kStudies) && name != "all")
-            throw UsageError("--experiment: there is no '" + name + "'; known are " + known + "all");
-    }
     for (const Study& study : kStudies)
         if (std::any_of(names.begin(), names.end(),
                         [&](const std::string& name) { return name == study.name || name == "all"; }))
@@ -113,7 +115,8 @@ int run(int argc, char** argv) {
         kName);
     app.add_option("--experiment", experiments,
                    "canny, depth-weight, ablation, repeatability, efficiency or all; one or more; see below")
-        ->required();
+        ->required()
+        ->check(faultOfName, "");
     app.add_option("--input", settings.paths, "Recordings: .rawlog files or dataset folders")->required();
     app.add_option("--output", output, "Folder for the results; created when missing")->required();
     app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");

@@ -247,6 +247,7 @@ TEST_F(StudyProgram, FramesThatCannotBeReadAreLeftOutAndSaid) {
 TEST_F(StudyProgram, WrongUsage) {
     write(3);
     expectError(run("colour"), 2, kName, {"'colour'", "canny", "depth-weight", "repeatability", "all"});
+    expectError(run("--input"), 2, kName, {"--experiment", "there is no '--input'", "known are canny"});
     expectError(run("canny", {"--first", "2"}), 2, kName, {"--first 2", "at least 3"});
     expectError(run("canny", {"--set", "edges.canny_high_factor=100"}), 2, kName,
                 {"canny_high_factor", "100"});
