@@ -1,5 +1,6 @@
 #include "runs.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
@@ -128,12 +129,19 @@ std::size_t Runs::total() const {
 }
 
 void Runs::deliver() {
-    for (std::size_t s = 0; s < sequences_.size(); ++s)
+    for (std::size_t s = 0; s < sequences_.size(); ++s) {
+        SequenceComparison& sequence = sequences_[s];
+        std::size_t frames = 0;
         for (std::size_t m = 0; m < place_[s].size(); ++m) {
-            sequences_[s].runs.push_back(
-                place_[s][m] ? *place_[s][m] : notRun(s, m, "not run: the comparison was ended before"));
-            sequences_[s].run_folders.push_back(folder(s, m));
+            sequence.runs.push_back(place_[s][m] ? *place_[s][m]
+                                                 : notRun(s, m, "not run: the comparison was ended before"));
+            sequence.run_folders.push_back(folder(s, m));
+            if (sequence.runs.back().ok()) frames = std::max(frames, sequence.runs.back().frames);
         }
+        // A rawlog does not tell its length before its end
+        const SequenceInput& input = settings_.sequences[s];
+        if (frames > 0 && frames < input.first) sequence.part = partOf(input, input.skip + frames);
+    }
 }
 
 }  // namespace roevo

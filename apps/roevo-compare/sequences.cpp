@@ -32,14 +32,6 @@ std::string nameOf(const fs::path& path) {
     return name.empty() ? "recording" : name;
 }
 
-// What of the recording is run; empty when all of it is.
-std::string partText(const SequenceInput& sequence) {
-    if (sequence.first == 0 && sequence.skip == 0) return {};
-    const std::string begin = std::to_string(sequence.skip);
-    if (sequence.first == 0) return "frames from number " + begin + " on";
-    return "frames " + begin + " to " + std::to_string(sequence.skip + sequence.first - 1);
-}
-
 // Goes on to the first frame that can be decoded. @return empty, or what is wrong with the recording
 std::string faultOf(FrameSource& source, const SequenceInput& sequence) {
     skipFrames(source, sequence.skip, sequence.input);
@@ -112,17 +104,26 @@ std::vector<std::string> sequenceNames(const std::vector<std::string>& inputs) {
     return names;
 }
 
+std::string partOf(const SequenceInput& sequence, std::size_t size) {
+    std::size_t end = sequence.first > 0 ? sequence.skip + sequence.first : 0;
+    if (size > 0 && (end == 0 || end > size)) end = size;
+    if (sequence.skip == 0 && end == size) return {};
+    const std::string begin = std::to_string(sequence.skip);
+    return end == 0 ? "frames from number " + begin + " on"
+                    : "frames " + begin + " to " + std::to_string(end - 1);
+}
+
 SequenceComparison openSequence(const SequenceInput& sequence) {
     SequenceComparison out;
     out.name = sequence.name;
     out.input = sequence.input;
-    out.part = partText(sequence);
     if (!sequence.note.empty()) out.notes.push_back(sequence.note);
     out.paper_ate_cm = sequence.paper_ate_cm;
     // Before all else: a file that was asked for must be good even if the recording is not
     if (!sequence.ground_truth.empty()) readTumTrajectory(sequence.ground_truth);
     try {
         const auto source = openSource(sequence.input, sequence.sensor_label);
+        out.part = partOf(sequence, source->size());
         for (const std::string& note : source->notes())  // ground truth may be another one: told by itself
             if (note.rfind("ground truth:", 0) != 0) out.notes.push_back(note);
         setGroundTruth(out, sequence, *source);

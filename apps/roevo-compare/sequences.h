@@ -24,6 +24,10 @@ struct SequenceInput {
 /// goes before it, and then a number behind it.
 std::vector<std::string> sequenceNames(const std::vector<std::string>& inputs);
 
+/// What of a recording is run, counted from 0: "frames 10 to 24". Empty when it is all of it.
+/// @param size  number of its frames, 0 where that is not known
+std::string partOf(const SequenceInput& sequence, std::size_t size);
+
 /// Opens the recording and reads its ground truth and its first good frame, whose depth scale is checked.
 /// @return with `failure` in words when the recording cannot be used, and without runs
 /// @throws UsageError for options that do not suit the recording; std::runtime_error for a ground truth that

@@ -45,6 +45,23 @@ TEST(SequenceNames, AreUniqueAndFitForFolders) {
     }
 }
 
+TEST(PartOfARecording, IsNamedByItsFramesAndTheWholeIsNone) {
+    const auto part = [](std::size_t skip, std::size_t first, std::size_t size) {
+        SequenceInput sequence;
+        sequence.skip = skip;
+        sequence.first = first;
+        return partOf(sequence, size);
+    };
+    for (const std::size_t first : {0u, 6u, 100u}) EXPECT_EQ(part(0, first, 6), "") << first;
+    EXPECT_EQ(part(0, 0, 0), "");
+    EXPECT_EQ(part(0, 4, 6), "frames 0 to 3");
+    EXPECT_EQ(part(0, 4, 0), "frames 0 to 3");
+    EXPECT_EQ(part(2, 3, 6), "frames 2 to 4");
+    EXPECT_EQ(part(2, 100, 6), "frames 2 to 5");
+    EXPECT_EQ(part(2, 0, 6), "frames 2 to 5");
+    EXPECT_EQ(part(2, 0, 0), "frames from number 2 on");
+}
+
 TEST(RecordingState, ChangesWithTheFilesOnly) {
     const TemporaryFolder folder;
     const std::string clip = folder / "clip", rawlog = folder / "other.rawlog";

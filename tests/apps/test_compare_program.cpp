@@ -73,6 +73,19 @@ TEST_F(Compare, OptionsAndFramesReachTheMethods) {
     EXPECT_NE(readFile(output() + "/config_used.ini").find("min_length = 15"), std::string::npos);
 }
 
+TEST_F(Compare, APartOfARecordingIsSaidAsItWasRun) {
+    const std::string input = clip("clip", 6);  // and a rawlog, which does not tell its length before its end
+    const auto converted =
+        test::runProgram("rgbd2rawlog", {"--input", input, "--output", folder / "my.rawlog"});
+    ASSERT_EQ(converted.exit_code, 0) << converted.all();
+    ASSERT_EQ(run({input, folder / "my.rawlog"}, {"--methods", "difodo-240", "--skip", "2", "--first", "100"})
+                  .exit_code,
+              0);
+    EXPECT_NE(readFile(output() + "/table.md").find("clip: frames 2 to 5; my: frames 2 to 5."),
+              std::string::npos)
+        << readFile(output() + "/table.md");
+}
+
 TEST_F(Compare, AModeInTheConfigIsSaidToHaveNoEffect) {
     const std::string input = clip("clip", 4);
     writeFile(folder / "ct.ini", "[odometry]\nmode = ct\n");

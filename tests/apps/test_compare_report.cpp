@@ -183,7 +183,7 @@ TEST(CompareReport, NotesAndWarningsAreThereOnce) {
     const WrittenComparison out({sequence}, info);
     for (const char* words : {"2 images had no partner", "the list says so", "s: the file ends early",
                               "s: label of b: no scene: disk full", "the machine was busy",
-                              "Not whole recordings, but parts (counted from 0): s: frames 3 to 6."}) {
+                              "Only parts of these recordings were run (counted from 0): s: frames 3 to 6."}) {
         EXPECT_EQ(count(out.html, words), 1u) << words;
         EXPECT_EQ(count(out.md, words), 1u) << words << "\n" << out.md;
     }

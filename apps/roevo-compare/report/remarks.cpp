@@ -105,7 +105,7 @@ std::vector<std::string> remarks(const std::vector<SequenceResults>& results) {
             parts += (parts.empty() ? "" : "; ") + sequence.name + ": " + sequence.part;
     }
     if (!parts.empty())
-        sentences.push_back("Not whole recordings, but parts (counted from 0): " + parts + ".");
+        sentences.push_back("Only parts of these recordings were run (counted from 0): " + parts + ".");
     return sentences;
 }
 
