@@ -1,11 +1,15 @@
 #include "bar_chart.h"
 
+#include <cmath>
+
 #include "support/gnuplot.h"
 
 namespace roevo {
 namespace {
 
 constexpr double kGroupWidth = 0.8;  // of the distance between groups
+
+constexpr int kFirstValueTag = 1000;  // of gnuplot's labels, beyond all others
 
 // px
 constexpr int kTitle = 40, kKeyRow = 24, kPanel = 200, kBelow = 80, kLeft = 85, kRight = 15, kKeyColumn = 300;
@@ -21,7 +25,7 @@ struct Layout {
         key_rows = (entries + columns - 1) / columns;
         height = head() + static_cast<int>(chart.panels.size()) * (kPanel + kBelow);
     }
-    int head() const { return kTitle + key_rows * kKeyRow + 20; }
+    int head() const { return kTitle + key_rows * kKeyRow + 26; }
     /// Share of the height, from below, of what is so many px from above.
     double down(int px) const { return 1 - static_cast<double>(px) / height; }
     double across(int px) const { return static_cast<double>(px) / width; }
@@ -44,6 +48,19 @@ std::string headScript(const BarChart& chart, const Layout& layout) {
     return script;
 }
 
+// The value of each bar over its panel: those of small bars cannot be read off the axis.
+std::string valueLabels(const BarChart& chart, const BarChart::Panel& panel) {
+    std::string script;
+    int tag = kFirstValueTag;
+    for (std::size_t g = 0; g < panel.bars.size(); ++g)
+        for (std::size_t s = 0; s < panel.bars[g].size(); ++s)
+            script += std::isfinite(panel.bars[g][s])
+                          ? format("set label %d '%.3g' at first %g, graph 1.05 center font ',9'\n", tag++,
+                                   panel.bars[g][s], chart.barAt(g, s))
+                          : format("unset label %d\n", tag++);
+    return script;
+}
+
 std::string panelScript(const BarChart& chart, const Layout& layout, std::size_t number) {
     const BarChart::Panel& panel = chart.panels[number];
     const int top = layout.head() + static_cast<int>(number) * (kPanel + kBelow);
@@ -54,7 +71,7 @@ std::string panelScript(const BarChart& chart, const Layout& layout, std::size_t
         rows.back().insert(rows.back().end(), panel.bars[g].begin(), panel.bars[g].end());
     }
     for (const auto& [x, y] : panel.dots) dot_rows.push_back({x, y});
-    std::string script = gnuplotData(block, rows) + gnuplotData(dots, dot_rows) +
+    std::string script = gnuplotData(block, rows) + gnuplotData(dots, dot_rows) + valueLabels(chart, panel) +
                          format("set tmargin at screen %g\nset bmargin at screen %g\nset ylabel ",
                                 layout.down(top), layout.down(top + kPanel)) +
                          gnuplotText(panel.y_label) + "\nplot ";
