@@ -78,9 +78,10 @@ TEST_F(Compare, APartOfARecordingIsSaidAsItWasRun) {
     const auto converted =
         test::runProgram("rgbd2rawlog", {"--input", input, "--output", folder / "my.rawlog"});
     ASSERT_EQ(converted.exit_code, 0) << converted.all();
-    ASSERT_EQ(run({input, folder / "my.rawlog"}, {"--methods", "difodo-240", "--skip", "2", "--first", "100"})
-                  .exit_code,
-              0);
+    ASSERT_EQ(
+        run({input, folder / "my.rawlog"}, {"--methods", "distance-field", "--skip", "2", "--first", "100"})
+            .exit_code,
+        0);
     EXPECT_NE(readFile(output() + "/table.md").find("clip: frames 2 to 5; my: frames 2 to 5."),
               std::string::npos)
         << readFile(output() + "/table.md");
@@ -90,18 +91,21 @@ TEST_F(Compare, AModeInTheConfigIsSaidToHaveNoEffect) {
     const std::string input = clip("clip", 4);
     writeFile(folder / "ct.ini", "[odometry]\nmode = ct\n");
     writeFile(folder / "ba.ini", "[odometry]\nmode = ba\n");
-    const auto with = [&](const std::string& config, std::vector<std::string> more = {}) {
-        more.insert(more.end(), {"--methods", "roevo-tr", "--config", folder / config});
-        const auto result = run({input}, more);
+    const auto with = [&](const std::string& config, const std::string& method,
+                          const std::vector<std::string>& more = {}) {
+        std::vector<std::string> all{"--methods", method, "--config", folder / config};
+        all.insert(all.end(), more.begin(), more.end());
+        const auto result = run({input}, all);
         EXPECT_EQ(result.exit_code, 0) << result.all();
         return result.err;
     };
-    const std::string warned = with("ct.ini");
+    const std::string warned = with("ct.ini", "roevo-tr");
     EXPECT_NE(warned.find("warning: mode = ct in " + (folder / "ct.ini")), std::string::npos) << warned;
     EXPECT_NE(warned.find("--methods"), std::string::npos) << warned;
     EXPECT_NE(readFile(runFolder("clip", "roevo-tr") + "/frames.csv").find("ms_fine"), std::string::npos);
-    EXPECT_EQ(with("ba.ini").find("warning"), std::string::npos) << "as it is in config_ini/roevo.ini";
-    EXPECT_EQ(with("ct.ini", {"--quiet"}), "");
+    EXPECT_EQ(with("ba.ini", "distance-field").find("warning"), std::string::npos)
+        << "as it is in config_ini/roevo.ini";
+    EXPECT_EQ(with("ct.ini", "distance-field", {"--quiet"}), "");
 }
 
 TEST_F(Compare, QuietSaysNothing) {
