@@ -162,6 +162,18 @@ TEST(CompareReport, HasNothingToLoadWhateverIsInIt) {
     EXPECT_TRUE(contains(out.html, "0.02 s")) << "the protocol";
 }
 
+TEST(CompareReport, ATableOfNothingButDashesIsASentence) {
+    auto a = makeSequence("a", {makeRun("x", 0.01), makeRun("y", 0.02)}), b = a;
+    b.name = "b";
+    b.reference.clear();
+    const WrittenComparison some({a, b});
+    EXPECT_FALSE(contains(some.html, ": no figures ("));
+    a.reference.clear();
+    const WrittenComparison none({a, b});
+    EXPECT_TRUE(contains(none.html, "<p>ATE RMSE [cm]: no figures (no ground truth)</p>"));
+    EXPECT_TRUE(contains(none.html, "<h3>Time per frame, median [ms]</h3>"));
+}
+
 TEST(CompareReport, LinksRunsRelatively) {
     const TemporaryFolder folder;
     auto sequence = makeSequence("s", {makeRun("a", 0.01)});
@@ -181,9 +193,10 @@ TEST(CompareReport, NotesAndWarningsAreThereOnce) {
     auto info = makeInfo();
     info.notes = {"the machine was busy"};
     const WrittenComparison out({sequence}, info);
-    for (const char* words : {"2 images had no partner", "the list says so", "s: the file ends early",
-                              "s: label of b: no scene: disk full", "the machine was busy",
-                              "Only parts of these recordings were run (counted from 0): s: frames 3 to 6."}) {
+    for (const char* words :
+         {"2 images had no partner", "the list says so", "s: the file ends early",
+          "s: label of b: no scene: disk full", "the machine was busy",
+          "Only parts of these recordings were run (counted from 0): s: frames 3 to 6."}) {
         EXPECT_EQ(count(out.html, words), 1u) << words;
         EXPECT_EQ(count(out.md, words), 1u) << words << "\n" << out.md;
     }

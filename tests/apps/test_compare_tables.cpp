@@ -7,6 +7,7 @@
 
 #include "report_fixture.h"
 #include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/tables.h"
 #include "support/text.h"
 
 namespace roevo {
@@ -142,6 +143,20 @@ TEST(CompareTable, SaysWhyThereAreNoErrorsAndKeepsTheRest) {
         EXPECT_TRUE(contains(out.md, "\n[^" + std::to_string(n) + "]: ")) << "footnote " << n;
     EXPECT_TRUE(contains(out.md, ": ranked on no sequence"));
     EXPECT_EQ(test::count(out.md, "| mean |"), 5u) << "of shares, times and memory, but of no error";
+}
+
+TEST(CompareTable, TheVerdictNamesAllThatAreAhead) {
+    const auto verdictOf = [](const std::vector<double>& errors) {
+        std::vector<MethodRun> runs;
+        for (std::size_t i = 0; i < errors.size(); ++i)
+            runs.push_back(makeRun(std::string(1, static_cast<char>('a' + i)), errors[i]));
+        const auto sequence = makeSequence("s", runs);
+        return verdict(evaluateAll({sequence}));
+    };
+    const std::string rest = " the smallest ATE on 1 of 1 sequence that could be ranked.";
+    EXPECT_EQ(verdictOf({0.02, 0.01}), "label of b has" + rest);
+    EXPECT_EQ(verdictOf({0.01, 0.01, 0.02}), "label of a and label of b each have" + rest);
+    EXPECT_EQ(verdictOf({0.01, 0.01, 0.01}), "label of a, label of b and label of c each have" + rest);
 }
 
 TEST(CompareTable, MeansAreOverSequencesWithFigures) {

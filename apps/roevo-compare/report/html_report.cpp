@@ -1,6 +1,4 @@
-#include <algorithm>
-#include <filesystem>
-#include <stdexcept>
+#include <set>
 
 #include "roevo-compare/report/documents.h"
 #include "roevo-compare/report/html_parts.h"
@@ -43,6 +41,19 @@ std::string header(const std::vector<SequenceResults>& results, const Legend& le
     return html + "</nav>\n</header>\n";
 }
 
+// Where a table is nothing but dashes: why; else empty.
+std::string whyEmpty(const Table& table) {
+    std::set<std::string> reasons;
+    for (const Table::Row& row : table.rows)
+        for (const TableCell& cell : row.cells) {
+            if (cell.text != kDash) return {};
+            reasons.insert(cell.note);
+        }
+    std::string all;
+    for (const std::string& reason : reasons) all += (all.empty() ? "" : "; ") + reason;
+    return all;
+}
+
 std::string summary(const std::vector<SequenceResults>& results, const Legend& legend,
                     const std::string& folder) {
     std::string html =
@@ -50,10 +61,15 @@ std::string summary(const std::vector<SequenceResults>& results, const Legend& l
         "table; figures in italics are of runs that tracked less than 90 % of the frames.</p>\n";
     if (results.size() == 1) return html + allFigures(results[0], "summary", folder) + "</section>\n";
     html += results.size() <= kFewSequences ? "<div class=\"few\">\n" : "<div>\n";
-    for (const std::size_t m : kSummaryMetrics)
-        html +=
-            setTable(figureTable(shownMetrics()[m], results, legend.methods), "summary" + std::to_string(m));
-    return html + "</div>\n</section>\n";
+    std::string without;
+    for (const std::size_t m : kSummaryMetrics) {
+        const Table table = figureTable(shownMetrics()[m], results, legend.methods);
+        if (const std::string reasons = whyEmpty(table); !reasons.empty())
+            without += element("p", table.title + ": no figures (" + reasons + ")") + "\n";
+        else
+            html += setTable(table, "summary" + std::to_string(m));
+    }
+    return html + "</div>\n" + without + "</section>\n";
 }
 
 std::string ranking(const std::vector<SequenceResults>& results, const Legend& legend) {

@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::size_t kMaxSequenceColumns = 8;  // more do not fit a page beside each other
 constexpr std::size_t kRankedMetrics = 3;       // ATE, RPE over 1 s: the first ones
-constexpr char kDash[] = "–";
 
 std::string reasonOf(const Metric& metric, const SequenceResults& results, std::size_t index) {
     const MethodRun& run = results.sequence->runs[index];
@@ -243,13 +242,15 @@ std::string verdict(const std::vector<SequenceResults>& results) {
         const auto ranks = rankRuns(ate, result, std::vector<bool>(result.evaluated.size(), true));
         ranked += std::any_of(ranks.begin(), ranks.end(), [](const auto& r) { return r.has_value(); });
     }
-    std::string best;
+    std::vector<std::string> best;
     for (const RankRow& row : rows)
-        if (row.top[0] == first->top[0]) best += (best.empty() ? "" : " and ") + row.method.label;
-    const bool tied = best != first->method.label;
-    return best + (tied ? " each have" : " has") + " the smallest ATE on " + std::to_string(first->top[0]) +
-           " of " + std::to_string(ranked) + " sequence" + (ranked == 1 ? "" : "s") +
-           " that could be ranked.";
+        if (row.top[0] == first->top[0]) best.push_back(row.method.label);
+    std::string names;
+    for (std::size_t i = 0; i < best.size(); ++i)
+        names += (i == 0 ? "" : i + 1 < best.size() ? ", " : " and ") + best[i];
+    return names + (best.size() > 1 ? " each have" : " has") + " the smallest ATE on " +
+           std::to_string(first->top[0]) + " of " + std::to_string(ranked) + " sequence" +
+           (ranked == 1 ? "" : "s") + " that could be ranked.";
 }
 
 }  // namespace roevo

@@ -7,6 +7,9 @@
 
 namespace roevo {
 
+/// Stands where there is no figure.
+constexpr char kDash[] = "–";
+
 struct TableCell {
     std::string text;
     bool best = false;
