@@ -12,6 +12,8 @@ namespace {
 constexpr int kWidth = 960, kBarHeight = 30, kBesideHeight = 56;  // px
 constexpr std::size_t kLongestLabel = 42;                         // characters
 constexpr double kMarginByCharacter = 0.75;                       // gnuplot counts in widths of a wide one
+constexpr double kPixelsByCharacter = 6.7;                        // of a label, on the whole
+constexpr double kPixelsOfMargin = 8.4;                           // of a character of a margin
 constexpr double kClipAt = 5;  // times the median bar: what is longer is cut off, so that others stay legible
 constexpr double kMarksAt = 2;       // times the longest bar: marks that lie further out are cut off, too
 constexpr double kLeastRest = 0.02;  // share of the total that is worth a piece of the bar
@@ -91,19 +93,28 @@ double rightEdge(const std::vector<Bar>& bars) {
     return 1.16 * longest;
 }
 
+// In gnuplot's characters.
+double leftMargin(const std::vector<Bar>& bars) {
+    std::size_t longest = 0;
+    for (const Bar& bar : bars) longest = std::max(longest, countCharacters(bar.label));
+    return kMarginByCharacter * static_cast<double>(longest) + 2;
+}
+
+// Up to where a bar is drawn: one that goes on beyond the edge makes room for its label there.
+double drawnEnd(const Bar& bar, double end, double left_margin) {
+    if (bar.total.mean <= end) return end;
+    const double text = kPixelsByCharacter * static_cast<double>(countCharacters(labelOf(bar, end).text) + 1);
+    return end * std::max(0.1, 1 - text / (kWidth - kPixelsOfMargin * (left_margin + 3)));
+}
+
 std::string axes(const std::vector<Bar>& bars, double end) {
-    std::size_t longest_label = 0;
     std::string tics;
-    for (std::size_t i = 0; i < bars.size(); ++i) {
-        longest_label = std::max(longest_label, countCharacters(bars[i].label));
+    for (std::size_t i = 0; i < bars.size(); ++i)
         tics += (i == 0 ? "" : ", ") + gnuplotText(bars[i].label) + " " + std::to_string(i);
-    }
-    return "unset key\nset lmargin " +
-           exactNumber(kMarginByCharacter * static_cast<double>(longest_label) + 2) +
+    return "unset key\nset lmargin " + exactNumber(leftMargin(bars)) +
            "\nset rmargin 3\nset tmargin 0.5\nset bmargin 2.6\nset border 1\n"
-           "set xlabel 'time per frame [ms]' offset 0,0.4\n"
-           "set style textbox opaque fc rgb 'white' noborder margins 0.6,0.3\nset grid noytics xtics\nset "
-           "ytics scale 0\nset xrange [0:" +
+           "set xlabel 'time per frame [ms]' offset 0,0.4\nset grid noytics xtics\nset ytics scale 0\n"
+           "set xrange [0:" +
            exactNumber(end) + "]\nset yrange [" + exactNumber(static_cast<double>(bars.size()) - 0.35) +
            ":-0.6]\nset ytics (" + tics + ")\n";
 }
@@ -115,9 +126,8 @@ std::string labelScript(const Bar& bar, std::size_t row, double end) {
     for (const double ms : {bar.total.p95, bar.processor})
         if (isTime(ms) && ms <= end) behind = std::max(behind, ms);
     return "set label " + gnuplotText(label.text) + " at " +
-           (label.beyond ? "graph 0.995, first " : "first " + exactNumber(behind) + ",") +
-           std::to_string(row) + (label.beyond ? " right front boxed" : " left offset 0.7,0 front") +
-           " textcolor rgb '#222222'\n";
+           (label.beyond ? "graph 1, first " : "first " + exactNumber(behind) + ",") + std::to_string(row) +
+           (label.beyond ? " right front" : " left offset 0.7,0 front") + " textcolor rgb '#222222'\n";
 }
 
 std::string plotScript(const std::vector<Bar>& bars, double end) {
@@ -126,16 +136,17 @@ std::string plotScript(const std::vector<Bar>& bars, double end) {
     for (std::size_t i = 0; i < bars.size(); ++i) {
         const Bar& bar = bars[i];
         const double y = static_cast<double>(i);
+        const double last = drawnEnd(bar, end, leftMargin(bars));
         double x = 0;
         for (const auto& [stage, ms] : bar.pieces) {
-            if (x < end)
-                rectangles.push_back(
-                    {x, y, x, std::min(x + ms, end), y - 0.3, y + 0.3, static_cast<double>(stageRgb(stage))});
+            if (x < last)
+                rectangles.push_back({x, y, x, std::min(x + ms, last), y - 0.3, y + 0.3,
+                                      static_cast<double>(stageRgb(stage))});
             x += ms;
         }
-        if (isTime(bar.total.p95) && bar.total.p95 <= end)
+        if (isTime(bar.total.p95) && bar.total.p95 <= last)
             ticks.push_back({bar.total.p95, y - 0.38, 0, 0.76});
-        if (isTime(bar.processor) && bar.processor <= end) processor.push_back({bar.processor, y});
+        if (isTime(bar.processor) && bar.processor <= last) processor.push_back({bar.processor, y});
         labels += labelScript(bar, i, end);
     }
     std::string data = gnuplotData("bars", rectangles);
@@ -177,7 +188,9 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
     const int height = kBarHeight * static_cast<int>(bars.size()) + kBesideHeight;
     Figure figure = drawFigure(axes(bars, end) + plotScript(bars, end), kWidth, height,
                                results.sequence->name + ": time per frame by stage",
-                               !beyond ? "" : "▶ lies beyond the right edge.");
+                               !beyond ? ""
+                                       : "A bar whose mean has a ▶ goes on beyond the right edge, as do the "
+                                         "marks of other figures with one.");
     figure.fills = fillsOf(bars, stages);
     return figure;
 }
