@@ -29,14 +29,17 @@ roevo_test(test_distance_field
 target_include_directories(test_distance_field PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 
 roevo_test(test_study_ablation
-  SOURCES apps/test_study_ablation.cpp
+  SOURCES apps/test_study_ablation.cpp apps/test_study_efficiency.cpp apps/test_study_points.cpp
+          apps/test_study_viewpoint.cpp
   LIBS roevo_study roevo_simulator)
 target_include_directories(test_study_ablation PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 
 roevo_test(test_compare
-  SOURCES apps/test_method_run.cpp apps/test_kept_run.cpp apps/test_run_queue.cpp apps/test_compare_benchmark.cpp apps/test_compare_program.cpp
+  SOURCES apps/test_method_run.cpp apps/test_kept_run.cpp apps/test_process.cpp apps/test_run_queue.cpp
+          apps/test_compare_benchmark.cpp apps/test_compare_program.cpp apps/test_compare_resume.cpp
+          apps/test_compare_terminal.cpp apps/test_compare_ba_first.cpp
   LIBS roevo_compare roevo_support roevo_test_support nlohmann_json::nlohmann_json)
-add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog)
+add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog rawlog-simulate)
 
 # One ctest entry per method, since its cases share rendered frames.
 add_executable(test_compare_baselines apps/test_compare_baselines.cpp apps/test_depth_resampler.cpp)
@@ -52,7 +55,7 @@ target_include_directories(test_compare_baselines PRIVATE ${CMAKE_CURRENT_SOURCE
 
 roevo_test(test_compare_report
   SOURCES apps/test_compare_tables.cpp apps/test_compare_report.cpp apps/test_compare_numpy.cpp
-  LIBS roevo_report roevo_evaluation roevo_test_support nlohmann_json::nlohmann_json)
+  LIBS roevo_report roevo_evaluation roevo_support roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_compare_report roevo-compare roevo-odometry roevo-render)
 
 roevo_test(test_study

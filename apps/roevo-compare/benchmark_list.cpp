@@ -136,7 +136,7 @@ BenchmarkList readBenchmarkList(const std::string& file, const std::string& data
     if (!entries.is_array() || entries.empty()) top.fail("'sequences' is no list, or an empty one");
 
     BenchmarkList list;
-    std::set<std::string> names;
+    std::set<std::string> names, run_names;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         const std::string where = file + ": sequence " + std::to_string(i + 1);
         const std::string name = Entry(entries[i], where).text("name");
@@ -153,6 +153,9 @@ BenchmarkList readBenchmarkList(const std::string& file, const std::string& data
         sequence.input = findOnDisk(data, name, folder, tried);
         BenchmarkList found;
         addSequence(entry, sequence, found);  // even if it is missing: a fault of the list should be seen
+        for (const SequenceInput& one : found.sequences)  // parts, too: each has a folder of that name
+            if (!run_names.insert(one.name).second)
+                entry.fail("what is run of it would be called '" + one.name + "', and there is another one");
         if (sequence.input.empty())
             list.missing.push_back(name + ": not in " + data + " (" + tried + ")");
         else

@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "comparison_notes.h"
 #include "machine_info.h"
 #include "roevo_mrpt/config_file.h"
 #include "runs.h"
@@ -20,8 +21,6 @@ namespace roevo {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kDisturbed = 0.05;  // share of a run without the core from which on its times are in doubt
 
 // Two programs at work in one folder would remove each other's runs.
 class FolderLock {
@@ -61,42 +60,16 @@ std::vector<SequenceComparison> openAll(const CompareSettings& settings) {
                              (all.size() > 1 ? " (and no other recording can be used)" : ""));
 }
 
-std::vector<std::string> notesOf(const CompareSettings& settings, const CompareResult& result) {
-    std::vector<std::string> notes;
-    std::size_t jobs = 1, disturbed = 0;
-    double most_lost = 0;
-    for (const SequenceComparison& sequence : result.sequences)
-        for (const MethodRun& run : sequence.runs) {
-            jobs = std::max(jobs, run.jobs);
-            disturbed += run.core_lost > kDisturbed;
-            most_lost = std::max(most_lost, run.core_lost);
-        }
-    if (disturbed > 0) {
-        char text[256];
-        std::snprintf(text, sizeof text,
-                      "The machine was busy: in %zu of %zu runs other programs had the core for more than "
-                      "%.0f %% of the time (up to %.0f %%), so that times per frame are too long there; "
-                      "processor times hold.",
-                      disturbed, result.runs, 100 * kDisturbed, 100 * most_lost);
-        notes.push_back(text);
+void writeReport(const CompareSettings& settings, const CompareResult& result) {
+    const InterruptGuard guard;  // so that nothing is left in the temporary folder
+    try {
+        writeComparison(settings.output, result.sequences, result.info);
+    } catch (const Interrupted&) {
+        throw Interrupted(
+            "interrupted while the report was being written: it was left as it was before; the runs are "
+            "kept, and the same command" +
+            std::string(settings.resume ? "" : " with --resume") + " writes it");
     }
-    if (jobs > 1)
-        notes.push_back(
-            "Up to " + std::to_string(jobs) +
-            " runs went on side by side, each on a core of its own: they share memory and caches, "
-            "so that times are noisier, and longer, than those of runs one after the other.");
-    if (!settings.missing.empty()) {
-        std::string line = std::to_string(settings.missing.size()) +
-                           " sequences of the list are not on this disk and were skipped: ";
-        for (const std::string& missing : settings.missing)
-            line +=
-                missing.substr(0, missing.find(':')) + (&missing == &settings.missing.back() ? "." : ", ");
-        notes.push_back(line);
-    }
-    if (result.interrupted)
-        notes.push_back("The comparison was interrupted: " + std::to_string(result.left) +
-                        " runs are missing.");
-    return notes;
 }
 
 }  // namespace
@@ -106,7 +79,7 @@ CompareResult compare(const CompareSettings& settings) {
     std::optional<FolderLock> lock;
     std::exception_ptr fault;
     {
-        const InterruptGuard guard;  // gone before the report is written: a second Ctrl-C ends that
+        const InterruptGuard guard;  // another one for the report: a second Ctrl-C ends that
         result.sequences = openAll(settings);
         prepareOutputFolder(settings.output);
         lock.emplace(settings.output);
@@ -124,13 +97,14 @@ CompareResult compare(const CompareSettings& settings) {
             fault = std::current_exception();  // what is finished is reported first
         }
         result.runs = runs.count();
-        result.left = runs.total() - runs.count();
+        result.left = runs.left();
         runs.deliver();
     }
     if (result.interrupted && result.runs == 0)
         throw Interrupted("interrupted before any run was finished; no report was written");
-    result.info = {settings.command, utcNow(), machineText(), softwareVersions(), notesOf(settings, result)};
-    writeComparison(settings.output, result.sequences, result.info);
+    result.info = {settings.command, utcNow(), machineText(), softwareVersions(),
+                   comparisonNotes(settings, result)};
+    writeReport(settings, result);
     if (fault) std::rethrow_exception(fault);
     return result;
 }

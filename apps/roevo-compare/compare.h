@@ -28,13 +28,14 @@ struct CompareResult {
     std::vector<SequenceComparison> sequences;
     ComparisonInfo info;
     bool interrupted = false;
-    std::size_t runs = 0, left = 0;  ///< that are in the report, and that were not made any more
+    std::size_t runs = 0, left = 0;  ///< that are in the report, and that are still to be made
 };
 
 /// Makes the runs and writes the report: <output>/runs/<sequence>/<method>/, table.csv, table.md and
-/// report.html. After an interrupt (SIGINT, SIGTERM) the report has what is finished by then.
+/// report.html. After an interrupt (see InterruptGuard) the report has what is finished by then; a second
+/// one, or one while the report is being written, ends that.
 /// @throws UsageError; std::runtime_error in one line, also when not one sequence can be used (then nothing
-/// is written); Interrupted when no run was finished
+/// is written); Interrupted when no run was finished, or there is no report
 CompareResult compare(const CompareSettings& settings);
 
 }  // namespace roevo

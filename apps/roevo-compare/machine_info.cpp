@@ -72,8 +72,8 @@ std::vector<std::pair<std::string, std::string>> softwareVersions() {
             {"compiler", compilerName() + ", " ROEVO_BUILD_TYPE}};
 }
 
-std::string programState() {
-    std::ifstream in("/proc/self/exe", std::ios::binary);
+std::string programState(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     char hash[32];
     std::snprintf(hash, sizeof hash, "%016zx", std::hash<std::string>()(bytes));

@@ -43,7 +43,7 @@ void addOptions(CLI::App& app, Arguments& a) {
                    "TUM trajectory to compare with, for a single --input (default: what lies beside each)");
     app.add_option("--benchmark", a.benchmark,
                    "List of sequences (as datasets_readme/sequences.json) to run instead, those that are on "
-                   "disk; finished runs are kept, so that the same command goes on after an interrupt");
+                   "disk; always with --resume, so that the same command goes on after an interrupt");
     app.add_option("--data", a.data, "Folder below which the sequences of --benchmark lie");
     app.add_option("--methods", a.methods, "Names, separated by commas (default: all)")->delimiter(',');
     app.add_flag("--list-methods", a.list_methods, "Say what methods there are and end");
@@ -59,7 +59,9 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--timeout", a.timeout, "Seconds after which a run is ended as a failure")
         ->capture_default_str();
     app.add_flag("--resume", a.resume,
-                 "Keep the runs in the output folder that were made with the same settings");
+                 "Keep the runs in the output folder that were made with the same settings, a method's own "
+                 "failures, too; made anew are those that were killed from outside (signals 1, 2, 9, 15) and "
+                 "those whose core other programs had for more than 5 % of the time");
     app.add_option("--jobs", a.jobs,
                    "So many runs side by side, each on a core of its own (times are noisier then)")
         ->capture_default_str()
@@ -161,8 +163,8 @@ void report(const CompareResult& result, const CompareSettings& settings) {
 // What makes the whole a failure although the report is written.
 std::string failureOf(const CompareResult& result, const Arguments& a, const CompareSettings& settings) {
     if (result.interrupted)
-        return "interrupted: " + std::to_string(result.left) + " runs are missing; the same command" +
-               (settings.resume ? "" : " with --resume") + " goes on";
+        return "interrupted: " + std::to_string(result.left) + (result.left == 1 ? " run is" : " runs are") +
+               " still to be made; the same command" + (settings.resume ? "" : " with --resume") + " goes on";
     std::string failure, no_evaluation;
     bool some_good = false, some_evaluated = false;
     for (const SequenceComparison& sequence : result.sequences) {
@@ -181,16 +183,33 @@ std::string failureOf(const CompareResult& result, const Arguments& a, const Com
 }
 
 int runAsChild(const Arguments& a) {
+    if (a.inputs.size() != 1 || a.run_folder.empty())
+        throw UsageError(
+            "--run-method is for runs that this program starts by itself: it takes one --input "
+            "and --run-folder; use --methods");
     ChildSettings child;
     child.method = a.run_method;
     child.folder = a.run_folder;
-    child.input = a.inputs.at(0);
+    child.input = a.inputs.front();
     child.sensor_label = a.sensor_label;
     child.skip = a.skip;
     child.first = a.first;
     child.options = collectOptions(a.config, a.sets, "");
     runChild(child);
     return 0;
+}
+
+// The options for all methods. The mode is none of them: each of ROEVO's methods is a mode.
+OdometryOptions methodOptions(const Arguments& a) {
+    OdometryOptions options = collectOptions(a.config, a.sets, "");
+    const Mode own = OdometryOptions().mode;
+    if (options.mode != own && !a.quiet)
+        std::fprintf(stderr,
+                     "warning: mode = %s in %s has no effect here: each method has its own, choose by "
+                     "--methods\n",
+                     toString(options.mode), a.config.c_str());
+    options.mode = own;
+    return options;
 }
 
 int run(int argc, char** argv) {
@@ -208,7 +227,7 @@ int run(int argc, char** argv) {
     CompareSettings settings;
     settings.methods = chosenMethods(a.methods);
     settings.queue = {chosenCores(a.jobs), a.timeout};
-    settings.options = collectOptions(a.config, a.sets, "");
+    settings.options = methodOptions(a);
     settings.output = a.output;
     settings.resume = a.resume || !a.benchmark.empty();
     settings.quiet = a.quiet;

@@ -53,7 +53,7 @@ Json toJson(const MethodRun& run) {
             {"input", run.input},
             {"skipped", run.skipped},
             {"failure", run.failure},
-            {"warning", run.warning},
+            {"warnings", run.warnings},
             {"frames", run.frames},
             {"tracked", run.tracked},
             {"rejected", run.rejected},
@@ -68,6 +68,9 @@ Json toJson(const MethodRun& run) {
             {"memory_peak_mb", finite(run.memory_peak_mb, "the memory")},
             {"scene", run.scene},
             {"jobs", run.jobs},
+            {"not_pinned", run.not_pinned},
+            {"signal", run.signal},
+            {"timeout_s", finite(run.timeout_s, "the time limit")},
             {"settings", run.settings}};
 }
 
@@ -79,7 +82,7 @@ MethodRun toRun(const Json& json) {
     json.at("input").get_to(run.input);
     json.at("skipped").get_to(run.skipped);
     json.at("failure").get_to(run.failure);
-    json.at("warning").get_to(run.warning);
+    json.at("warnings").get_to(run.warnings);
     json.at("frames").get_to(run.frames);
     json.at("tracked").get_to(run.tracked);
     json.at("rejected").get_to(run.rejected);
@@ -93,6 +96,9 @@ MethodRun toRun(const Json& json) {
     json.at("memory_peak_mb").get_to(run.memory_peak_mb);
     json.at("scene").get_to(run.scene);
     json.at("jobs").get_to(run.jobs);
+    json.at("not_pinned").get_to(run.not_pinned);
+    json.at("signal").get_to(run.signal);
+    json.at("timeout_s").get_to(run.timeout_s);
     json.at("settings").get_to(run.settings);
     return run;
 }

@@ -32,15 +32,24 @@ struct MethodRun {
     double background_ms = 0;     ///< mean of one piece of it
     double memory_peak_mb = 0;    ///< of the process
     std::vector<StampedPose> trajectory;
-    std::string scene;     ///< file name of the 3-D scene in the folder, or empty
-    std::string warning;   ///< what is odd about the recording or the result, one line; may be empty
-    std::size_t jobs = 1;  ///< runs that went on side by side on the machine, this one included
+    std::string scene;                  ///< file name of the 3-D scene in the folder, or empty
+    std::vector<std::string> warnings;  ///< what is odd about the recording or the result, one line each
+    std::size_t jobs = 1;               ///< runs that went on side by side on the machine, this one included
+    std::string not_pinned;             ///< why its process was not bound to one core; empty when it was
+    int signal = 0;                     ///< that ended its process; 0: none
+    double timeout_s = 0;               ///< after which it was ended; 0: it was not
     /// All that the figures depend on: recording, frames, options, program, processor. A run is only taken
     /// again, instead of made again, when these are the same.
     std::map<std::string, std::string> settings;
 
     bool ok() const { return skipped.empty() && failure.empty(); }
 };
+
+/// Other programs had the core of a run for longer than this share of its time: its times are in doubt.
+constexpr double kDisturbedShare = 0.05;
+inline bool isDisturbed(const MethodRun& run) {
+    return run.core_lost > kDisturbedShare;
+}
 
 /// Writes all but map.3Dscene and frames.csv, run.json last: a folder with run.json is whole.
 /// @throws std::runtime_error

@@ -38,6 +38,12 @@ void QueueDisplay::finished(std::size_t index, const MethodRun& run, double seco
     ++finished_;
     if (!enabled_) return;
     const RunTask& task = tasks_[index];
+    if (!run.not_pinned.empty() && !warned_) {
+        std::fprintf(stderr, "%swarning: runs are not pinned to one core: %s\n", line_open_ ? "\r\033[K" : "",
+                     run.not_pinned.c_str());
+        warned_ = true;
+        line_open_ = false;
+    }
     char what[96];
     std::snprintf(what, sizeof what, "%zu frames, %.1f ms per frame (median), ", run.frames,
                   run.total.median);

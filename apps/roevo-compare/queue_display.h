@@ -25,7 +25,7 @@ class QueueDisplay : public QueueObserver {
     const std::vector<RunTask>& tasks_;
     const bool enabled_, terminal_;
     std::size_t finished_ = 0;
-    bool line_open_ = false;
+    bool line_open_ = false, warned_ = false;
     const Clock::time_point start_ = Clock::now();
     double running_share_ = 0;
 };

@@ -1,11 +1,13 @@
 #include "run_child.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <new>
 #include <opencv2/core/utility.hpp>
 
 #include "recording/frame_source.h"
 #include "run_method.h"
+#include "run_progress.h"
+#include "support/program.h"
 
 namespace roevo {
 namespace {
@@ -17,21 +19,38 @@ MethodInfo infoOf(const std::string& name) {
     return found == methods.end() ? MethodInfo() : *found;
 }
 
-}  // namespace
-
-void runChild(const ChildSettings& settings) {
+MethodRun makeRun(const ChildSettings& settings, const RunProgress& progress) {
     cv::setNumThreads(1);
     const auto source = openSource(settings.input, settings.sensor_label);
     const auto method = makeMethod(settings.method, source->camera(), settings.options);
     skipFrames(*source, settings.skip, settings.input);
+    return runMethod(*method, infoOf(settings.method), *source, settings.first, settings.folder, progress);
+}
 
-    const auto tell = [](std::size_t frames, double share) {
-        std::printf("%zu %.4f\n", frames, share);
-        std::fflush(stdout);  // a buffered line would be lost if the method took the process down with it
-    };
-    const MethodRun run =
-        runMethod(*method, infoOf(settings.method), *source, settings.first, settings.folder, tell);
-    writeMethodRun(settings.folder, run);
+void keepFailure(const ChildSettings& settings, const std::string& reason) {
+    MethodRun run;
+    run.method = settings.method;
+    run.failure = reason;
+    try {
+        writeMethodRun(settings.folder, run);
+    } catch (const std::exception&) {  // the reason is told all the same, as this process's last words
+    }
+}
+
+}  // namespace
+
+void runChild(const ChildSettings& settings) {
+    try {
+        const ProgressFile file(settings.folder);
+        const auto tell = [&](std::size_t frames, double share) { file.write({frames, share}); };
+        writeMethodRun(settings.folder, makeRun(settings, tell));
+    } catch (const std::bad_alloc&) {
+        keepFailure(settings, "out of memory");
+        throw;
+    } catch (const std::exception& e) {
+        keepFailure(settings, firstLine(e.what()));
+        throw;
+    }
 }
 
 }  // namespace roevo

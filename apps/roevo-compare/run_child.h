@@ -13,8 +13,8 @@ struct ChildSettings {
     OdometryOptions options;
 };
 
-/// Makes the run and keeps it in the folder; tells on standard output how far it has come.
-/// @throws std::exception with the reason when there is no result
+/// Makes the run and keeps it in the folder, as runTasks() expects it of a process.
+/// @throws std::exception with the reason, which is kept there, too, when there is no result
 void runChild(const ChildSettings& settings);
 
 }  // namespace roevo

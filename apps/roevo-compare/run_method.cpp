@@ -171,7 +171,7 @@ MethodRun Runner::summary() const {
         run.background = background->name;
         run.background_ms = background->mean_ms;
     }
-    run.warning = source_.warning();
+    if (!source_.warning().empty()) run.warnings.push_back(source_.warning());
     return run;
 }
 
@@ -235,7 +235,7 @@ MethodRun runMethod(Method& method, const MethodInfo& info, FrameSource& source,
     try {
         if (method.writeScene((fs::path(folder) / kSceneFile).string())) run.scene = kSceneFile;
     } catch (const std::exception& e) {  // the figures are good all the same
-        run.warning += (run.warning.empty() ? "" : "; ") + std::string("no scene: ") + firstLine(e.what());
+        run.warnings.push_back("no scene: " + firstLine(e.what()));
     }
     return run;
 }

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
+#include "run_progress.h"
 #include "support/interrupt.h"
 #include "support/program.h"
 
@@ -21,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kWait = 0.2;  // s between two looks at the processes
-constexpr char kTimeoutSetting[] = "timeout_s";
 
 void removeFolder(const fs::path& folder) {
     std::error_code fault;
@@ -46,18 +45,6 @@ void moveTo(const fs::path& from, const fs::path& to) {
     if (fault) throw std::runtime_error("cannot create " + to.string() + ": " + fault.message());
 }
 
-// What a child has told of its progress.
-struct Advance {
-    std::size_t frames = 0;
-    double share = 0;
-};
-
-Advance advanceFrom(const std::string& line) {
-    Advance advance;
-    if (std::sscanf(line.c_str(), "%zu %lf", &advance.frames, &advance.share) != 2) return {};
-    return advance;
-}
-
 // The message of an error line of ours without the program's name, other lines as they are.
 std::string lastWords(const std::string& line) {
     constexpr char kMark[] = ": error: ";
@@ -65,23 +52,27 @@ std::string lastWords(const std::string& line) {
     return mark == std::string::npos ? line : line.substr(mark + std::strlen(kMark));
 }
 
-std::string failureOf(const ChildProcess& process, double timeout_s) {
+std::string inFrames(std::size_t frames) {
+    return " after " + std::to_string(frames) + (frames == 1 ? " frame" : " frames");
+}
+
+// Why there is no result of a process that did not say it in its run.json.
+std::string failureOf(const ChildProcess& process, std::size_t frames, double timeout_s) {
     const ProcessEnd& end = process.end();
-    const std::size_t frames = advanceFrom(process.lastOutput()).frames;
     const std::string words = lastWords(process.lastError());
     const std::string quoted = words.empty() ? "" : "; its last words: " + words;
-    const std::string progress = " after " + std::to_string(frames) + (frames == 1 ? " frame" : " frames");
     char limit[32];
     std::snprintf(limit, sizeof limit, "%g s", timeout_s);
-    if (end.timed_out) return "it was not done within " + std::string(limit) + ", ended" + progress + quoted;
+    if (end.timed_out)
+        return "it was not done within " + std::string(limit) + ", ended" + inFrames(frames) + quoted;
     if (end.signal != 0) {
         std::string name = strsignal(end.signal);
         if (end.signal == SIGKILL) name += ", maybe for want of memory";
-        return "it died of signal " + std::to_string(end.signal) + " (" + name + ")" + progress + quoted;
+        return "it died of signal " + std::to_string(end.signal) + " (" + name + ")" + inFrames(frames) +
+               quoted;
     }
-    if (words.empty())
-        return "it ended with exit code " + std::to_string(end.exit_code) + progress + " without a word";
-    return words;
+    return "it ended with exit code " + std::to_string(end.exit_code) + inFrames(frames) +
+           (words.empty() ? " without a word" : quoted);
 }
 
 // One run under way, in a folder beside the one where it is kept.
@@ -104,7 +95,7 @@ class ActiveRun {
     ActiveRun& operator=(const ActiveRun&) = delete;
 
     bool update() { return process_->update(); }
-    double share() const { return advanceFrom(process_->lastOutput()).share; }
+    double share() const { return readProgress(partial_.string()).share; }
     const ChildProcess& process() const { return *process_; }
 
     // Moves the ended run to where it is kept.
@@ -115,8 +106,8 @@ class ActiveRun {
         run.note = task_.method.note;
         run.input = task_.input;
         run.jobs = jobs;
+        run.not_pinned = core < 0 ? "the system does not tell its cores" : process_->bindingFault();
         run.settings = task_.settings;
-        if (process_->end().timed_out) run.settings[kTimeoutSetting] = std::to_string(timeout_s_);
         writeMethodRun(partial_.string(), run);
         moveTo(partial_, task_.folder);
         return run;
@@ -127,17 +118,34 @@ class ActiveRun {
 
   private:
     MethodRun result() {
-        MethodRun run;
-        try {
-            if (process_->end().ok()) return readMethodRun(partial_.string());
-            run.failure = failureOf(*process_, timeout_s_);
-        } catch (const std::exception& e) {
-            run.failure = "it ended well, but left no result: " + firstLine(e.what());
+        const std::size_t frames = readProgress(partial_.string()).frames;
+        MethodRun run = outcome(frames);
+        if (run.failure.empty()) {
+            fs::remove(ProgressFile::path(partial_.string()));
+        } else {  // whatever else is there is of no result
+            run.frames = frames;
+            removeFolder(partial_);
+            createFolder(partial_);
         }
-        run.frames = advanceFrom(process_->lastOutput()).frames;
-        removeFolder(partial_);
-        createFolder(partial_);
         return run;
+    }
+
+    MethodRun outcome(std::size_t frames) const {
+        const ProcessEnd& end = process_->end();
+        const bool ended_itself = !end.timed_out && end.signal == 0;
+        MethodRun failed;
+        if (end.timed_out)
+            failed.timeout_s = timeout_s_;
+        else
+            failed.signal = end.signal;
+        try {
+            if (ended_itself)
+                if (MethodRun run = readMethodRun(partial_.string()); end.ok() || !run.ok()) return run;
+        } catch (const std::exception& e) {
+            if (end.ok()) failed.failure = "it ended well, but left no result: " + firstLine(e.what());
+        }
+        if (failed.failure.empty()) failed.failure = failureOf(*process_, frames, timeout_s_);
+        return failed;
     }
 
     const RunTask& task_;
@@ -182,25 +190,6 @@ void runTasks(const std::vector<RunTask>& tasks, const CommandFor& command, cons
             run = active.erase(run);
             observer.finished(index, result, seconds);
         }
-    }
-}
-
-bool findFinishedRun(const RunTask& task, double timeout_s, MethodRun& run) {
-    try {
-        MethodRun found = readMethodRun(task.folder);
-        const auto limit = found.settings.find(kTimeoutSetting);
-        if (limit != found.settings.end()) {
-            if (std::atof(limit->second.c_str()) < timeout_s) return false;
-            found.settings.erase(limit);
-        }
-        if (found.settings != task.settings) return false;
-        found.input = task.input;
-        found.label = task.method.label;
-        found.note = task.method.note;
-        run = std::move(found);
-        return true;
-    } catch (const std::exception&) {
-        return false;  // none, or not whole: it is made anew
     }
 }
 

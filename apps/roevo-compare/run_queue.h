@@ -25,8 +25,10 @@ struct QueueOptions {
     double timeout_s = 0;    ///< of a run
 };
 
-/// The command that makes a run in the given folder. While it goes on it writes lines `frames share` to its
-/// standard output; when it fails, its last line on standard error says why.
+/// The command that makes a run in the given folder. While it goes on it keeps a ProgressFile there; at the
+/// end there is a run.json (see writeMethodRun()), with the result, or with MethodRun::failure when it has
+/// failed and knows why. Its exit code is 0 if, and only if, there is a result. What it prints has no
+/// meaning; its last line on standard error is quoted where there is no better word.
 using CommandFor = std::function<std::vector<std::string>(const RunTask& task, const std::string& folder)>;
 
 /// Who wants to know what is going on.
@@ -42,14 +44,9 @@ class QueueObserver {
 /// Makes all runs, each in a process of its own. A run that fails (an error, a signal, its time is up) is one
 /// with MethodRun::failure. Whatever was in a task's folder is replaced when its run has ended, and stays
 /// when it has not.
-/// @throws Interrupted after SIGINT or SIGTERM (needs an InterruptGuard), once all processes are ended;
+/// @throws Interrupted after a signal (needs an InterruptGuard), once all processes are ended;
 /// std::runtime_error when a run cannot be kept
 void runTasks(const std::vector<RunTask>& tasks, const CommandFor& command, const QueueOptions& options,
               QueueObserver& observer);
-
-/// The run in the task's folder, when it is whole and was made with the same settings (and, if its time was
-/// up, with no less of it).
-/// @return whether there is one
-bool findFinishedRun(const RunTask& task, double timeout_s, MethodRun& run);
 
 }  // namespace roevo

@@ -1,8 +1,9 @@
 #include "runs.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <set>
+#include <utility>
 
 #include "machine_info.h"
 #include "support/text.h"
@@ -21,7 +22,7 @@ std::map<std::string, std::string> runSettings(const CompareSettings& settings, 
     for (const OptionField& field : optionFields(options))
         values += field.name() + "=" + field.toText() + "; ";
     for (const auto& [name, version] : softwareVersions()) versions += name + " " + version + "; ";
-    std::map<std::string, std::string> all{{"recording", recordingState(sequence.input)},
+    std::map<std::string, std::string> all{{"recording", recordingState(sequence.input, settings.output)},
                                            {"sensor_label", sequence.sensor_label},
                                            {"skip", std::to_string(sequence.skip)},
                                            {"first", std::to_string(sequence.first)},
@@ -78,19 +79,27 @@ void Runs::plan(std::size_t s, std::size_t m, const std::map<std::string, std::s
         place_[s][m] = notRun(s, m, method.unavailable);
         return;
     }
-    MethodRun run;
     RunTask task{sequences_[s].name, sequences_[s].input, method, folder(s, m), run_settings};
-    if (settings_.resume && findFinishedRun(task, settings_.queue.timeout_s, run)) {
-        place_[s][m] = run;
-        ++reused_;
-        if (!run.failure.empty() && !settings_.quiet)
-            std::fprintf(stderr, "%s, %s: kept as it is, FAILED: %s (remove %s to have it run again)\n",
-                         task.sequence.c_str(), method.name.c_str(), run.failure.c_str(),
-                         task.folder.c_str());
-        return;
+    if (settings_.resume) {
+        KeptRun kept = findKeptRun(task, settings_.queue.timeout_s);
+        place_[s][m] = kept.run;  // to be made anew or not: it stands until there is another one
+        if (kept.run) tell(task, kept);
+        if (kept.run && kept.redo.empty()) {
+            ++reused_;
+            return;
+        }
     }
     tasks_.push_back(std::move(task));
     where_.emplace_back(s, m);
+}
+
+void Runs::tell(const RunTask& task, const KeptRun& kept) const {
+    const std::string& failure = kept.run->failure;
+    if (settings_.quiet || (failure.empty() && kept.redo.empty())) return;
+    const std::string what = !kept.redo.empty() ? "is made anew: " + kept.redo
+                                                : "kept as it is, FAILED: " + failure + " (remove " +
+                                                      task.folder + " to have it run again)";
+    std::fprintf(stderr, "%s, %s: %s\n", task.sequence.c_str(), task.method.name.c_str(), what.c_str());
 }
 
 std::string Runs::folder(std::size_t s, std::size_t m) const {
@@ -121,15 +130,17 @@ std::size_t Runs::total() const {
 
 void Runs::deliver() {
     for (std::size_t s = 0; s < sequences_.size(); ++s) {
-        std::set<std::string> warnings;
+        SequenceComparison& sequence = sequences_[s];
+        std::size_t frames = 0;
         for (std::size_t m = 0; m < place_[s].size(); ++m) {
-            const MethodRun run =
-                place_[s][m] ? *place_[s][m] : notRun(s, m, "not run: the comparison was ended before");
-            if (!run.warning.empty() && warnings.insert(run.warning).second)
-                sequences_[s].note += (sequences_[s].note.empty() ? "" : "; ") + run.warning;
-            sequences_[s].runs.push_back(run);
-            sequences_[s].run_folders.push_back(folder(s, m));
+            sequence.runs.push_back(place_[s][m] ? *place_[s][m]
+                                                 : notRun(s, m, "not run: the comparison was ended before"));
+            sequence.run_folders.push_back(folder(s, m));
+            if (sequence.runs.back().ok()) frames = std::max(frames, sequence.runs.back().frames);
         }
+        // A rawlog does not tell its length before its end
+        const SequenceInput& input = settings_.sequences[s];
+        if (frames > 0 && frames < input.first) sequence.part = partOf(input, input.skip + frames);
     }
 }
 

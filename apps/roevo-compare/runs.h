@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compare.h"
+#include "kept_run.h"
 #include "queue_display.h"
 #include "run_queue.h"
 
@@ -24,6 +25,7 @@ class Runs : public QueueObserver {
     void make(const std::string& config);
 
     void finished(std::size_t task, const MethodRun& run, double seconds) override {
+        ++made_;
         place_[where_[task].first][where_[task].second] = run;
         display_.finished(task, run, seconds);
     }
@@ -32,13 +34,15 @@ class Runs : public QueueObserver {
     /// Puts all runs that there are into the sequences, in the order of the methods.
     void deliver();
 
-    std::size_t count() const;                      ///< runs that there are, without skipped methods
-    std::size_t total() const;                      ///< runs that there should be
-    std::size_t reused() const { return reused_; }  ///< runs that were there from the start
+    std::size_t count() const;  ///< runs that there are, without skipped methods
+    std::size_t total() const;  ///< runs that there should be
+    std::size_t left() const { return tasks_.size() - made_; }  ///< that are still to be made
+    std::size_t reused() const { return reused_; }              ///< runs that are not made anew
 
   private:
     MethodRun notRun(std::size_t s, std::size_t m, const std::string& reason) const;
     void plan(std::size_t s, std::size_t m, const std::map<std::string, std::string>& run_settings);
+    void tell(const RunTask& task, const KeptRun& kept) const;
     std::string folder(std::size_t s, std::size_t m) const;
 
     const CompareSettings& settings_;
@@ -46,7 +50,7 @@ class Runs : public QueueObserver {
     std::vector<std::vector<std::optional<MethodRun>>> place_;
     std::vector<RunTask> tasks_;
     std::vector<std::pair<std::size_t, std::size_t>> where_;  // of each task: sequence, method
-    std::size_t reused_ = 0;
+    std::size_t reused_ = 0, made_ = 0;
     QueueDisplay display_{tasks_, !settings_.quiet};
 };
 

@@ -1,5 +1,7 @@
 #include "sequences.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -30,10 +32,6 @@ std::string nameOf(const fs::path& path) {
     return name.empty() ? "recording" : name;
 }
 
-void append(std::string& text, const std::string& more) {
-    if (!more.empty()) text += (text.empty() ? "" : "; ") + more;
-}
-
 // Goes on to the first frame that can be decoded. @return empty, or what is wrong with the recording
 std::string faultOf(FrameSource& source, const SequenceInput& sequence) {
     skipFrames(source, sequence.skip, sequence.input);
@@ -53,13 +51,35 @@ void setGroundTruth(SequenceComparison& out, const SequenceInput& sequence, cons
     out.ground_truth = truth.file;
     out.reference = std::move(truth.poses);
     if (!out.reference.empty()) {
-        append(out.note, truth.note);
+        if (!truth.note.empty()) out.notes.push_back("ground truth: " + truth.note);
         return;
     }
     out.ground_truth_fault = truth.note;
     if (truth.note.empty() && !sequence.expected_ground_truth.empty())
         out.ground_truth_fault = "there is no ground truth in " + sequence.input + " (the list says " +
                                  sequence.expected_ground_truth + ")";
+}
+
+void addFile(const fs::path& file, const std::string& name, std::set<std::string>& files) {
+    struct stat state {};
+    if (stat(file.c_str(), &state) == 0)
+        files.insert(name + " " + std::to_string(state.st_size) + " " + std::to_string(state.st_mtim.tv_sec) +
+                     "." + std::to_string(state.st_mtim.tv_nsec));
+}
+
+// All files in the folder and those below it, but for the folder `left_out`.
+void addBelow(const fs::path& folder, const fs::path& left_out, std::set<std::string>& files) {
+    constexpr int kDeepest = 3;  // datasets need one or two; links can lead round in circles
+    constexpr auto kOptions =
+        fs::directory_options::skip_permission_denied | fs::directory_options::follow_directory_symlink;
+    std::error_code fault, ignored;
+    fs::recursive_directory_iterator at(folder, kOptions, fault);
+    for (; !fault && at != fs::recursive_directory_iterator(); at.increment(fault)) {
+        const bool is_folder = at->is_directory(ignored);
+        if (is_folder && (at.depth() >= kDeepest || wholePath(at->path().string()) == left_out))
+            at.disable_recursion_pending();
+        if (!is_folder) addFile(at->path(), at->path().lexically_relative(folder).string(), files);
+    }
 }
 
 }  // namespace
@@ -84,16 +104,28 @@ std::vector<std::string> sequenceNames(const std::vector<std::string>& inputs) {
     return names;
 }
 
+std::string partOf(const SequenceInput& sequence, std::size_t size) {
+    std::size_t end = sequence.first > 0 ? sequence.skip + sequence.first : 0;
+    if (size > 0 && (end == 0 || end > size)) end = size;
+    if (sequence.skip == 0 && end == size) return {};
+    const std::string begin = std::to_string(sequence.skip);
+    return end == 0 ? "frames from number " + begin + " on"
+                    : "frames " + begin + " to " + std::to_string(end - 1);
+}
+
 SequenceComparison openSequence(const SequenceInput& sequence) {
     SequenceComparison out;
     out.name = sequence.name;
     out.input = sequence.input;
-    out.note = sequence.note;
+    if (!sequence.note.empty()) out.notes.push_back(sequence.note);
     out.paper_ate_cm = sequence.paper_ate_cm;
     // Before all else: a file that was asked for must be good even if the recording is not
     if (!sequence.ground_truth.empty()) readTumTrajectory(sequence.ground_truth);
     try {
         const auto source = openSource(sequence.input, sequence.sensor_label);
+        out.part = partOf(sequence, source->size());
+        for (const std::string& note : source->notes())  // ground truth may be another one: told by itself
+            if (note.rfind("ground truth:", 0) != 0) out.notes.push_back(note);
         setGroundTruth(out, sequence, *source);
         out.failure = faultOf(*source, sequence);
     } catch (const UsageError&) {
@@ -106,23 +138,17 @@ SequenceComparison openSequence(const SequenceInput& sequence) {
     return out;
 }
 
-std::string recordingState(const std::string& input) {
+std::string recordingState(const std::string& input, const std::string& output) {
     const fs::path path = wholePath(input);
+    const fs::path images = fs::path(path).replace_filename(path.stem().string() + "_Images");
     std::set<std::string> files;  // in an order that does not depend on the file system
-    const auto add = [&](const fs::path& file) {
-        std::error_code fault;
-        if (!fs::exists(file, fault)) return;
-        const auto time = fs::last_write_time(file, fault).time_since_epoch().count();
-        const bool regular = fs::is_regular_file(file, fault);
-        files.insert(file.filename().string() + " " + std::to_string(time) + " " +
-                     (regular ? std::to_string(fs::file_size(file, fault)) : "folder"));
-    };
     std::error_code fault;
-    if (fs::is_directory(path, fault))
-        for (const auto& entry : fs::directory_iterator(path, fault)) add(entry.path());
-    else
-        for (const fs::path& file : {path, fs::path(path).replace_filename(path.stem().string() + "_Images")})
-            add(file);
+    if (fs::is_directory(path, fault)) {
+        addBelow(path, wholePath(output), files);
+    } else {
+        addFile(path, path.filename().string(), files);
+        if (fs::is_directory(images, fault)) addBelow(images, wholePath(output), files);
+    }
     std::string all;
     for (const std::string& file : files) all += file + "\n";
     return path.string() + " (state " + std::to_string(std::hash<std::string>()(all)) + ")";

@@ -17,12 +17,16 @@ struct SequenceInput {
     std::string expected_ground_truth;   ///< what a list says of it, for the message when there is none
     std::size_t skip = 0, first = 0;     ///< at most `first` frames (0: all) after leaving out `skip`
     std::optional<double> paper_ate_cm;  ///< the paper's figure for just these frames
-    std::string note;                    ///< what a reader must know of it; may be empty
+    std::string note;                    ///< what a list says of it that a reader must know; may be empty
 };
 
 /// Names for recordings: the rawlog's stem or the folder's name; where two have the same, the folder above
 /// goes before it, and then a number behind it.
 std::vector<std::string> sequenceNames(const std::vector<std::string>& inputs);
+
+/// What of a recording is run, counted from 0: "frames 10 to 24". Empty when it is all of it.
+/// @param size  number of its frames, 0 where that is not known
+std::string partOf(const SequenceInput& sequence, std::size_t size);
 
 /// Opens the recording and reads its ground truth and its first good frame, whose depth scale is checked.
 /// @return with `failure` in words when the recording cannot be used, and without runs
@@ -30,8 +34,9 @@ std::vector<std::string> sequenceNames(const std::vector<std::string>& inputs);
 /// was named and cannot be read
 SequenceComparison openSequence(const SequenceInput& sequence);
 
-/// Changes when the recording's files on disk change: its path, and size and time of the rawlog (and time of
-/// its folder of images), or of the files of the folder's top level.
-std::string recordingState(const std::string& input);
+/// Changes when the recording's files on disk change: its path, and names, sizes and times of the rawlog and
+/// of all in its folder of images, or of all in the dataset's folder and those below it. Nothing is read.
+/// @param output  folder that is no part of it even if it lies inside
+std::string recordingState(const std::string& input, const std::string& output);
 
 }  // namespace roevo

@@ -2,49 +2,25 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <optional>
 #include <set>
 
+#include "report/metrics.h"
+#include "report/remarks.h"
 #include "report/results.h"
 #include "support/text.h"
 
 namespace roevo {
 namespace {
 
+// Of shownMetrics(); heads are shorter here.
 struct Column {
     const char* head;
-    int decimals;
-    std::optional<double> (*value)(const MethodRun& run, const EvaluatedRun& evaluated);
+    std::size_t metric;
 };
-
-std::optional<double> rmse(const ErrorStatistics& statistics, double scale) {
-    return statistics.count > 0 ? std::optional(statistics.rmse * scale) : std::nullopt;
-}
-
-const Column kColumns[] = {
-    {"ATE cm", 3,
-     [](const MethodRun&, const EvaluatedRun& e) {
-         return e.evaluation ? rmse(e.evaluation->ate.translation, 100) : std::nullopt;
-     }},
-    {"RPE cm/s", 3,
-     [](const MethodRun&, const EvaluatedRun& e) {
-         return e.evaluation ? rmse(e.evaluation->rpe_second.translation, 100) : std::nullopt;
-     }},
-    {"deg/s", 3,
-     [](const MethodRun&, const EvaluatedRun& e) {
-         return e.evaluation ? rmse(e.evaluation->rpe_second.rotation, 1) : std::nullopt;
-     }},
-    {"tracked %", 1,
-     [](const MethodRun& run, const EvaluatedRun&) {
-         const auto share = trackedShare(run);
-         return share ? std::optional(100 * *share) : std::nullopt;
-     }},
-    {"ms", 2, [](const MethodRun& run, const EvaluatedRun&) { return std::optional(run.total.median); }},
-    {"ms 95 %", 2, [](const MethodRun& run, const EvaluatedRun&) { return std::optional(run.total.p95); }},
-    {"CPU ms", 2,
-     [](const MethodRun& run, const EvaluatedRun&) { return std::optional(run.cpu_ms_per_frame); }},
-    {"MB", 0, [](const MethodRun& run, const EvaluatedRun&) { return std::optional(run.memory_peak_mb); }},
-};
+constexpr Column kColumns[] = {{"ATE cm", 0}, {"RPE cm/s", 1}, {"deg/s", 2},  {"tracked %", 5},
+                               {"ms", 6},     {"ms 95 %", 7},  {"CPU ms", 8}, {"MB", 9}};
+constexpr int kWidth = 11;  // of a column, the last character for the mark
+constexpr char kBest[] = "*";
 
 std::string padded(const std::string& text, std::size_t width) {
     return text + std::string(width - std::min(width, text.size()), ' ');
@@ -56,7 +32,49 @@ std::string rightAligned(const std::string& text, int width) {
     return out;
 }
 
-constexpr int kWidth = 11;
+// What all columns hold of a sequence's runs.
+struct Figures {
+    explicit Figures(const SequenceResults& results) : results_(results) {
+        for (const Column& column : kColumns) best_.push_back(bestRuns(metric(column), results));
+    }
+    std::string row(std::size_t run) const {
+        std::string text;
+        for (std::size_t c = 0; c < std::size(kColumns); ++c) {
+            const auto value = metricOf(metric(kColumns[c]), results_, run);
+            text += rightAligned(value ? shownNumber(value, metric(kColumns[c]).decimals) : "-", kWidth - 1) +
+                    (best_[c][run] ? kBest : " ");
+        }
+        return text.substr(0, text.find_last_not_of(' ') + 1) + '\n';
+    }
+
+  private:
+    static const Metric& metric(const Column& column) { return shownMetrics()[column.metric]; }
+
+    const SequenceResults& results_;
+    std::vector<std::vector<bool>> best_;
+};
+
+std::string heads() {
+    std::string text;
+    for (const Column& column : kColumns) text += rightAligned(column.head, kWidth - 1) + ' ';
+    return text.substr(0, text.find_last_not_of(' ') + 1) + '\n';
+}
+
+std::string runLines(const SequenceResults& results, std::size_t width) {
+    const SequenceComparison& sequence = *results.sequence;
+    const Figures figures(results);
+    std::string text = heads();
+    std::set<std::string> faults;  // mostly one for all methods
+    for (std::size_t i = 0; i < sequence.runs.size(); ++i) {
+        const MethodRun& run = sequence.runs[i];
+        const std::string fault = whyNoErrors(sequence, run, results.evaluated[i]);
+        text += padded("  " + labelOf(run), width) + (run.ok() ? figures.row(i) : " " + fault + "\n");
+        if (run.ok() && !fault.empty()) faults.insert(fault);
+    }
+    for (const std::string& fault : faults) text += "  no errors: " + fault + "\n";
+    for (const std::string& oddity : odditiesOf(results)) text += "  " + oddity + "\n";
+    return text;
+}
 
 }  // namespace
 
@@ -73,32 +91,11 @@ std::string terminalTable(const std::vector<SequenceComparison>& sequences) {
             text += " failed: " + sequence.failure + "\n";
             continue;
         }
-        if (sequence.runs.empty()) {
-            text += " not run\n";
-            continue;
-        }
-        for (const Column& column : kColumns) text += rightAligned(column.head, kWidth);
-        text += '\n';
-        std::set<std::string> faults;  // mostly one for all methods
-        for (std::size_t i = 0; i < sequence.runs.size(); ++i) {
-            const MethodRun& run = sequence.runs[i];
-            const EvaluatedRun& evaluated = results.evaluated[i];
-            text += padded("  " + run.label, width);
-            if (!run.ok()) {
-                text += " " + whyNoErrors(sequence, run, evaluated) + "\n";
-                continue;
-            }
-            for (const Column& column : kColumns) {
-                const auto value = column.value(run, evaluated);
-                text += rightAligned(value ? shownNumber(value, column.decimals) : "-", kWidth);
-            }
-            text += '\n';
-            if (!evaluated.evaluation) faults.insert(whyNoErrors(sequence, run, evaluated));
-        }
-        for (const std::string& fault : faults) text += "  no errors: " + fault + "\n";
-        if (!sequence.note.empty()) text += "  " + sequence.note + "\n";
+        text += sequence.runs.empty() ? " not run\n" : runLines(results, width);
+        if (!sequence.part.empty()) text += "  only " + sequence.part + " of the recording\n";
+        for (const std::string& note : sequence.notes) text += "  " + note + "\n";
     }
-    return text;
+    return text + (text.find(kBest) == std::string::npos ? "" : "\n* the best, as in the report\n");
 }
 
 }  // namespace roevo

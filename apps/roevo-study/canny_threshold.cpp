@@ -64,6 +64,33 @@ double medianRatio(const std::vector<std::vector<Row>>& rows, std::size_t factor
     return median(values).value_or(std::numeric_limits<double>::infinity());
 }
 
+Row trackAt(const StudyInput& input, double factor) {
+    OdometryOptions options = input.options;
+    options.edges.canny_high_factor = factor;
+    options.edges.canny_low_ratio = kLowRatio;
+    options.edges.min_high_threshold = kNoFloor;
+    options.mapping.semi_dense_points = 0;  // costs time and moves no pose
+    Row row;
+    row.factor = factor;
+    row.run = trackRecording(input, options);
+    row.errors = errorsOf(row.run);
+    return row;
+}
+
+void addRows(CsvTable& table, const StudyInput& input, double configured, const std::vector<Row>& rows) {
+    const Errors reference = atOtsu(rows).errors;
+    for (const Row& row : rows)
+        table.add({input.name, toString(input.options.mode), CsvTable::number(row.factor),
+                   row.factor == configured ? "yes" : "no", CsvTable::number(row.errors.ate),
+                   CsvTable::number(ratio(row.errors.ate, reference.ate)),
+                   CsvTable::number(row.errors.rpe_translation),
+                   CsvTable::number(ratio(row.errors.rpe_translation, reference.rpe_translation)),
+                   CsvTable::number(row.errors.rpe_rotation),
+                   CsvTable::number(ratio(row.errors.rpe_rotation, reference.rpe_rotation)),
+                   CsvTable::number(row.run.points), std::to_string(row.run.frames),
+                   std::to_string(row.run.tracked), row.run.fault});
+}
+
 constexpr double kTop = 8;  // ratios beyond leave the plot: the odometry has lost its way
 
 struct Panel {
@@ -100,7 +127,7 @@ std::string draw(const Panel& panel, const std::vector<double>& factors, double 
     return script + "$" + panel.block +
            " using 1:2 with lines lw 4 lc rgb '#222222' title 'median of the recordings', 1/0 with "
            "lines lw 1.5 dt 2 lc rgb '#888888' title " +
-           gnuplotText(format("configured: %g", configured)) + "\nunset key\n";
+           gnuplotText(format("configured: %g x Otsu", configured)) + "\nunset key\n";
 }
 
 void plot(StudyReport& report, const std::string& folder, const std::vector<double>& factors,
@@ -137,40 +164,21 @@ StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std
     std::vector<std::string> names;
     Progress progress("canny", inputs.size() * factors.size());
     std::size_t done = 0;
-    for (const StudyInput& input : inputs) {
+    forEachInput(inputs, report, [&](const StudyInput& input) {
         std::vector<Row> rows;
         for (const double factor : factors) {
-            OdometryOptions options = input.options;
-            options.edges.canny_high_factor = factor;
-            options.edges.canny_low_ratio = kLowRatio;
-            options.edges.min_high_threshold = kNoFloor;
-            options.mapping.semi_dense_points = 0;  // costs time and moves no pose
-            Row row;
-            row.factor = factor;
-            row.run = trackRecording(input, options);
-            row.errors = errorsOf(row.run);
-            rows.push_back(std::move(row));
+            rows.push_back(trackAt(input, factor));
             progress.update(++done);
         }
-        const Errors reference = atOtsu(rows).errors;
-        for (const Row& row : rows)
-            table.add({input.name, toString(input.options.mode), CsvTable::number(row.factor),
-                       row.factor == configured ? "yes" : "no", CsvTable::number(row.errors.ate),
-                       CsvTable::number(ratio(row.errors.ate, reference.ate)),
-                       CsvTable::number(row.errors.rpe_translation),
-                       CsvTable::number(ratio(row.errors.rpe_translation, reference.rpe_translation)),
-                       CsvTable::number(row.errors.rpe_rotation),
-                       CsvTable::number(ratio(row.errors.rpe_rotation, reference.rpe_rotation)),
-                       CsvTable::number(row.run.points), std::to_string(row.run.frames),
-                       std::to_string(row.run.tracked), row.run.fault});
-        if (reference.ate) {
+        addRows(table, input, configured, rows);
+        if (atOtsu(rows).errors.ate) {
             names.push_back(input.name);
             plotted.push_back(std::move(rows));
         } else {
             report.notes.push_back(input.name +
                                    ": errors at Otsu's threshold are not known: " + atOtsu(rows).run.fault);
         }
-    }
+    });
     progress.finish();
     addTable(report, folder, "canny.csv", table);
     report.notes.push_back(

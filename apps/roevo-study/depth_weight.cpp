@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bar_chart.h"
 #include "roevo/tracking/edge_points.h"
 #include "study.h"
 #include "support/gnuplot.h"
@@ -70,6 +71,55 @@ void drawCurves(StudyReport& report, const std::string& folder, const std::vecto
     addPlot(report, folder, "depth_weight_curves.svg", script, 860, 400);
 }
 
+/// The errors on one recording under every set of weights.
+struct Errors {
+    std::vector<StudyRun> runs;  // in the order of the sets
+
+    std::optional<double> ate(std::size_t set) const {  // m
+        if (!runs[set].evaluation) return std::nullopt;
+        return runs[set].evaluation->ate.translation.rmse;
+    }
+    /// To the error without weight, which is the first.
+    std::optional<double> ratio(std::size_t set) const {
+        if (!ate(set) || !ate(0) || !(*ate(0) > 0)) return std::nullopt;
+        return *ate(set) / *ate(0);
+    }
+};
+
+void addRows(CsvTable& table, const StudyInput& input, const std::vector<WeightSet>& sets,
+             const Errors& errors) {
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+        const StudyRun& run = errors.runs[s];
+        std::optional<double> rpe_translation, rpe_rotation;
+        if (run.evaluation && run.evaluation->rpe_second.translation.count > 0) {
+            rpe_translation = run.evaluation->rpe_second.translation.rmse;
+            rpe_rotation = run.evaluation->rpe_second.rotation.rmse;
+        }
+        table.add({input.name, toString(input.options.mode), sets[s].name, CsvTable::number(sets[s].k),
+                   CsvTable::number(sets[s].min_depth), CsvTable::number(sets[s].max_depth),
+                   CsvTable::number(errors.ate(s)), CsvTable::number(errors.ratio(s)),
+                   CsvTable::number(rpe_translation), CsvTable::number(rpe_rotation),
+                   std::to_string(run.frames), std::to_string(run.tracked), run.fault});
+    }
+}
+
+void drawErrors(StudyReport& report, const std::string& folder, const std::vector<WeightSet>& sets,
+                const std::vector<std::string>& names, const std::vector<Errors>& errors) {
+    BarChart chart;
+    chart.title = "Error of the trajectory under the depth weight; in brackets k (1/m), d_min (m), d_max (m)";
+    chart.unit_label = label(sets[0]);
+    chart.groups = names;
+    chart.panels = {{"ATE / ATE without weight", {}}};
+    for (std::size_t s = 1; s < sets.size(); ++s)
+        chart.series.push_back({label(sets[s]), static_cast<int>(s)});
+    for (const Errors& of_input : errors) {
+        chart.panels[0].bars.emplace_back();
+        for (std::size_t s = 1; s < sets.size(); ++s)
+            chart.panels[0].bars.back().push_back(of_input.ratio(s).value_or(kMissing));
+    }
+    addBarChart(report, folder, "depth_weight.svg", chart);
+}
+
 }  // namespace
 
 StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::string& folder) {
@@ -79,72 +129,40 @@ StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::s
 
     CsvTable table({"recording", "mode", "weight", "k", "d_min_m", "d_max_m", "ate_m", "ate_ratio",
                     "rpe_translation_m_per_s", "rpe_rotation_deg_per_s", "frames", "tracked", "note"});
-    std::vector<std::vector<double>> bars;
+    std::vector<Errors> measured;
     std::vector<std::string> names;
-    std::vector<std::vector<double>> ratios(sets.size());
     Progress progress("depth-weight", inputs.size() * sets.size());
     std::size_t done = 0;
-    for (const StudyInput& input : inputs) {
-        std::optional<double> unweighted;  // ATE, m
-        std::vector<double> bar{static_cast<double>(bars.size())};
-        std::string fault;
-        for (std::size_t s = 0; s < sets.size(); ++s) {
-            const StudyRun run = trackRecording(input, with(input.options, sets[s]));
-            std::optional<double> ate, rpe_translation, rpe_rotation, ratio;
-            if (run.evaluation) {
-                ate = run.evaluation->ate.translation.rmse;
-                if (s == 0) unweighted = ate;
-                if (unweighted && *unweighted > 0) ratio = *ate / *unweighted;
-                if (run.evaluation->rpe_second.translation.count > 0) {
-                    rpe_translation = run.evaluation->rpe_second.translation.rmse;
-                    rpe_rotation = run.evaluation->rpe_second.rotation.rmse;
-                }
-            }
-            if (!run.fault.empty()) fault = run.fault;
-            if (ratio) ratios[s].push_back(*ratio);
-            bar.push_back(ratio.value_or(kMissing));
-            table.add({input.name, toString(input.options.mode), sets[s].name, CsvTable::number(sets[s].k),
-                       CsvTable::number(sets[s].min_depth), CsvTable::number(sets[s].max_depth),
-                       CsvTable::number(ate), CsvTable::number(ratio), CsvTable::number(rpe_translation),
-                       CsvTable::number(rpe_rotation), std::to_string(run.frames),
-                       std::to_string(run.tracked), run.fault});
+    forEachInput(inputs, report, [&](const StudyInput& input) {
+        Errors errors;
+        for (const WeightSet& set : sets) {
+            errors.runs.push_back(trackRecording(input, with(input.options, set)));
             progress.update(++done);
         }
-        if (unweighted) {
-            bars.push_back(std::move(bar));
+        addRows(table, input, sets, errors);
+        if (errors.ate(0)) {
             names.push_back(input.name);
+            measured.push_back(std::move(errors));
         } else {
-            report.notes.push_back(input.name + ": errors are not known: " + fault);
+            report.notes.push_back(input.name + ": errors are not known: " + errors.runs[0].fault);
         }
-    }
+    });
     progress.finish();
     addTable(report, folder, "depth_weight.csv", table);
-    if (bars.empty()) {
+    if (measured.empty()) {
         report.summary = "no recording with ground truth: curves only";
         return report;
     }
-    std::string tics;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        tics += (i > 0 ? ", " : "") + gnuplotText(names[i]) + ' ' + std::to_string(i);
-    std::string script =
-        gnuplotData("bars", bars) +
-        "set title 'Error of the trajectory under the depth weight'\n"
-        "set ylabel 'ATE / ATE without weight'\nset yrange [0:*]\nset xtics rotate by -15 (" +
-        tics + ")\n" + format("set xrange [-0.6:%g]\n", static_cast<double>(names.size()) - 0.4) +
-        "set key outside right center Left reverse title 'k (1/m), d_{min} (m), d_{max} (m)'\n"
-        "set boxwidth 0.18\nset bmargin 6\nset grid noxtics\nplot 1 with lines lt 7 dt 2 lw 1.5 title 'none "
-        "(k = 0)'";
-    for (std::size_t s = 1; s < sets.size(); ++s)
-        script += format(", $bars using ($1%+.2f):%zu with boxes lt %zu title ",
-                         0.2 * (static_cast<double>(s) - 2.5), s + 2, s) +
-                  gnuplotText(label(sets[s]));
-    addPlot(report, folder, "depth_weight.svg", script, 1000, 440);
+    drawErrors(report, folder, sets, names, measured);
 
     report.summary = counted(names.size(), "recording") + ", ATE relative to no weight (median):";
     for (std::size_t s = 1; s < sets.size(); ++s) {
-        const auto ratio = median(ratios[s]);
+        std::vector<double> ratios;
+        for (const Errors& errors : measured)  // a run that failed has an infinite error
+            ratios.push_back(errors.ratio(s).value_or(std::numeric_limits<double>::infinity()));
+        const double middle = median(ratios).value_or(std::numeric_limits<double>::infinity());
         report.summary += format("%s %s ", s > 1 ? "," : "", sets[s].name.c_str()) +
-                          (ratio ? format("%.2f", *ratio) : std::string("none"));
+                          (std::isfinite(middle) ? format("%.2f", middle) : "most runs failed");
     }
     return report;
 }

@@ -2,7 +2,9 @@
 #include "efficiency.h"
 
 #include <algorithm>
+#include <stdexcept>
 
+#include "efficiency_registration.h"
 #include "evaluation/error_statistics.h"
 #include "support/gnuplot.h"
 
@@ -86,22 +88,22 @@ void draw(StudyReport& report, const std::string& folder, const std::vector<Meas
             bars.push_back(bar);
             tics += (tics.empty() ? "" : ", ") + gnuplotText(kShort[b]) + format(" %g", bar[0]);
         }
-        labels += format("set label %zu ", r + 1) + gnuplotText(m.name) +
-                  format(" at first %g, graph -0.13 center\n", at + 1);
+        labels += format("set label %zu ", r + 1) + plotLabel(m.name) +
+                  format(" at first %g, graph -0.14 center\n", at + 1);
     }
     std::string script =
         gnuplotData("bars", bars) + labels +
-        "set title 'Processor time per frame (medians)'\nset ylabel 'ms'\n"
+        "set title 'Processor time per frame (medians)'\nset ylabel "
+        "'ms'\n"
         "set yrange [0:*]\nset xtics scale 0 (" +
         tics + ")\n" + format("set xrange [-0.8:%g]\n", 4.0 * static_cast<double>(all.size()) - 1.2) +
-        "set boxwidth 0.8\nset style fill solid 1.0 noborder\nset grid noxtics\nset bmargin 4.5\n"
-        "set key outside right center Left reverse invert\nplot ";
+        "set boxwidth 0.8\nset style fill solid 1.0 noborder\nset grid noxtics\nset bmargin 6\n"
+        "set key outside right center Left reverse invert title 'DF: distance field instead'\nplot ";
     for (int block = kBlocks; block-- > 0;)  // the higher ones first, the lower ones over them
         script += format("$bars using 1:%d with boxes lt %d title ", block + 2,
                          kColours[static_cast<std::size_t>(block)]) +
                   gnuplotText(kNames[static_cast<std::size_t>(block)]) + (block > 0 ? ", " : "\n");
-    const int width = std::clamp(420 + 190 * static_cast<int>(all.size()), 760, 1600);
-    addPlot(report, folder, "efficiency.svg", script, width, 460);
+    addPlot(report, folder, "efficiency.svg", script, plotWidth(all.size(), 480), 480);
 }
 
 }  // namespace
@@ -111,30 +113,26 @@ StudyReport studyEfficiency(const std::vector<StudyInput>& inputs, const std::st
     CsvTable table({"recording", "pipeline", "operation", "median_ms", "p95_ms", "mean_ms", "count"});
     std::vector<Measured> all;
     Measured together;
+    together.name = "all";
     Progress progress("efficiency", 0);
     std::size_t done = 0;
-    for (const StudyInput& input : inputs) {
+    forEachInput(inputs, report, [&](const StudyInput& input) {
         Measured measured = measureEfficiency(input, progress, done);
-        if (measured.frames.empty()) {
-            report.notes.push_back(input.name + ": no frame was tracked by both methods");
-            continue;
-        }
+        if (measured.frames.empty()) throw std::runtime_error("no frame was tracked by both methods");
         addRows(table, measured);
         together.mapping.insert(together.mapping.end(), measured.mapping.begin(), measured.mapping.end());
         together.all_frames += measured.all_frames;
+        together.work.insert(together.work.end(), measured.work.begin(), measured.work.end());
         together.frames.insert(together.frames.end(), measured.frames.begin(), measured.frames.end());
         all.push_back(std::move(measured));
-    }
+    });
     progress.finish();
     addTable(report, folder, "efficiency.csv", table);
-    report.notes.push_back("efficiency: only frames that both tracked, the least of " +
-                           std::to_string(kEfficiencyPasses) +
-                           " runs; the field is exact (OpenCV, DIST_MASK_PRECISE); left out on both sides: "
-                           "undistortion, image pyramid, lifting a keyframe's edges, the keyframe rule");
-    if (all.empty()) {
-        report.summary = "no frame was tracked by both methods";
-        return report;
-    }
+    report.notes.push_back(
+        "Only frames that both tracked; of " + std::to_string(kEfficiencyPasses) +
+        " runs the least time of every frame and operation. Processor time of the tracking thread, one core; "
+        "mapping by the clock, in a thread of its own. The field is exact (OpenCV, DIST_MASK_PRECISE). Left "
+        "out on both sides: undistortion, image pyramid, lifting a keyframe's edges, the keyframe rule.");
     draw(report, folder, all);
     const auto ms = [&](const std::vector<Operation>& parts) { return middle(together, parts); };
     report.summary = format(
@@ -143,6 +141,7 @@ StudyReport studyEfficiency(const std::vector<StudyInput>& inputs, const std::st
         ms({kOrganize}), ms({kField}), ms({kRegistration}), ms({kRegistrationField}),
         ms({kDetect, kOrganize, kCoarse, kRegistration}),
         ms({kDetect, kField, kCoarseField, kRegistrationField}));
+    report.summary += "; " + reportRegistrations(report, folder, all, together, inputs.front().options.fine);
     const std::optional<double> mapping = together.mappingPerFrame();
     report.summary += mapping ? format("; mapping %.2f ms per frame", *mapping) : "; no map was made in time";
     return report;

@@ -21,14 +21,29 @@ enum Operation : std::size_t {
     kRegistration,       ///< ours
     kRegistrationField,  ///< the distance field's
     kWhole,              ///< our tracking with all that is not listed
+    kAlike,              ///< ours, reduced to what the distance field's does, see RegistrationWork
+    kAlikeField,         ///< the distance field's for kFixedSteps steps from the same start
     kOperations
 };
 using FrameTimes = std::array<double, kOperations>;  ///< ms
+
+/// How much a registration did.
+struct RegistrationWork {
+    std::size_t points = 0;  ///< of the keyframe, looked up in every step
+    int steps = 0;
+};
+struct FrameWork {
+    RegistrationWork ours, field;
+    /// Both on the same keyframe, frame and start: kFixedSteps steps with the residual of edges alone,
+    /// neither photometric nor of depth. No points where one of them did not converge.
+    RegistrationWork alike;
+};
 
 /// What was measured on one recording.
 struct Measured {
     std::string name;
     std::vector<FrameTimes> frames;
+    std::vector<FrameWork> work;  ///< of the same frames
     std::vector<double> mapping;  ///< ms, of every keyframe
     std::size_t all_frames = 0;   ///< that could be read
 

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "roevo-compare/machine_info.h"
+#include "roevo-compare/report/protocol.h"
 #include "support/atomic_file.h"
 #include "support/program.h"
 
@@ -19,48 +21,61 @@ std::string cell(const std::string& text) {
     return safe;
 }
 
+std::string machineLines() {
+    std::string text = "Machine: " + machineText() + ".";
+    for (const auto& [name, version] : softwareVersions()) text += ' ' + name + ' ' + version + ';';
+    text.back() = '.';
+    return text + '\n';
+}
+
+std::string protocolText() {
+    return "Protocol of errors: " + errorProtocol() +
+           " RPE over 1 s: the error of the relative motion from each pose to the one nearest to 1 s later "
+           "(within 0.1 s), without alignment. Over all poses that the odometry gave, those that it "
+           "predicted "
+           "where it had lost track, too. Options are the same for all recordings, but for those under "
+           "study.\n";
+}
+
+std::string entryText(const IndexEntry& entry) {
+    std::string text = "\n## " + entry.title + "\n\n";
+    if (!entry.failure.empty()) return text + "Failed: " + entry.failure + "\n";
+    text += entry.report.summary + "\n";
+    for (const LeftOut& left_out : entry.report.left_out)
+        text += "\n- " + left_out.name + ": left out: " + left_out.reason;
+    for (const std::string& note : entry.report.notes) text += "\n- " + note;
+    if (!entry.report.notes.empty() || !entry.report.left_out.empty()) text += '\n';
+    if (!entry.report.plot_fault.empty()) text += "\nNot all plots: " + entry.report.plot_fault + "\n";
+    for (const std::string& file : entry.report.files)
+        text +=
+            isPlot(file) ? "\n![" + file + "](" + file + ")\n" : "\nTable: [" + file + "](" + file + ")\n";
+    return text;
+}
+
 }  // namespace
 
-std::string commandLine(int argc, const char* const* argv) {
-    constexpr char kPlain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
-    std::string line;
-    for (int i = 0; i < argc; ++i) {
-        const std::string argument =
-            i == 0 ? std::filesystem::path(argv[0]).filename().string() : std::string(argv[i]);
-        if (i > 0) line += ' ';
-        if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) {
-            line += argument;
-            continue;
-        }
-        line += '\'';
-        for (const char c : argument) line += c == '\'' ? "'\\''" : std::string(1, c);
-        line += '\'';
-    }
-    return line;
+std::vector<std::string> damageLines(const std::vector<StudyInput>& inputs) {
+    std::vector<std::string> lines;
+    for (const StudyInput& input : inputs)
+        if (input.damage != nullptr && !input.damage->text().empty())
+            lines.push_back(input.name + ": " + input.damage->text());
+    return lines;
 }
 
 void writeIndex(const std::string& folder, const std::vector<StudyInput>& inputs, const StudyIndex& index) {
-    std::string text = "# Study\n\nMade by roevo-study " + std::string(versionText()) + ":\n\n    " +
-                       index.command +
-                       "\n\n| recording | input | camera | ground truth |\n|---|---|---|---|\n";
+    std::string text = "# Study\n\nMade by roevo-study " + std::string(versionText()) + " on " + index.time +
+                       " (UTC)" + ":\n\n    " + index.command + "\n\n" + machineLines() +
+                       "\n| recording | input | camera | ground truth |\n|---|---|---|---|\n";
     for (const StudyInput& input : inputs)
         text += "| " + cell(input.name) + " | " + cell(input.path) + " | " +
                 std::to_string(input.camera.width) + " x " + std::to_string(input.camera.height) + " | " +
                 cell(input.ground_truth_note) + " |\n";
-    for (const IndexEntry& entry : index.entries) {
-        text += "\n## " + entry.title + "\n\n";
-        if (!entry.failure.empty()) {
-            text += "Failed: " + entry.failure + "\n";
-            continue;
-        }
-        text += entry.report.summary + "\n";
-        for (const std::string& note : entry.report.notes) text += "\n- " + note;
-        if (!entry.report.notes.empty()) text += '\n';
-        if (!entry.report.plot_fault.empty()) text += "\nNot all plots: " + entry.report.plot_fault + "\n";
-        for (const std::string& file : entry.report.files)
-            text += isPlot(file) ? "\n![" + file + "](" + file + ")\n"
-                                 : "\nTable: [" + file + "](" + file + ")\n";
-    }
+    for (const LeftOut& left_out : index.left_out)
+        text += "| not used | " + cell(left_out.name) + " | | " + cell(left_out.reason) + " |\n";
+    text += "\n";
+    for (const std::string& line : damageLines(inputs)) text += "- " + line + "\n\n";
+    text += protocolText();
+    for (const IndexEntry& entry : index.entries) text += entryText(entry);
     writeTextAtomically((std::filesystem::path(folder) / "study.md").string(), text);
 }
 

@@ -5,43 +5,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "study_source.h"
+#include "support/program.h"
+
 namespace roevo {
 namespace {
-
-// Ends after so many frames.
-class FirstFrames : public FrameSource {
-  public:
-    FirstFrames(std::unique_ptr<FrameSource> source, std::size_t count)
-        : source_(std::move(source)), left_(count), count_(count) {}
-
-    bool next(SourceFrame& frame) override {
-        if (left_ == 0 || !source_->next(frame)) return false;
-        --left_;
-        return true;
-    }
-    bool skip() override {
-        if (left_ == 0 || !source_->skip()) return false;
-        --left_;
-        return true;
-    }
-    const PinholeCamera& camera() const override { return source_->camera(); }
-    std::string kind() const override { return source_->kind(); }
-    std::string cameraSource() const override { return source_->cameraSource(); }
-    GroundTruth groundTruth() const override { return source_->groundTruth(); }
-    std::vector<std::string> notes() const override { return source_->notes(); }
-    std::size_t size() const override { return std::min(source_->size(), count_); }
-    std::string warning() const override { return source_->warning(); }
-
-  private:
-    std::unique_ptr<FrameSource> source_;
-    std::size_t left_, count_;
-};
 
 std::unique_ptr<FrameSource> openFrames(const std::string& path, const InputSettings& settings) {
     auto source = openSource(path, settings.sensor_label);
     skipFrames(*source, settings.skip, path);
     if (settings.first == 0) return source;
-    return std::make_unique<FirstFrames>(std::move(source), settings.first);
+    return firstFrames(std::move(source), settings.first);
 }
 
 std::string shortName(const std::string& path, const std::vector<StudyInput>& others) {
@@ -88,23 +62,42 @@ void setGroundTruth(StudyInput& input, const InputSettings& settings, const Fram
         input.ground_truth_note = truth.note.empty() ? "no ground truth" : "no ground truth: " + truth.note;
 }
 
+StudyInput openInput(const std::string& path, const InputSettings& settings,
+                     const std::vector<StudyInput>& others) {
+    const auto source = openFrames(path, settings);
+    StudyInput input;
+    input.name = shortName(path, others);
+    input.path = path;
+    input.camera = source->camera();
+    input.options = settings.options;
+    setGroundTruth(input, settings, *source);
+    checkFrames(*source, path);
+    input.damage = std::make_shared<RecordingDamage>();
+    input.open = [path, settings, damage = input.damage] {
+        return watched(prefetch(openFrames(path, settings)), damage);
+    };
+    return input;
+}
+
 }  // namespace
 
-std::vector<StudyInput> openInputs(const InputSettings& settings) {
-    std::vector<StudyInput> inputs;
+OpenedInputs openInputs(const InputSettings& settings) {
+    OpenedInputs opened;
     for (const std::string& path : settings.paths) {
-        const auto source = openFrames(path, settings);
-        StudyInput input;
-        input.name = shortName(path, inputs);
-        input.path = path;
-        input.camera = source->camera();
-        input.options = settings.options;
-        setGroundTruth(input, settings, *source);
-        checkFrames(*source, path);
-        input.open = [path, settings] { return prefetch(openFrames(path, settings)); };
-        inputs.push_back(std::move(input));
+        try {
+            opened.usable.push_back(openInput(path, settings, opened.usable));
+        } catch (const std::exception& e) {
+            opened.left_out.push_back({path, firstLine(e.what())});
+        }
     }
-    return inputs;
+    if (opened.usable.empty())
+        throw std::runtime_error(
+            opened.left_out.empty() ? "no recording"
+            : opened.left_out.size() == 1
+                ? opened.left_out.front().reason
+                : "none of the " + std::to_string(opened.left_out.size()) +
+                      " recordings can be used; the first: " + opened.left_out.front().reason);
+    return opened;
 }
 
 }  // namespace roevo

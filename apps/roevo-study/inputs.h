@@ -19,10 +19,15 @@ struct InputSettings {
 /// Fewer frames show no motion to measure.
 inline constexpr std::size_t kFewestFrames = 3;
 
+struct OpenedInputs {
+    std::vector<StudyInput> usable;
+    std::vector<LeftOut> left_out;
+};
+
 /// Opens each recording once to learn its camera and ground truth and that there is something to study.
-/// @throws std::runtime_error in one line: not readable, fewer than kFewestFrames frames, depth of no
-/// plausible
-///         scale, a ground truth that was asked for and is bad
-std::vector<StudyInput> openInputs(const InputSettings& settings);
+/// One that cannot be used is left out: not readable, fewer than kFewestFrames frames, depth of no plausible
+/// scale, a ground truth that was asked for and is bad.
+/// @throws std::runtime_error in one line when not a single one is usable
+OpenedInputs openInputs(const InputSettings& settings);
 
 }  // namespace roevo

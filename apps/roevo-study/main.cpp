@@ -7,6 +7,7 @@
 #include "index.h"
 #include "inputs.h"
 #include "recording/option_arguments.h"
+#include "roevo-compare/machine_info.h"
 #include "study.h"
 #include "support/output_folder.h"
 #include "support/program.h"
@@ -21,13 +22,27 @@ constexpr char kFooter[] =
     "  roevo-study --experiment canny --input office.rawlog --output out\n"
     "  roevo-study --experiment all --input rgbd_dataset_freiburg1_desk rgbd_dataset_freiburg2_desk --output "
     "out --first 300\n"
-    "Experiments:\n"
-    "  canny          error of the trajectory under Canny thresholds from 0.25 to 4 times Otsu's\n"
-    "  depth-weight   curves of the depth weight w_s(d) and their effect on the error\n"
-    "  ablation       coarse tracking with other points: as DSO selects them, raw Canny, organized edges\n"
-    "  repeatability  share of features found again under growing change of viewpoint\n"
-    "  efficiency     time per stage, beside registration by a distance field\n"
-    "Each writes CSV tables and SVG plots into the output folder; study.md there lists them.";
+    "Experiments (name: what is varied; what is measured; files):\n"
+    "  canny          the threshold of edge detection, 0.25 to 4 times Otsu's; error of the trajectory; "
+    "canny.*\n"
+    "  depth-weight   how far points are trusted, w_s(d) of the paper's Eq. (20); curves, error of the "
+    "trajectory;\n"
+    "                 depth_weight*.*\n"
+    "  ablation       points that coarse tracking aligns: as DSO selects them, raw Canny pixels, organized "
+    "edges\n"
+    "                 without and with patches that turn with the camera; relative pose error; ablation.*\n"
+    "  repeatability  ways to find features again: optical flow of corners, nearest neighbour, normals, "
+    "disjoint set;\n"
+    "                 share rightly found under growing change of viewpoint; repeatability*.*\n"
+    "  efficiency     registration by organized edges or by a distance field; processor time per stage;\n"
+    "                 efficiency*.*\n"
+    "  all            all of these\n"
+    "Each writes CSV tables and SVG plots into the output folder; study.md there explains and lists them. A "
+    "recording\n"
+    "that cannot be used is named, and the others go on. canny, depth-weight and ablation need ground truth. "
+    "Run on an\n"
+    "idle machine for efficiency. Exit code 1 when an experiment could use no recording or a plot is "
+    "missing.";
 
 struct Study {
     const char *name, *title;
@@ -41,16 +56,18 @@ constexpr Study kStudies[] = {
     {"efficiency", "Efficiency", studyEfficiency},
 };
 
+// What is wrong with the name of an experiment; empty when nothing is.
+std::string faultOfName(const std::string& name) {
+    std::string known;
+    for (const Study& study : kStudies) {
+        if (name == study.name) return "";
+        known += std::string(study.name) + ", ";
+    }
+    return name == "all" ? "" : "there is no '" + name + "'; known are " + known + "all";
+}
+
 std::vector<Study> chosenStudies(const std::vector<std::string>& names) {
     std::vector<Study> chosen;
-    std::string known;
-    for (const Study& study : kStudies) known += std::string(study.name) + ", ";
-    for (const std::string& name : names) {
-        const auto found = std::find_if(std::begin(kStudies), std::end(kStudies),
-                                        [&](const Study& study) { return name == study.name; });
-        if (found == std::end(kStudies) && name != "all")
-            throw UsageError("--experiment: there is no '" + name + "'; known are " + known + "all");
-    }
     for (const Study& study : kStudies)
         if (std::any_of(names.begin(), names.end(),
                         [&](const std::string& name) { return name == study.name || name == "all"; }))
@@ -68,6 +85,8 @@ int runStudies(const std::vector<Study>& studies, const std::vector<StudyInput>&
         try {
             entry.report = study.run(inputs, folder);
             std::printf("%-14s %s\n", study.name, entry.report.summary.c_str());
+            for (const LeftOut& left_out : entry.report.left_out)
+                std::printf("%-14s %s: left out: %s\n", "", left_out.name.c_str(), left_out.reason.c_str());
             for (const std::string& note : entry.report.notes) std::printf("%-14s %s\n", "", note.c_str());
             if (plot_fault.empty()) plot_fault = entry.report.plot_fault;
         } catch (const std::exception& e) {
@@ -79,6 +98,8 @@ int runStudies(const std::vector<Study>& studies, const std::vector<StudyInput>&
         index.entries.push_back(std::move(entry));
         writeIndex(folder, inputs, index);
     }
+    for (const std::string& line : damageLines(inputs)) std::printf("%-14s %s\n", "damaged", line.c_str());
+    std::fflush(stdout);
     if (!failure.empty()) throw std::runtime_error(failure);
     if (!plot_fault.empty()) throw std::runtime_error(plot_fault + "; the tables are in " + folder);
     return 0;
@@ -88,10 +109,14 @@ int run(int argc, char** argv) {
     InputSettings settings;
     std::string output, config_file, mode;
     std::vector<std::string> experiments, sets;
-    CLI::App app("The paper's experiments on any recording: tables (CSV) and plots (SVG).", kName);
+    CLI::App app(
+        "The experiments of the ROEVO paper (Liu et al.) on your own recordings: tables (CSV) and plots "
+        "(SVG).",
+        kName);
     app.add_option("--experiment", experiments,
-                   "canny, depth-weight, ablation, repeatability, efficiency or all; one or more")
-        ->required();
+                   "canny, depth-weight, ablation, repeatability, efficiency or all; one or more; see below")
+        ->required()
+        ->check(faultOfName, "");
     app.add_option("--input", settings.paths, "Recordings: .rawlog files or dataset folders")->required();
     app.add_option("--output", output, "Folder for the results; created when missing")->required();
     app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");
@@ -113,6 +138,8 @@ int run(int argc, char** argv) {
     app.footer(kFooter);
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
 
+    std::vector<std::string> words(argv, argv + argc);
+    words.front() = kName;
     const std::vector<Study> studies = chosenStudies(experiments);
     if (!settings.ground_truth.empty() && settings.paths.size() > 1)
         throw UsageError("--ground-truth is for a single --input, and there are " +
@@ -124,9 +151,15 @@ int run(int argc, char** argv) {
                          std::to_string(kFewestFrames) + " frames");
     settings.options = collectOptions(config_file, sets, mode);
     cv::setNumThreads(1);  // times are of one core
-    const std::vector<StudyInput> inputs = openInputs(settings);
+    StudyIndex index;
+    index.command = shellCommand(words);
+    index.time = utcNow();
+    const OpenedInputs inputs = openInputs(settings);
+    index.left_out = inputs.left_out;
     prepareOutputFolder(output);
-    return runStudies(studies, inputs, output, {commandLine(argc, argv), {}});
+    for (const LeftOut& left_out : inputs.left_out)
+        std::printf("%-14s %s: %s\n", "not used", left_out.name.c_str(), left_out.reason.c_str());
+    return runStudies(studies, inputs.usable, output, std::move(index));
 }
 
 }  // namespace

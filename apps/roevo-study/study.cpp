@@ -10,6 +10,7 @@
 #include "roevo/odometry.h"
 #include "support/atomic_file.h"
 #include "support/gnuplot.h"
+#include "support/program.h"
 
 namespace roevo {
 
@@ -40,6 +41,20 @@ StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options)
         run.fault = e.what();
     }
     return run;
+}
+
+void forEachInput(const std::vector<StudyInput>& inputs, StudyReport& report,
+                  const std::function<void(const StudyInput&)>& measure) {
+    for (const StudyInput& input : inputs) {
+        try {
+            measure(input);
+        } catch (const std::exception& e) {
+            report.left_out.push_back({input.name, firstLine(e.what())});
+        }
+    }
+    if (!inputs.empty() && report.left_out.size() == inputs.size())
+        throw std::runtime_error(report.left_out.front().name + ": " + report.left_out.front().reason +
+                                 (inputs.size() > 1 ? "; nor could any other recording be used" : ""));
 }
 
 CsvTable::CsvTable(std::vector<std::string> head) : columns_(head.size()) {
@@ -81,6 +96,36 @@ void addPlot(StudyReport& report, const std::string& folder, const std::string& 
     }
 }
 
+std::string plotLabel(const std::string& name) {
+    constexpr std::size_t kLongest = 19;  // characters in a line
+    std::vector<std::string> lines(1);
+    std::string word;
+    const auto takeWord = [&] {
+        if (!lines.back().empty() && lines.back().size() + word.size() > kLongest) lines.emplace_back();
+        lines.back() += word;
+        word.clear();
+    };
+    for (const char c : name) {
+        word += c;
+        if (c == '_' || c == '-' || c == ' ') takeWord();
+    }
+    takeWord();
+    std::string text;
+    for (const std::string& line : lines) text += (text.empty() ? "" : ".\"\\n\".") + gnuplotText(line);
+    return text;
+}
+
+std::string plotTics(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += (i > 0 ? ", " : "(") + plotLabel(names[i]) + ' ' + std::to_string(i);
+    return text + ")";
+}
+
+int plotWidth(std::size_t names, int rest) {
+    return std::clamp(rest + 170 * static_cast<int>(names), 760, 2000);
+}
+
 void addTable(StudyReport& report, const std::string& folder, const std::string& name,
               const CsvTable& table) {
     table.write((std::filesystem::path(folder) / name).string());
@@ -99,7 +144,7 @@ std::string counted(std::size_t count, const std::string& noun) {
 }
 
 std::string format(const char* pattern, ...) {
-    char text[1024];
+    char text[2048];
     va_list arguments;
     va_start(arguments, pattern);
     std::vsnprintf(text, sizeof text, pattern, arguments);

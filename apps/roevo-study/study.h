@@ -13,6 +13,15 @@
 
 namespace roevo {
 
+/// What is wrong with a recording that can be used.
+struct RecordingDamage {
+    std::size_t frames = 0, unreadable = 0;
+    std::string first_fault;  ///< of the first unreadable frame
+    std::string warning;      ///< FrameSource::warning()
+
+    std::string text() const;  ///< one line; empty when all is well
+};
+
 /// One recording under study. Frames are streamed: experiments open it anew for every pass.
 struct StudyInput {
     std::string name;  ///< short and unique among the inputs: a column of the tables, a legend's entry
@@ -20,9 +29,16 @@ struct StudyInput {
     PinholeCamera camera;
     /// A fresh source of the frames under study (--skip left out, at most --first), decoding ahead.
     std::function<std::unique_ptr<FrameSource>()> open;
-    std::vector<StampedPose> ground_truth;  ///< T_world_camera in time order; empty: none
-    std::string ground_truth_note;          ///< where it comes from, or why there is none
-    OdometryOptions options;                ///< from --config and --set
+    std::vector<StampedPose> ground_truth;    ///< T_world_camera in time order; empty: none
+    std::string ground_truth_note;            ///< where it comes from, or why there is none
+    OdometryOptions options;                  ///< from --config and --set
+    std::shared_ptr<RecordingDamage> damage;  ///< known once it has been read; may be absent
+};
+
+/// A recording that could not be used.
+struct LeftOut {
+    std::string name;    ///< of the recording, or its path where it could not even be opened
+    std::string reason;  ///< one line
 };
 
 /// What an experiment has to say once its tables and plots are in the folder.
@@ -30,6 +46,7 @@ struct StudyReport {
     std::string summary;             ///< one line for the terminal, with the figures that matter
     std::vector<std::string> files;  ///< names in the folder: CSV and SVG, in the order of the index
     std::vector<std::string> notes;  ///< what a reader must know: no ground truth, frames left out
+    std::vector<LeftOut> left_out;   ///< recordings that it could not measure anything on
     std::string plot_fault;          ///< why a plot is missing; empty when all were drawn
 };
 
@@ -42,6 +59,12 @@ StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::s
 StudyReport studyAblation(const std::vector<StudyInput>& inputs, const std::string& folder);
 StudyReport studyRepeatability(const std::vector<StudyInput>& inputs, const std::string& folder);
 StudyReport studyEfficiency(const std::vector<StudyInput>& inputs, const std::string& folder);
+
+/// Measures on each input. One that fails becomes a line of the report, and the others go on; `measure` must
+/// not have added anything to the tables by then.
+/// @throws std::runtime_error with the first one's reason when all failed
+void forEachInput(const std::vector<StudyInput>& inputs, StudyReport& report,
+                  const std::function<void(const StudyInput&)>& measure);
 
 /// One run of the odometry over an input.
 struct StudyRun {
@@ -77,6 +100,13 @@ class CsvTable {
 /// because the tables are worth having without it.
 void addPlot(StudyReport& report, const std::string& folder, const std::string& name,
              const std::string& script, int width = 860, int height = 500);
+
+/// The text for a plot, as an expression of gnuplot's: long names are broken into lines at their underscores.
+std::string plotLabel(const std::string& name);
+/// "(label 0, label 1, …)" for `set xtics`.
+std::string plotTics(const std::vector<std::string>& names);
+/// px that such tics want beside each other. @param rest  px for all but them
+int plotWidth(std::size_t names, int rest);
 
 /// Writes the table to `folder`/`name` and lists it in the report. @throws std::runtime_error
 void addTable(StudyReport& report, const std::string& folder, const std::string& name, const CsvTable& table);

@@ -1,27 +1,25 @@
 #include "support/gnuplot.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
 #include "support/atomic_file.h"
-
-extern char** environ;
+#include "support/interrupt.h"
+#include "support/process.h"
+#include "support/text.h"
 
 namespace roevo {
 namespace {
 
-namespace fs = std::filesystem;
+constexpr double kTimeout = 60;  // s; a plot takes a fraction of one
 
 // Okabe and Ito's palette: eight colours that stay apart with any kind of colour vision.
 constexpr char kLook[] = R"(
@@ -46,89 +44,76 @@ set style fill solid 0.9 noborder
 set datafile missing 'NaN'
 )";
 
-/// A file of our own in the temporary folder, gone at the end.
-class ScratchFile {
+/// A file in memory that other programs can open by its path: nothing is left of it, whatever ends this one.
+class MemoryFile {
   public:
-    ScratchFile() {
-        std::string pattern = (fs::temp_directory_path() / "roevo_gnuplot_XXXXXX").string();
-        const int file = mkstemp(pattern.data());
-        if (file < 0) throw std::runtime_error("cannot create " + pattern + ": " + std::strerror(errno));
-        close(file);
-        path_ = pattern;
+    MemoryFile() : fd_(memfd_create("gnuplot", MFD_CLOEXEC)) {
+        if (fd_ < 0) throw std::runtime_error(std::string("no memory for a plot: ") + std::strerror(errno));
     }
-    ~ScratchFile() { unlink(path_.c_str()); }
-    ScratchFile(const ScratchFile&) = delete;
-    ScratchFile& operator=(const ScratchFile&) = delete;
+    ~MemoryFile() { close(fd_); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
 
-    const std::string& path() const { return path_; }
+    std::string path() const { return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_); }
+    void write(const std::string& text) const {
+        std::ofstream out(path(), std::ios::binary);
+        out << text;
+        out.close();
+        if (!out) throw std::runtime_error("no memory for a plot");
+    }
+    std::string read() const {
+        std::ifstream in(path(), std::ios::binary);
+        std::ostringstream text;
+        text << in.rdbuf();
+        return text.str();
+    }
 
   private:
-    std::string path_;
+    int fd_;
 };
 
-std::string firstComplaint(const std::string& path) {
-    std::ifstream in(path);
-    std::string all;
-    for (std::string line; std::getline(in, line);) {
-        const std::size_t begin = line.find_first_not_of(" \t^");
-        if (begin == std::string::npos) continue;
-        all += (all.empty() ? "" : " / ") + line.substr(begin);
-    }
-    return all;
-}
-
-// Runs `gnuplot script` with its outputs into files. @return 0, or an errno when it could not be started;
-// `status` as from waitpid()
-int spawnGnuplot(const std::string& script, const std::string& out, const std::string& err, int& status) {
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
-    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, err.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
-    std::string program = "gnuplot", argument = script;
-    char* argv[] = {program.data(), argument.data(), nullptr};
-    pid_t child = 0;
-    const int fault = posix_spawnp(&child, program.c_str(), &files, nullptr, argv, environ);
-    posix_spawn_file_actions_destroy(&files);
-    if (fault != 0) return fault;
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR) return errno;
-    return 0;
+std::string wholeScript(const std::string& script, int width, int height, const std::string& output) {
+    std::ostringstream text;
+    text << "set terminal svg size " << width << ',' << height
+         << " enhanced font 'Helvetica,Arial,sans-serif,14' background rgb 'white'\nset output '" << output
+         << "'\n"
+         << kLook << script << '\n';
+    return text.str();
 }
 
 }  // namespace
 
-void drawSvg(const std::string& path, const std::string& script, int width, int height) {
-    const ScratchFile commands, complaints;
-    {
-        std::ofstream out(commands.path());
-        out << "set terminal svg size " << width << ',' << height
-            << " enhanced font 'Helvetica,Arial,sans-serif,14' background rgb 'white'\n"
-            << kLook << script << '\n';
-        out.close();
-        if (!out) throw std::runtime_error("cannot write " + commands.path() + ": is the disk full?");
-    }
-    AtomicFile file(path);
-    file.stream();  // tells why when the folder cannot be written to
-    int status = 0;
-    if (const int fault = spawnGnuplot(commands.path(), file.temporaryPath(), complaints.path(), status)) {
-        if (fault == ENOENT)
-            throw std::runtime_error("cannot draw " + path +
-                                     ": gnuplot is not installed (package gnuplot-nox)");
-        throw std::runtime_error("cannot draw " + path + ": gnuplot cannot be run: " + std::strerror(fault));
-    }
-    const std::string complaint = firstComplaint(complaints.path());
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        throw std::runtime_error("cannot draw " + path +
-                                 ": gnuplot failed: " + (complaint.empty() ? "no reason given" : complaint));
+std::string drawSvgText(const std::string& script, int width, int height) {
+    const std::string program = findProgram("gnuplot");
+    if (program.empty()) throw NoGnuplot("gnuplot is not installed (package gnuplot-nox)");
+    const MemoryFile commands, picture;
+    commands.write(wholeScript(script, width, height, picture.path()));
+    // -d: not with the settings of whoever runs this, which could change every plot
+    ChildProcess gnuplot({program, "-d", commands.path()}, -1, kTimeout);
+    const ProcessEnd& end = gnuplot.finish();
+    const std::string complaint = replaceAll(gnuplot.lastError(), '"' + commands.path() + "\" ", "");
+    if (end.timed_out) throw std::runtime_error("gnuplot did not come to an end");
+    if (!end.ok())
+        throw std::runtime_error("gnuplot failed: " + (complaint.empty() ? "no reason given" : complaint));
     // It ends well even where it drew no plot
-    std::ifstream drawn(file.temporaryPath());
-    std::ostringstream svg;
-    svg << drawn.rdbuf();
-    if (svg.str().find("</svg>") == std::string::npos)
-        throw std::runtime_error("cannot draw " + path + ": gnuplot drew nothing" +
-                                 (complaint.empty() ? "" : ": " + complaint));
-    file.commit();
+    std::string svg = picture.read();
+    if (svg.find("</svg>") == std::string::npos)
+        throw std::runtime_error("gnuplot drew nothing" + (complaint.empty() ? "" : ": " + complaint));
+    return svg;
+}
+
+void drawSvg(const std::string& path, const std::string& script, int width, int height) {
+    std::string svg;
+    try {
+        svg = drawSvgText(script, width, height);
+    } catch (const Interrupted&) {
+        throw;
+    } catch (const NoGnuplot& e) {
+        throw NoGnuplot("cannot draw " + path + ": " + e.what());
+    } catch (const std::runtime_error& e) {
+        throw std::runtime_error("cannot draw " + path + ": " + e.what());
+    }
+    writeTextAtomically(path, svg);
 }
 
 std::string gnuplotText(const std::string& text) {

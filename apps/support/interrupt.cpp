@@ -1,9 +1,12 @@
 #include "support/interrupt.h"
 
+#include <array>
 #include <csignal>
 
 namespace roevo {
 namespace {
+
+constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
 
 volatile std::sig_atomic_t caught = 0;
 
@@ -13,14 +16,18 @@ void remember(int signal) {
 
 }  // namespace
 
-InterruptGuard::InterruptGuard()
-    : previous_int_(std::signal(SIGINT, remember)), previous_term_(std::signal(SIGTERM, remember)) {
+InterruptGuard::InterruptGuard() {
     caught = 0;
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+        previous_[i] = std::signal(kSignals[i], remember);
+        // Started by nohup: it is to outlive its terminal
+        if (kSignals[i] == SIGHUP && previous_[i] == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+    }
 }
 
 InterruptGuard::~InterruptGuard() {
-    std::signal(SIGINT, previous_int_);
-    std::signal(SIGTERM, previous_term_);
+    caught = 0;
+    for (std::size_t i = 0; i < kSignals.size(); ++i) std::signal(kSignals[i], previous_[i]);
 }
 
 void InterruptGuard::check() {

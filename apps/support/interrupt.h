@@ -1,15 +1,17 @@
 #pragma once
+#include <array>
 #include <stdexcept>
 
 namespace roevo {
 
-/// The user pressed Ctrl-C, or the program was told to end.
+/// The user pressed Ctrl-C, closed the terminal, or the program was told to end.
 struct Interrupted : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// For programs that write whole folders: while alive, SIGINT and SIGTERM do not end the program at once but
-/// make the next check() throw, so that what is half-written is removed on the way out. One at a time.
+/// For programs that write whole folders: while alive, SIGINT, SIGTERM and SIGHUP (unless it is ignored)
+/// do not end the program at once but make the next check() throw, so that what is half-written is removed on
+/// the way out. One at a time.
 class InterruptGuard {
   public:
     InterruptGuard();
@@ -22,7 +24,7 @@ class InterruptGuard {
 
   private:
     using Handler = void (*)(int);
-    Handler previous_int_, previous_term_;
+    std::array<Handler, 3> previous_;
 };
 
 }  // namespace roevo

@@ -11,9 +11,14 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
+
+#include "support/interrupt.h"
 
 namespace roevo {
 namespace {
@@ -34,17 +39,38 @@ struct Pipe {
     int takeReadEnd() { return std::exchange(ends[0], -1); }
 };
 
+// Binds this thread to a core while it is alive. A process that is made meanwhile inherits that from its very
+// first instruction on, and here the system's refusal can be told.
+class OnCore {
+  public:
+    explicit OnCore(int core) {
+        if (core < 0) return;
+        cpu_set_t only;
+        CPU_ZERO(&only);
+        CPU_SET(static_cast<std::size_t>(core), &only);
+        bound_ = sched_getaffinity(0, sizeof before_, &before_) == 0 &&
+                 sched_setaffinity(0, sizeof only, &only) == 0;
+        if (!bound_) fault_ = "core " + std::to_string(core) + ": " + std::strerror(errno);
+    }
+    ~OnCore() {
+        if (bound_) sched_setaffinity(0, sizeof before_, &before_);
+    }
+    OnCore(const OnCore&) = delete;
+    OnCore& operator=(const OnCore&) = delete;
+
+    const std::string& fault() const { return fault_; }
+
+  private:
+    cpu_set_t before_;
+    bool bound_ = false;
+    std::string fault_;
+};
+
 // Between fork() and exec: only functions that are safe there.
-[[noreturn]] void becomeChild(char* const* argv, int core, int out, int err, pid_t parent) {
+[[noreturn]] void becomeChild(char* const* argv, int out, int err, pid_t parent) {
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(127);  // it died before the line above
-    if (core >= 0) {
-        cpu_set_t set;
-        CPU_ZERO(&set);
-        CPU_SET(static_cast<std::size_t>(core), &set);
-        sched_setaffinity(0, sizeof set, &set);
-    }
     const int null = open("/dev/null", O_RDONLY);
     dup2(null, STDIN_FILENO);
     dup2(out, STDOUT_FILENO);
@@ -67,9 +93,11 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, int core, do
 
     Pipe out, err;
     const pid_t parent = getpid();
+    const OnCore bound(core);
+    binding_fault_ = bound.fault();
     pid_ = fork();
     if (pid_ < 0) throw std::runtime_error(std::string("cannot start a process: ") + std::strerror(errno));
-    if (pid_ == 0) becomeChild(argv.data(), core, out.ends[1], err.ends[1], parent);
+    if (pid_ == 0) becomeChild(argv.data(), out.ends[1], err.ends[1], parent);
     pid_fd_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
     setpgid(pid_, pid_);  // in both processes, so that the group is there whoever comes first
     output_.fd = out.takeReadEnd();
@@ -139,6 +167,26 @@ void ChildProcess::waitForNews(const std::vector<const ChildProcess*>& processes
     for (const ChildProcess* process : processes)
         if (process->pid_fd_ >= 0) fds.push_back({process->pid_fd_, POLLIN, 0});
     poll(fds.data(), fds.size(), static_cast<int>(seconds * 1000));
+}
+
+const ProcessEnd& ChildProcess::finish() {
+    constexpr double kLook = 0.1;  // s
+    while (update()) {
+        InterruptGuard::check();
+        waitForNews({this}, kLook);
+    }
+    return end_;
+}
+
+std::string findProgram(const std::string& name) {
+    const char* path = std::getenv("PATH");
+    std::istringstream folders(path != nullptr ? path : "");
+    for (std::string folder; std::getline(folders, folder, ':');) {
+        const std::string file = (folder.empty() ? "." : folder) + "/" + name;
+        std::error_code ignored;
+        if (access(file.c_str(), X_OK) == 0 && std::filesystem::is_regular_file(file, ignored)) return file;
+    }
+    return {};
 }
 
 std::vector<int> allowedCores() {

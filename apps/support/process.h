@@ -29,8 +29,14 @@ class ChildProcess {
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
 
+    /// Why it could not be bound to its core, and runs on any; empty when it is bound, or was to run on any.
+    const std::string& bindingFault() const { return binding_fault_; }
+
     /// Takes in what the process has said, and ends it when its time is up. @return whether it still runs
     bool update();
+
+    /// Waits for its end. @throws Interrupted after a signal (needs an InterruptGuard); it still runs then
+    const ProcessEnd& finish();
 
     /// Valid once update() has returned false.
     const ProcessEnd& end() const { return end_; }
@@ -58,10 +64,14 @@ class ChildProcess {
     int pid_fd_ = -1;  ///< readable once the process has ended; -1 where the system has no such thing
     bool running_ = true;
     ProcessEnd end_;
+    std::string binding_fault_;
     Stream output_, error_;
     std::chrono::steady_clock::time_point start_;
     double timeout_s_;
 };
+
+/// Path of a program as a shell finds it by PATH; empty when there is none.
+std::string findProgram(const std::string& name);
 
 /// Numbers of the processor cores that this process may use.
 std::vector<int> allowedCores();

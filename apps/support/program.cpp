@@ -32,6 +32,7 @@ int runProgram(const char* name, const std::function<int()>& body) {
                 SIG_DFL);  // whoever started this may have ignored it: children could not be waited for
     std::signal(SIGINT, onSignal);
     std::signal(SIGTERM, onSignal);
+    if (std::signal(SIGHUP, onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
     try {
         return body();
     } catch (const UsageError& e) {

@@ -45,25 +45,80 @@ TEST(SequenceNames, AreUniqueAndFitForFolders) {
     }
 }
 
+TEST(PartOfARecording, IsNamedByItsFramesAndTheWholeIsNone) {
+    const auto part = [](std::size_t skip, std::size_t first, std::size_t size) {
+        SequenceInput sequence;
+        sequence.skip = skip;
+        sequence.first = first;
+        return partOf(sequence, size);
+    };
+    for (const std::size_t first : {0u, 6u, 100u}) EXPECT_EQ(part(0, first, 6), "") << first;
+    EXPECT_EQ(part(0, 0, 0), "");
+    EXPECT_EQ(part(0, 4, 6), "frames 0 to 3");
+    EXPECT_EQ(part(0, 4, 0), "frames 0 to 3");
+    EXPECT_EQ(part(2, 3, 6), "frames 2 to 4");
+    EXPECT_EQ(part(2, 100, 6), "frames 2 to 5");
+    EXPECT_EQ(part(2, 0, 6), "frames 2 to 5");
+    EXPECT_EQ(part(2, 0, 0), "frames from number 2 on");
+}
+
 TEST(RecordingState, ChangesWithTheFilesOnly) {
     const TemporaryFolder folder;
-    fs::create_directory(folder / "clip");
+    const std::string clip = folder / "clip", rawlog = folder / "other.rawlog";
+    for (const char* name : {"clip/rgb", "clip/depth", "other_Images", "other_more"})
+        fs::create_directories(folder / name);
+    const auto state = [&](const std::string& input) { return recordingState(input, folder / "out"); };
+    std::string before_clip, before_rawlog;
+    const auto remember = [&] { before_clip = state(clip), before_rawlog = state(rawlog); };
+    // Writes a file and says whose state is another one then
+    const auto changed = [&](const std::string& name, const std::string& text) {
+        remember();
+        writeFile(folder / name, text);
+        return std::string(state(clip) != before_clip ? "clip " : "") +
+               (state(rawlog) != before_rawlog ? "rawlog" : "");
+    };
+    EXPECT_EQ(changed("clip/rgb.txt", "1 a"), "clip ");
+    EXPECT_EQ(changed("clip/rgb.txt", "1 a\n2 c"), "clip ");
+    EXPECT_EQ(changed("clip/rgb/1.png", "a"), "clip ");
+    EXPECT_EQ(changed("clip/rgb/1.png", "another"), "clip ");
+    EXPECT_EQ(changed("clip/depth/1.png", "b"), "clip ");
+    EXPECT_EQ(changed("other.rawlog", "abc"), "rawlog");
+    EXPECT_EQ(changed("other_Images/1.jpg", "a"), "rawlog");
+    EXPECT_EQ(changed("other_Images/1.jpg", "ab"), "rawlog");
+    EXPECT_EQ(changed("other_more/1.jpg", "a"), "") << "of another recording";
+    EXPECT_EQ(state(clip + "/"), state(clip));
+    EXPECT_NE(state(clip), state(rawlog));
+
+    for (const char* touched : {"clip/rgb/1.png", "other.rawlog"}) {  // as long, and not as old
+        remember();
+        fs::last_write_time(folder / touched,
+                            fs::last_write_time(folder / touched) + std::chrono::seconds(1));
+        EXPECT_NE(state(clip) + state(rawlog), before_clip + before_rawlog) << touched;
+    }
+}
+
+TEST(RecordingState, ResultsInsideTheRecordingAreNoPartOfIt) {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "clip/comparison/runs");
     writeFile(folder / "clip/rgb.txt", "1 a");
-    writeFile(folder / "clip/depth.txt", "1 b");
-    writeFile(folder / "other.rawlog", "abc");
-    const std::string before = recordingState(folder / "clip"),
-                      file = recordingState(folder / "other.rawlog");
-    EXPECT_EQ(recordingState(folder / "clip/"), before);
-    EXPECT_EQ(recordingState(folder / "other.rawlog"), file);
-    EXPECT_NE(before, file);
-    writeFile(folder / "clip/rgb.txt", "1 a\n2 c");
-    EXPECT_NE(recordingState(folder / "clip"), before);
-    writeFile(folder / "other.rawlog", "abcd");
-    EXPECT_NE(recordingState(folder / "other.rawlog"), file);
-    const std::string longer = recordingState(folder / "other.rawlog");
-    fs::last_write_time(folder / "other.rawlog",
-                        fs::last_write_time(folder / "other.rawlog") + std::chrono::seconds(1));
-    EXPECT_NE(recordingState(folder / "other.rawlog"), longer);
+    const std::string output = folder / "clip/comparison";
+    const std::string before = recordingState(folder / "clip", output);
+    writeFile(output + "/runs/run.json", "{}");
+    EXPECT_EQ(recordingState(folder / "clip", output), before);
+    EXPECT_NE(recordingState(folder / "clip", folder / "elsewhere"), before);
+}
+
+TEST(RecordingState, LinksInCirclesHaveAnEnd) {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "clip/rgb");
+    fs::create_directory(folder / "images");
+    writeFile(folder / "images/1.png", "a");
+    for (const char* name : {"clip/again", "clip/rgb/again", "clip/rgb/once_more"})
+        fs::create_directory_symlink(folder / "clip", folder / name);
+    fs::create_directory_symlink(folder / "images", folder / "clip/depth");
+    const std::string before = recordingState(folder / "clip", folder / "out");
+    writeFile(folder / "images/1.png", "another");
+    EXPECT_NE(recordingState(folder / "clip", folder / "out"), before) << "images behind a link count";
 }
 
 TEST(MachineInfo, CommandLinesCanBePastedIntoAShell) {
@@ -89,7 +144,17 @@ TEST(MachineInfo, NamesTheMachineAndTheLibraries) {
     }
     EXPECT_EQ(names, (std::vector<std::string>{"ROEVO", "MRPT", "OpenCV", "Eigen", "compiler"}));
     EXPECT_EQ(utcNow().size(), std::string("2026-01-31T12:00:00Z").size());
-    EXPECT_EQ(programState(), programState());
+}
+
+TEST(MachineInfo, AnotherProgramIsNotTakenForThisOne) {
+    const TemporaryFolder folder;
+    writeFile(folder / "a", "one program");
+    writeFile(folder / "b", "one program");
+    writeFile(folder / "c", "two program");
+    EXPECT_EQ(programState(folder / "a"), programState(folder / "b"));
+    EXPECT_NE(programState(folder / "a"), programState(folder / "c"));
+    fs::copy_file("/proc/self/exe", folder / "myself");
+    EXPECT_EQ(programState(), programState(folder / "myself"));
 }
 
 class List : public testing::Test {
@@ -181,6 +246,17 @@ TEST_F(List, FramesThatThePaperLeavesOut) {
     EXPECT_FALSE(list.sequences[3].paper_ate_cm) << "it is of other frames";
 }
 
+// Each of them has a folder for its runs.
+TEST_F(List, NoTwoPartsAndSequencesShareAName) {
+    for (const char* name : {"two", "two_0_5"}) fs::create_directory(data() + "/" + name);
+    json two = entry("two", "two");
+    two["truncation"] = {{"frames", {{0, 5}, {8, 20}}}};
+    for (const json& list : {json{two, entry("two_0_5", "two_0_5")}, json{entry("two_0_5", "two_0_5"), two}})
+        expectFault(json{{"sequences", list}}.dump(), {"sequence 2", "'two_0_5'"});
+    two["truncation"] = {{"frames", {{0, 5}, {0, 5}}}};
+    expectEntryFault(two, {"'two_0_5'"});
+}
+
 TEST_F(List, WhatIsWrongWithItIsSaid) {
     expectFault("{\"sequences\": [", {"JSON"});
     expectFault("", {"JSON"});
@@ -255,7 +331,15 @@ TEST_F(Benchmark, PresentMissingAndBrokenSequences) {
     EXPECT_NE(text.find("gone"), std::string::npos) << "what was skipped belongs into the report:\n" << text;
     EXPECT_TRUE(fs::exists(folder / "out/report.html"));
 
+    EXPECT_NE(text.find("part: frames 2 to 5"), std::string::npos) << "it is not the whole:\n" << text;
+
     // The same command again: all is there; a sequence that has come is run alone
+    for (const char* sequence : {"whole", "part"})
+        for (const char* method : {"roevo-tr", "roevo-ct"}) {  // whatever else the machine has to do
+            MethodRun run = kept(sequence, method);
+            run.core_lost = 0;
+            writeMethodRun(folder / ("out/runs/" + std::string(sequence) + "/" + method), run);
+        }
     const auto before = madeAt("whole", "roevo-tr");
     test::writeTumFolder(data() + "/nowhere", test::slidingRecording(6));
     const auto again = run();

@@ -1,17 +1,12 @@
 // roevo-compare over recordings that are given one by one.
 #include <gtest/gtest.h>
-#include <sys/file.h>
 
-#include <csignal>
 #include <filesystem>
-#include <functional>
-#include <thread>
 
+#include "compare_program.h"
 #include "roevo-compare/compare.h"
 #include "roevo-compare/terminal_table.h"
 #include "support/process.h"
-#include "support/run_program.h"
-#include "support/tum_folder.h"
 
 namespace roevo {
 namespace {
@@ -26,54 +21,7 @@ using test::writeTumFolder;
 
 constexpr char kName[] = "roevo-compare";
 
-class Compare : public testing::Test {
-  protected:
-    std::vector<std::string> arguments(const std::vector<std::string>& inputs,
-                                       const std::vector<std::string>& more) const {
-        std::vector<std::string> all{"--input"};
-        all.insert(all.end(), inputs.begin(), inputs.end());
-        all.insert(all.end(), {"--output", output()});
-        all.insert(all.end(), more.begin(), more.end());
-        return all;
-    }
-    test::ProgramResult run(const std::vector<std::string>& inputs,
-                            const std::vector<std::string>& more = {}) const {
-        return test::runProgram(kName, arguments(inputs, more));
-    }
-    std::string clip(const std::string& name, int frames = 6) const {
-        writeTumFolder(folder / name, slidingRecording(frames));
-        return folder / name;
-    }
-    // Runs the program and does something while it is at it.
-    test::ProgramResult runMeanwhile(const std::vector<std::string>& all,
-                                     const std::function<void(pid_t program)>& act) const {
-        std::vector<std::string> words{"-c", "echo $$ > " + (folder / "pid") + "; exec \"$@\"", "sh",
-                                       std::string(ROEVO_BIN_DIR) + "/" + kName};
-        words.insert(words.end(), all.begin(), all.end());
-        test::ProgramResult result;
-        std::thread program([&] { result = test::runProgram("/bin/sh", words); });
-        while (!fs::exists(folder / "pid") || readFile(folder / "pid").empty()) usleep(5'000);
-        act(std::stoi(readFile(folder / "pid")));
-        program.join();
-        return result;
-    }
-    std::string output() const { return folder / "out"; }
-    std::string runFolder(const std::string& sequence, const std::string& method) const {
-        return output() + "/runs/" + sequence + "/" + method;
-    }
-    MethodRun kept(const std::string& sequence, const std::string& method) const {
-        return readMethodRun(runFolder(sequence, method));
-    }
-    auto madeAt(const std::string& sequence, const std::string& method) const {
-        return fs::last_write_time(runFolder(sequence, method) + "/run.json");
-    }
-    std::string table() const { return readFile(output() + "/table.csv"); }
-    void expectRow(const std::string& begin) const {
-        EXPECT_NE(table().find("\n" + begin), std::string::npos) << begin << " in:\n" << table();
-    }
-
-    TemporaryFolder folder;
-};
+using Compare = test::CompareProgram;
 
 TEST_F(Compare, RunsEveryMethodAsRoevoOdometryWould) {
     const std::string input = clip("clip", 8);
@@ -125,6 +73,41 @@ TEST_F(Compare, OptionsAndFramesReachTheMethods) {
     EXPECT_NE(readFile(output() + "/config_used.ini").find("min_length = 15"), std::string::npos);
 }
 
+TEST_F(Compare, APartOfARecordingIsSaidAsItWasRun) {
+    const std::string input = clip("clip", 6);  // and a rawlog, which does not tell its length before its end
+    const auto converted =
+        test::runProgram("rgbd2rawlog", {"--input", input, "--output", folder / "my.rawlog"});
+    ASSERT_EQ(converted.exit_code, 0) << converted.all();
+    ASSERT_EQ(
+        run({input, folder / "my.rawlog"}, {"--methods", "distance-field", "--skip", "2", "--first", "100"})
+            .exit_code,
+        0);
+    EXPECT_NE(readFile(output() + "/table.md").find("clip: frames 2 to 5; my: frames 2 to 5."),
+              std::string::npos)
+        << readFile(output() + "/table.md");
+}
+
+TEST_F(Compare, AModeInTheConfigIsSaidToHaveNoEffect) {
+    const std::string input = clip("clip", 4);
+    writeFile(folder / "ct.ini", "[odometry]\nmode = ct\n");
+    writeFile(folder / "ba.ini", "[odometry]\nmode = ba\n");
+    const auto with = [&](const std::string& config, const std::string& method,
+                          const std::vector<std::string>& more = {}) {
+        std::vector<std::string> all{"--methods", method, "--config", folder / config};
+        all.insert(all.end(), more.begin(), more.end());
+        const auto result = run({input}, all);
+        EXPECT_EQ(result.exit_code, 0) << result.all();
+        return result.err;
+    };
+    const std::string warned = with("ct.ini", "roevo-tr");
+    EXPECT_NE(warned.find("warning: mode = ct in " + (folder / "ct.ini")), std::string::npos) << warned;
+    EXPECT_NE(warned.find("--methods"), std::string::npos) << warned;
+    EXPECT_NE(readFile(runFolder("clip", "roevo-tr") + "/frames.csv").find("ms_fine"), std::string::npos);
+    EXPECT_EQ(with("ba.ini", "distance-field").find("warning"), std::string::npos)
+        << "as it is in config_ini/roevo.ini";
+    EXPECT_EQ(with("ct.ini", "distance-field", {"--quiet"}), "");
+}
+
 TEST_F(Compare, QuietSaysNothing) {
     const auto result = run({clip("clip", 4)}, {"--methods", "roevo-ct", "--quiet"});
     EXPECT_EQ(result.exit_code, 0);
@@ -137,41 +120,6 @@ TEST_F(Compare, ListsItsMethods) {
     EXPECT_EQ(result.exit_code, 0);
     for (const char* name : {"roevo-ct", "roevo-tr", "roevo-ba"})
         EXPECT_NE(result.out.find(name), std::string::npos) << result.out;
-}
-
-TEST_F(Compare, ResumeTakesFinishedRunsAgainUnlessSomethingChanged) {
-    const std::string input = clip("clip", 6);
-    const std::vector<std::string> methods{"--methods", "roevo-ct,roevo-tr"};
-    const auto with = [&](std::vector<std::string> more) {
-        more.insert(more.end(), methods.begin(), methods.end());
-        const auto result = run({input}, more);
-        EXPECT_EQ(result.exit_code, 0) << result.all();
-        return result;
-    };
-    with({});
-    auto ct = madeAt("clip", "roevo-ct");
-    const std::string rows = table();
-    const auto resumed = with({"--resume"});
-    EXPECT_EQ(madeAt("clip", "roevo-ct"), ct);
-    EXPECT_NE(resumed.err.find("2 of 2 runs are there already"), std::string::npos) << resumed.err;
-    EXPECT_EQ(table(), rows);
-
-    const auto expectMadeAgain = [&](const std::vector<std::string>& more, const char* why) {
-        with(more);
-        EXPECT_NE(madeAt("clip", "roevo-ct"), ct) << why;
-        ct = madeAt("clip", "roevo-ct");
-    };
-    expectMadeAgain({"--resume", "--set", "edges.min_length=15"}, "an option has changed");
-    expectMadeAgain({"--resume", "--skip", "1", "--first", "5"}, "other frames");
-    writeTumFolder(input, slidingRecording(7));
-    expectMadeAgain({"--resume", "--skip", "1", "--first", "5"}, "another recording");
-
-    // One that is not whole is made again, alone
-    fs::remove(runFolder("clip", "roevo-tr") + "/trajectory.txt");
-    const auto repaired = with({"--resume", "--skip", "1", "--first", "5"});
-    EXPECT_EQ(madeAt("clip", "roevo-ct"), ct);
-    EXPECT_NE(repaired.err.find("1 of 2 runs are there already"), std::string::npos) << repaired.err;
-    EXPECT_TRUE(kept("clip", "roevo-tr").ok());
 }
 
 TEST_F(Compare, SeveralRecordingsOneOfThemBroken) {
@@ -276,10 +224,29 @@ TEST_F(Compare, WrongUsage) {
     expectError(run({input}, {"--first", "many"}), 2, kName, {"--first"});
     expectError(run({input}, {"--set", "edges.nonsense=1"}), 2, kName, {"edges.nonsense"});
     expectError(run({input}, {"--set", "odometry.mode=ct"}), 2, kName, {"--methods"});
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"--run-method", "roevo-ct"},
+                                                  {"--run-method", "roevo-ct", "--input", input},
+                                                  {"--run-method", "roevo-ct", "--run-folder", output()}})
+        expectError(test::runProgram(kName, words), 2, kName, {"--run-method", "use --methods"});
     expectError(run({input}, {"--config", folder / "none.ini"}), 1, kName, {"none.ini"});
     EXPECT_FALSE(fs::exists(output()));
     writeFile(output(), "a file");
     expectError(run({input}, {"--methods", "roevo-ct"}), 1, kName, {"output folder", output()});
+}
+
+TEST_F(Compare, AMethodThatFailsSaysWhyInItsOwnWords) {
+    const std::string input = folder / "clip";
+    auto frames = slidingRecording(4);
+    for (auto& frame : frames) frame.depth = 0;
+    writeTumFolder(input, frames);
+    expectError(run({input}, {"--methods", "icp-frame,roevo-ct"}), 1, kName,
+                {"no method gave a result; the first: none of the 4 frames has a pose"});
+    for (const char* method : {"icp-frame", "roevo-ct"}) {
+        EXPECT_EQ(kept("clip", method).failure.rfind("none of the 4 frames has a pose; the first says: ", 0),
+                  0u)
+            << kept("clip", method).failure;
+        EXPECT_EQ(kept("clip", method).frames, 4u);
+    }
 }
 
 TEST_F(Compare, RunsThatTakeTooLongAreFailuresInTheTable) {
@@ -316,71 +283,6 @@ TEST_F(Compare, MethodsThatAreNotAvailableAreSkippedWithTheReason) {
     EXPECT_NE(terminalTable(result.sequences).find("skipped: " + method.unavailable), std::string::npos)
         << terminalTable(result.sequences);
     EXPECT_FALSE(fs::exists(runFolder("clip", "lacking")));
-}
-
-TEST_F(Compare, TwoProgramsDoNotShareAnOutputFolder) {
-    const std::string input = clip("clip", 3);
-    fs::create_directory(output());
-    const int fd = open(output().c_str(), O_RDONLY | O_DIRECTORY);
-    ASSERT_EQ(flock(fd, LOCK_EX), 0);
-    expectError(run({input}, {"--methods", "roevo-ct"}), 1, kName, {"another roevo-compare", output()});
-    close(fd);
-    EXPECT_EQ(run({input}, {"--methods", "roevo-ct"}).exit_code, 0);
-}
-
-TEST_F(Compare, AMethodThatCrashesIsARowAndTheNextOneRuns) {
-    const std::string input = clip("clip", 80), myself = std::to_string(getpid());
-    const std::string children = "/proc/" + myself + "/task/" + myself + "/children";
-    if (!fs::exists(children)) GTEST_SKIP() << "no " << children;
-    const auto result =
-        runMeanwhile(arguments({input}, {"--methods", "roevo-tr,roevo-ct"}), [&](pid_t program) {
-            const std::string id = std::to_string(program);
-            std::string child;
-            for (int i = 0; i < 6000 && child.empty(); ++i) {
-                usleep(5'000);
-                child = readFile("/proc/" + id + "/task/" + id + "/children");
-                if (readFile("/proc/" + std::to_string(std::atoi(child.c_str())) + "/cmdline")
-                        .find("--run-method") == std::string::npos)
-                    child.clear();  // before its exec it still is this program
-            }
-            ASSERT_FALSE(child.empty());
-            kill(std::stoi(child), SIGSEGV);
-        });
-    ASSERT_EQ(result.exit_code, 0) << result.all();
-    expectRow("clip,roevo-tr,");
-    expectRow("clip,roevo-ct,");
-    EXPECT_NE(kept("clip", "roevo-tr").failure.find("signal 11"), std::string::npos)
-        << kept("clip", "roevo-tr").failure;
-    EXPECT_TRUE(kept("clip", "roevo-ct").ok());
-    EXPECT_NE(result.out.find("failed: it died of signal 11"), std::string::npos) << result.out;
-    EXPECT_NE(readFile(output() + "/table.md").find("signal 11"), std::string::npos);
-}
-
-// Interrupts the program as soon as the first run is there. The second takes long enough for that.
-TEST_F(Compare, AnInterruptLeavesWhatIsFinishedAndResumeGoesOn) {
-    const std::string quick = clip("quick", 3), slow = clip("slow", 80);
-    const std::string first = runFolder("quick", "roevo-tr") + "/run.json";
-    const auto result = runMeanwhile(arguments({quick, slow}, {"--methods", "roevo-tr"}), [&](pid_t program) {
-        for (int i = 0; i < 6000 && !fs::exists(first); ++i) usleep(5'000);
-        kill(program, SIGINT);
-    });
-    expectError(result, 1, kName, {"interrupted", "1 runs are missing", "--resume"});
-    expectRow("quick,roevo-tr,");
-    expectRow("slow,roevo-tr,");
-    EXPECT_NE(readFile(output() + "/table.csv").find("not run: the comparison was ended before"),
-              std::string::npos);
-    EXPECT_NE(result.out.find(" not run"), std::string::npos) << result.out;
-    EXPECT_NE(readFile(output() + "/table.md").find("interrupted"), std::string::npos);
-    EXPECT_FALSE(fs::exists(runFolder("slow", "roevo-tr")));
-    for (const auto& entry : fs::recursive_directory_iterator(output()))
-        EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
-
-    const auto time = madeAt("quick", "roevo-tr");
-    const auto resumed = run({quick, slow}, {"--methods", "roevo-tr", "--resume"});
-    ASSERT_EQ(resumed.exit_code, 0) << resumed.all();
-    EXPECT_EQ(madeAt("quick", "roevo-tr"), time);
-    expectRow("quick,roevo-tr,");
-    expectRow("slow,roevo-tr,");
 }
 
 TEST_F(Compare, JobsAreToldInTheReport) {

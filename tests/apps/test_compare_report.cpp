@@ -1,13 +1,19 @@
 // report.html: well-formed, nothing to be loaded, plots and pictures or the reason why there are none.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <regex>
 
 #include "report_fixture.h"
+#include "roevo-compare/report/line_style.h"
+#include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/scene_picture.h"
+#include "support/interrupt.h"
+#include "support/process.h"
 #include "support/tum_folder.h"
 
 namespace roevo {
@@ -25,23 +31,67 @@ using test::WrittenComparison;
 
 constexpr char kPython[] = "/usr/bin/python3";
 
+/// Programs are looked for there while it is alive.
+class WithPath {
+  public:
+    explicit WithPath(const std::string& path) { setenv("PATH", path.c_str(), 1); }
+    ~WithPath() { setenv("PATH", before_.c_str(), 1); }
+    WithPath(const WithPath&) = delete;
+    WithPath& operator=(const WithPath&) = delete;
+
+  private:
+    const std::string before_ = std::getenv("PATH");
+};
+
 // An XML parser takes the page: tags are closed, text is escaped, ids are there once.
-void expectWellFormed(const WrittenComparison& out) {
-    if (!std::filesystem::exists(kPython)) GTEST_SKIP() << "no " << kPython;
-    const auto result =
-        test::runProgram(kPython, {"-c",
-                                   "import sys, collections, xml.etree.ElementTree as E\n"
-                                   "ids = [e.get('id') for e in E.parse(sys.argv[1]).iter() if e.get('id')]\n"
-                                   "twice = [i for i, n in collections.Counter(ids).items() if n > 1]\n"
-                                   "sys.exit(f'twice: {twice}' if twice else 0)\n",
-                                   out.path("report.html")});
-    EXPECT_EQ(result.exit_code, 0) << result.all();
+class WellFormedReport : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (!std::filesystem::exists(kPython)) GTEST_SKIP() << "no " << kPython;
+    }
+    static void expectWellFormed(const WrittenComparison& out) {
+        const auto result = test::runProgram(
+            kPython, {"-c",
+                      "import sys, collections, xml.etree.ElementTree as E\n"
+                      "ids = [e.get('id') for e in E.parse(sys.argv[1]).iter() if e.get('id')]\n"
+                      "twice = [i for i, n in collections.Counter(ids).items() if n > 1]\n"
+                      "sys.exit(f'twice: {twice}' if twice else 0)\n",
+                      out.path("report.html")});
+        EXPECT_EQ(result.exit_code, 0) << result.all();
+    }
+};
+
+// What a browser would fetch to show the page; links that a reader may follow are none of it.
+std::vector<std::string> loadedBy(std::string html) {
+    for (std::size_t at = 0; (at = html.find(";base64,", at)) != std::string::npos; ++at)
+        html.erase(at, html.find('"', at) - at);  // std::regex runs out of stack over a picture
+    const std::regex attribute(
+        R"re(\s(src|srcset|data|poster|background|xlink:href)\s*=\s*["']?([^"'\s>]*))re"),
+        style(R"re(url\(\s*['"]?([^'")]*))re"),
+        element(R"re(<(script|link|iframe|object|embed|base|audio|video)\b|@import)re");
+    std::vector<std::string> loaded;
+    const auto add = [&](const std::regex& pattern, std::size_t group) {
+        for (std::sregex_iterator at(html.begin(), html.end(), pattern), end; at != end; ++at) {
+            const std::string target = (*at)[group].str();
+            if (target.rfind("data:", 0) != 0 && target.rfind('#', 0) != 0) loaded.push_back(at->str());
+        }
+    };
+    add(attribute, 2);
+    add(style, 1);
+    add(element, 0);
+    return loaded;
 }
 
-void expectNothingToLoad(const std::string& html) {
-    EXPECT_FALSE(std::regex_search(html, std::regex(R"((src|href)\s*=\s*["'](https?:)?//)")));
-    EXPECT_FALSE(contains(html, "<script") || contains(html, "<link") || contains(html, "@import"));
-    EXPECT_FALSE(std::regex_search(html, std::regex(R"(url\(['"]?[^#'")])")));
+TEST(LoadedBy, FindsWhatABrowserWouldFetch) {
+    for (const char* page :
+         {"<img src=\"plot.png\"/>", "<img alt='a' src='runs/map.png'/>", "<img src=plot.png>",
+          "<img src=\"https://a.b/c.png\"/>", "<image xlink:href=\"a.png\"/>", "<script>1</script>",
+          "<link rel=\"stylesheet\" href=\"a.css\"/>", "<p style=\"background: url(a.png)\">",
+          "<style>@import 'a.css';</style>", "<iframe>", "<use xlink:href=\"other.svg#a\"/>"})
+        EXPECT_EQ(loadedBy(page).size(), 1u) << page;
+    for (const char* page : {"<img src=\"data:image/png;base64,AA==\"/>", "<a href=\"runs/a\">",
+                             "<use xlink:href=\"#p1_a\"/>", "<g clip-path='url(#a)'>", "<p>src=a</p>"})
+        EXPECT_EQ(loadedBy(page), std::vector<std::string>()) << page;
 }
 
 void expectNoBadNumber(const WrittenComparison& out) {
@@ -85,12 +135,22 @@ std::vector<SequenceComparison> everyKind() {
     return all;
 }
 
-TEST(CompareReport, IsWellFormedWithNothingToLoadWhateverIsInIt) {
+TEST_F(WellFormedReport, WhateverIsInIt) {
+    auto info = makeInfo();
+    info.notes = {"runs <side> by side"};
+    expectWellFormed(WrittenComparison(everyKind(), info));
+}
+
+TEST_F(WellFormedReport, WithoutGnuplot) {
+    const WithPath nowhere("/nowhere");
+    expectWellFormed(WrittenComparison(everyKind()));
+}
+
+TEST(CompareReport, HasNothingToLoadWhateverIsInIt) {
     auto info = makeInfo();
     info.notes = {"runs <side> by side"};
     const WrittenComparison out(everyKind(), info);
-    expectWellFormed(out);
-    expectNothingToLoad(out.html);
+    EXPECT_EQ(loadedBy(out.html), std::vector<std::string>());
     expectNoBadNumber(out);
     for (const char* words :
          {"it &lt;threw&gt; &amp; &quot;died&quot;", "&lt;odd&gt; &amp; &quot;name&quot;, &#39;ü&#39;",
@@ -102,6 +162,18 @@ TEST(CompareReport, IsWellFormedWithNothingToLoadWhateverIsInIt) {
     EXPECT_TRUE(contains(out.html, "0.02 s")) << "the protocol";
 }
 
+TEST(CompareReport, ATableOfNothingButDashesIsASentence) {
+    auto a = makeSequence("a", {makeRun("x", 0.01), makeRun("y", 0.02)}), b = a;
+    b.name = "b";
+    b.reference.clear();
+    const WrittenComparison some({a, b});
+    EXPECT_FALSE(contains(some.html, ": no figures ("));
+    a.reference.clear();
+    const WrittenComparison none({a, b});
+    EXPECT_TRUE(contains(none.html, "<p>ATE RMSE [cm]: no figures (no ground truth)</p>"));
+    EXPECT_TRUE(contains(none.html, "<h3>Time per frame, median [ms]</h3>"));
+}
+
 TEST(CompareReport, LinksRunsRelatively) {
     const TemporaryFolder folder;
     auto sequence = makeSequence("s", {makeRun("a", 0.01)});
@@ -109,6 +181,55 @@ TEST(CompareReport, LinksRunsRelatively) {
     std::filesystem::create_directories(folder / "out");
     writeComparison(folder / "out", {sequence}, makeInfo());
     EXPECT_TRUE(contains(test::readFile(folder / "out/report.html"), "href=\"runs/s%20p/%3Ca%3E%26\""));
+}
+
+// Each: by the reader's name for it, at the top or with the sequence.
+TEST(CompareReport, NotesAndWarningsAreThereOnce) {
+    auto sequence = makeSequence("s", {makeRun("roevo-tr", 0.01), makeRun("b", 0.02), makeRun("c", 0.02)});
+    sequence.notes = {"2 images had no partner", "the list says so"};
+    sequence.part = "frames 3 to 6";
+    for (MethodRun& run : sequence.runs) run.warnings = {"the file ends early"};
+    sequence.runs[1].warnings.push_back("no scene: disk full");
+    auto info = makeInfo();
+    info.notes = {"the machine was busy"};
+    const WrittenComparison out({sequence}, info);
+    for (const char* words :
+         {"2 images had no partner", "the list says so", "s: the file ends early",
+          "s: label of b: no scene: disk full", "the machine was busy",
+          "Only parts of these recordings were run (counted from 0): s: frames 3 to 6."}) {
+        EXPECT_EQ(count(out.html, words), 1u) << words;
+        EXPECT_EQ(count(out.md, words), 1u) << words << "\n" << out.md;
+    }
+    EXPECT_EQ(out.row("s", "b").at("warning"), "the file ends early; no scene: disk full");
+    EXPECT_EQ(out.row("s", "b").at("sequence_note"), "2 images had no partner; the list says so");
+    EXPECT_EQ(out.row("s", "b").at("sequence_part"), "frames 3 to 6");
+}
+
+TEST(CompareReport, AScaleThatCannotBeRightIsToldOnceForAll) {
+    std::vector<StampedPose> truth, small;
+    for (int i = 0; i < 40; ++i) {
+        const double angle = 0.1 * i;
+        truth.push_back(
+            {1000 + 0.1 * i, Pose(Eigen::Translation3d(std::cos(angle), std::sin(angle), angle))});
+        small.push_back(truth.back());
+        small.back().T_world_camera.translation() *= 0.5;
+    }
+    auto a = makeRun("a", 0), b = makeRun("b", 0), good = makeRun("good", 0);
+    a.trajectory = small;
+    for (StampedPose& pose : small) pose.T_world_camera.translation() *= 0.9;
+    b.trajectory = small;
+    good.trajectory = truth;
+    auto all = makeSequence("all", {a, b}), some = makeSequence("some", {a, good});
+    all.reference = some.reference = truth;
+    const WrittenComparison out({all, some});
+    const char* words = "path is 2 times as long";
+    for (const std::string* text : {&out.html, &out.md}) {
+        EXPECT_EQ(count(*text, words), 2u) << "once for each sequence";
+        EXPECT_TRUE(contains(*text, ">all: the ground truth") || contains(*text, "- all: the ground truth"));
+        EXPECT_TRUE(contains(*text, "some: label of a: the ground truth"));
+    }
+    EXPECT_TRUE(contains(out.row("all", "b").at("warning"), "2.2 times as long"));
+    EXPECT_EQ(out.row("some", "good").at("warning"), "");
 }
 
 TEST(CompareReport, DrawsWhatThereIs) {
@@ -124,14 +245,84 @@ TEST(CompareReport, DrawsWhatThereIs) {
 }
 
 TEST(CompareReport, WithoutGnuplotSaysSoOnce) {
-    const std::string path = std::getenv("PATH");
-    setenv("PATH", "/nowhere", 1);
+    const WithPath nowhere("/nowhere");
     const WrittenComparison out(everyKind());
-    setenv("PATH", path.c_str(), 1);
-    expectWellFormed(out);
     EXPECT_EQ(count(out.html, "No plots: gnuplot is not installed"), 1u);
     EXPECT_EQ(count(out.html, "class=\"plot\""), 0u);
     EXPECT_TRUE(contains(out.html, "<td class=\"best\">0.200</td>"));
+}
+
+TEST(CompareReport, TheFullestModeHasTheBoldestLineInWhateverOrder) {
+    const auto styleOf = [](const std::vector<std::string>& names, const char* wanted) {
+        std::vector<TableMethod> methods;
+        for (const std::string& name : names) methods.push_back({name, name, ""});
+        const auto styles = lineStyles(methods);
+        return styles[static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted) -
+                                               names.begin())];
+    };
+    for (const std::vector<std::string>& names :
+         {std::vector<std::string>{"roevo-ct", "roevo-tr", "difodo-240", "roevo-ba"},
+          {"roevo-ba", "difodo-240", "roevo-tr", "roevo-ct"}}) {
+        EXPECT_GT(styleOf(names, "roevo-ba").width, styleOf(names, "roevo-tr").width);
+        EXPECT_GT(styleOf(names, "roevo-tr").width, styleOf(names, "roevo-ct").width);
+        EXPECT_EQ(
+            oneRoevo({{names[0], "", ""}, {names[1], "", ""}, {names[2], "", ""}, {names[3], "", ""}}).size(),
+            2u);
+    }
+}
+
+// A gnuplot that fails with the first and the third of four plots.
+TEST(CompareReport, APlotThatFailsCostsOnlyThatPlot) {
+    const std::string gnuplot = findProgram("gnuplot");
+    if (gnuplot.empty()) GTEST_SKIP() << "no gnuplot";
+    const TemporaryFolder folder;
+    test::writeFile(folder / "gnuplot",
+                    "#!/bin/sh\ncd " + folder.path().string() +
+                        "\necho x >> calls\ncase $(wc -l < calls) in 1|3) echo 'out of ink' >&2; exit 1;; "
+                        "esac\nexec " +
+                        gnuplot + " \"$@\"\n");
+    std::filesystem::permissions(folder / "gnuplot", std::filesystem::perms::owner_all);
+    const WithPath with(folder.path().string() + ":" + std::getenv("PATH"));
+    const WrittenComparison out({makeSequence("s", {makeRun("roevo-tr", 0.01), makeRun("b", 0.02)})});
+    EXPECT_EQ(count(out.html, "class=\"plot\""), 2u);
+    EXPECT_TRUE(contains(out.html, "No plot (s: trajectories, Top view): gnuplot failed: out of ink"));
+    EXPECT_TRUE(contains(out.html, "No plot (s: position error over time): gnuplot failed: out of ink"));
+    EXPECT_FALSE(contains(out.html, "No plots"));
+}
+
+// The text of the drawing of stages, in which every character may stand by itself.
+std::string stageDrawing(const std::vector<MethodRun>& runs) {
+    const WrittenComparison out({makeSequence("s", runs)});
+    const std::size_t begin = out.html.find("time per frame by stage");
+    EXPECT_NE(begin, std::string::npos);
+    return out.html.substr(begin, out.html.find("</figure>", begin) - begin);
+}
+
+TEST(CompareReport, MarksBeyondTheEdgeOfAPlotAreWritten) {
+    if (findProgram("gnuplot").empty()) GTEST_SKIP() << "no gnuplot";
+    auto outlier = makeRun("outlier", 0.01), busy = makeRun("busy", 0.01), slow = makeRun("slow", 0.01);
+    outlier.total.p95 = 432.1;
+    busy.cpu_ms_per_frame = 321.4;
+    slow.total = {"total", 654, 765.4, 654.3};
+    const std::string within = stageDrawing({makeRun("a", 0.01), makeRun("b", 0.01)});
+    EXPECT_FALSE(contains(within, "▶")) << "all is drawn";
+    auto twice = makeRun("twice", 0.01);
+    twice.total.p95 = 13.9;
+    EXPECT_FALSE(contains(stageDrawing({makeRun("a", 0.01), twice}), "▶")) << "worth a longer axis";
+    const std::string drawing =
+        stageDrawing({makeRun("a", 0.01), makeRun("b", 0.01), makeRun("c", 0.01), outlier, busy, slow});
+    for (const char* label : {"mean 7.00, 95th percentile 432.1 ▶, processor 7.25",
+                              "mean 7.00, 95th percentile 9.00, processor 321.4 ▶",
+                              "mean 654.3 ▶, 95th percentile 765.4 ▶, processor 7.25"})
+        EXPECT_TRUE(contains(drawing, label)) << label << "\n" << drawing;
+}
+
+TEST(CompareReport, AnInterruptEndsItAndNothingIsWritten) {
+    const TemporaryFolder folder;
+    const InterruptGuard guard;
+    raise(SIGTERM);
+    EXPECT_THROW(writeComparison(folder.path().string(), everyKind(), makeInfo()), Interrupted);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(CompareReport, StatesWhatItCannotWrite) {
@@ -166,7 +357,20 @@ TEST(ScenePicture, IsDrawnByTheRendererOrSaysWhy) {
     sequence.run_folders = {folder / "run"};
     const WrittenComparison out({sequence});
     EXPECT_TRUE(contains(out.html, "src=\"data:image/png;base64," + base64(picture.png).substr(0, 40)));
-    expectWellFormed(out);
+    EXPECT_EQ(loadedBy(out.html), std::vector<std::string>());
+
+    // Interrupted, it takes its folder of pictures along
+    std::filesystem::create_directory(folder / "tmp");
+    const char* before = std::getenv("TMPDIR");
+    const std::string tmp = before ? before : "/tmp";
+    setenv("TMPDIR", (folder / "tmp").c_str(), 1);
+    {
+        const InterruptGuard guard;
+        raise(SIGINT);
+        EXPECT_THROW(renderScene(folder / "run/map.3Dscene", "edges"), Interrupted);
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder / "tmp"));
+    setenv("TMPDIR", tmp.c_str(), 1);
 }
 
 TEST(Base64, VectorsOfTheStandard) {

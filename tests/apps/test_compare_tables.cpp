@@ -7,6 +7,7 @@
 
 #include "report_fixture.h"
 #include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/tables.h"
 #include "support/text.h"
 
 namespace roevo {
@@ -144,6 +145,20 @@ TEST(CompareTable, SaysWhyThereAreNoErrorsAndKeepsTheRest) {
     EXPECT_EQ(test::count(out.md, "| mean |"), 5u) << "of shares, times and memory, but of no error";
 }
 
+TEST(CompareTable, TheVerdictNamesAllThatAreAhead) {
+    const auto verdictOf = [](const std::vector<double>& errors) {
+        std::vector<MethodRun> runs;
+        for (std::size_t i = 0; i < errors.size(); ++i)
+            runs.push_back(makeRun(std::string(1, static_cast<char>('a' + i)), errors[i]));
+        const auto sequence = makeSequence("s", runs);
+        return verdict(evaluateAll({sequence}));
+    };
+    const std::string rest = " the smallest ATE on 1 of 1 sequence that could be ranked.";
+    EXPECT_EQ(verdictOf({0.02, 0.01}), "label of b has" + rest);
+    EXPECT_EQ(verdictOf({0.01, 0.01, 0.02}), "label of a and label of b each have" + rest);
+    EXPECT_EQ(verdictOf({0.01, 0.01, 0.01}), "label of a, label of b and label of c each have" + rest);
+}
+
 TEST(CompareTable, MeansAreOverSequencesWithFigures) {
     auto without = makeSequence("u", {makeRun("a", 0.01), makeRun("b", 0.01)});
     without.reference.clear();
@@ -232,6 +247,34 @@ TEST(CompareTable, ManySequencesAreRows) {
                                                               << out.md;
     EXPECT_TRUE(contains(out.md, "| mean | 1.400 |"));
     EXPECT_EQ(out.row("seq3", "a").at("paper_roevo_ba_ate_cm"), "1.234");
+}
+
+TEST(CompareTable, SaysOfWhichFramesThePapersFiguresAre) {
+    auto whole = makeSequence("whole", {makeRun("a", 0.01)}),
+         part = makeSequence("part", {makeRun("a", 0.01)});
+    whole.paper_ate_cm = 1.5;
+    part.part = "frames 10 to 24";
+    const std::string words = "The paper's figures are by its own protocol, of whole sequences";
+    EXPECT_TRUE(contains(WrittenComparison({whole, part}).md, words + ".")) << "the part has none";
+    part.paper_ate_cm = 2.5;
+    EXPECT_TRUE(contains(WrittenComparison({whole, part}).md,
+                         words + "; that of part, as ours, of its frames 10 to 24."));
+}
+
+TEST(CompareTable, RunsThatAreNotPinnedAreNotSaidToBeOnOneCore) {
+    auto pinned = makeSequence("pinned", {makeRun("a", 0.01)}),
+         free = makeSequence("free", {makeRun("a", 0.01)});
+    free.runs[0].not_pinned = "core 1: it is not allowed";
+    const WrittenComparison good({pinned}), out({pinned, free});
+    EXPECT_FALSE(contains(good.md, "Not pinned") || contains(good.html, "Not pinned"));
+    for (const std::string* text : {&out.md, &out.html}) {
+        EXPECT_TRUE(contains(*text, "Not pinned: not every run was bound to one core. Times per frame"));
+        EXPECT_TRUE(contains(*text, "Not pinned to one core, reading and decoding apart"));
+        EXPECT_FALSE(contains(*text, "One processor core for each run"));
+    }
+    EXPECT_EQ(out.row("free", "a").at("not_pinned"), "core 1: it is not allowed");
+    EXPECT_TRUE(contains(out.row("free", "a").at("protocol"), "Not pinned"));
+    EXPECT_FALSE(contains(out.row("pinned", "a").at("protocol"), "Not pinned"));
 }
 
 // The figures of the paper's ATE tables in our ranking. Its own rank table says 13, 15, 18 for ROEVO and

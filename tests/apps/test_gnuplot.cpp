@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <string>
 
 #include "support/gnuplot.h"
+#include "support/interrupt.h"
 #include "support/run_program.h"
 
 namespace roevo {
@@ -60,13 +62,33 @@ TEST(Gnuplot, FaultsAreOneLineAndLeaveNothingBehind) {
     EXPECT_NE(text.find("missing/plot.svg: No such file"), std::string::npos) << text;
 }
 
+TEST(Gnuplot, TheUsersOwnSettingsDoNotCount) {
+    const TemporaryFolder folder;
+    const char* before = std::getenv("HOME");
+    const std::string home = before ? before : "/";
+    drawSvg(folder / "plain.svg", "plot x");
+    test::writeFile(folder / ".gnuplot", "set title 'mine'\nset border 0\n");
+    setenv("HOME", folder.path().c_str(), 1);
+    drawSvg(folder / "plot.svg", "plot x");
+    setenv("HOME", home.c_str(), 1);
+    EXPECT_EQ(readFile(folder / "plot.svg"), readFile(folder / "plain.svg"));
+}
+
+TEST(Gnuplot, IsEndedByAnInterrupt) {
+    const TemporaryFolder folder;
+    const InterruptGuard guard;
+    raise(SIGINT);
+    EXPECT_THROW(drawSvg(folder / "plot.svg", "pause 100"), Interrupted);
+    EXPECT_TRUE(isEmpty(folder));
+}
+
 TEST(Gnuplot, IsMissed) {
     const TemporaryFolder folder, empty;
     const std::string path = std::getenv("PATH");
     setenv("PATH", empty.path().c_str(), 1);
     const std::string text = complaint(folder / "plot.svg", "plot x");
     setenv("PATH", path.c_str(), 1);
-    EXPECT_NE(text.find("gnuplot is not installed"), std::string::npos) << text;
+    EXPECT_NE(text.find("plot.svg: gnuplot is not installed"), std::string::npos) << text;
     EXPECT_TRUE(isEmpty(folder));
 }
 

@@ -25,7 +25,10 @@ class KeptRun : public testing::Test {
         run.label = "Fake";
         run.note = "made up";
         run.input = "recordings/a \"b\"";
-        run.warning = "damaged";
+        run.warnings = {"damaged", "no scene"};
+        run.not_pinned = "core 3: it is not allowed";
+        run.signal = 6;
+        run.timeout_s = 12.5;
         run.frames = 7;
         run.tracked = 5;
         run.rejected = 1;
@@ -71,7 +74,10 @@ TEST_F(KeptRun, ComesBackAsItWas) {
     EXPECT_EQ(back.input, run.input);
     EXPECT_EQ(back.skipped, "");
     EXPECT_EQ(back.failure, "");
-    EXPECT_EQ(back.warning, run.warning);
+    EXPECT_EQ(back.warnings, run.warnings);
+    EXPECT_EQ(back.not_pinned, run.not_pinned);
+    EXPECT_EQ(back.signal, run.signal);
+    EXPECT_EQ(back.timeout_s, run.timeout_s);
     EXPECT_EQ(back.frames, run.frames);
     EXPECT_EQ(back.tracked, run.tracked);
     EXPECT_EQ(back.rejected, run.rejected);
@@ -112,7 +118,8 @@ TEST_F(KeptRun, FailuresAndSkippedOnesHaveNoTrajectory) {
 
 TEST_F(KeptRun, NoFigureThatIsNotANumberIsKept) {
     for (double MethodRun::*member :
-         {&MethodRun::cpu_ms_per_frame, &MethodRun::background_ms, &MethodRun::memory_peak_mb}) {
+         {&MethodRun::cpu_ms_per_frame, &MethodRun::background_ms, &MethodRun::memory_peak_mb,
+          &MethodRun::core_lost, &MethodRun::timeout_s}) {
         MethodRun bad = run;
         bad.*member = kNaN;
         EXPECT_THROW(writeMethodRun(path(), bad), std::runtime_error);

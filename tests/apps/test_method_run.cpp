@@ -149,7 +149,7 @@ TEST_F(RunOfAMethod, FramesThatCannotBeUsedAreRejectedAndTheOthersGoOn) {
     EXPECT_EQ(result.rejected, 3u);
     EXPECT_EQ(result.tracked, 3u);
     EXPECT_EQ(result.trajectory.size(), 3u);
-    EXPECT_EQ(result.warning, "the file ends in the middle");
+    EXPECT_EQ(result.warnings, std::vector<std::string>{"the file ends in the middle"});
     const auto lines = csvLines();
     ASSERT_EQ(lines.size(), 7u);
     EXPECT_NE(lines[3].find("rejected: cannot read rgb/2.png"), std::string::npos) << lines[3];
@@ -285,7 +285,7 @@ TEST_F(RunOfAMethod, ASceneThatFailsCostsOnlyTheScene) {
     const MethodRun result = run();
     EXPECT_TRUE(result.ok());
     EXPECT_EQ(result.scene, "");
-    EXPECT_EQ(result.warning, "damaged; no scene: disk full");
+    EXPECT_EQ(result.warnings, (std::vector<std::string>{"damaged", "no scene: disk full"}));
 }
 
 }  // namespace

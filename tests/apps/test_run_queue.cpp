@@ -8,7 +8,9 @@
 #include <set>
 
 #include "compare_fakes.h"
+#include "processes.h"
 #include "roevo-compare/core_contention.h"
+#include "roevo-compare/kept_run.h"
 #include "roevo-compare/run_queue.h"
 #include "support/interrupt.h"
 #include "support/run_program.h"
@@ -18,101 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::readFile;
+using test::runs;
+using test::shell;
+using test::soon;
 using test::TemporaryFolder;
 using test::writeFile;
 
 constexpr double kLong = 60;  // s
-
-// Runs until its end. @return how long that took, s
-double finish(ChildProcess& process) {
-    while (process.update()) ChildProcess::waitForNews({&process}, 0.1);
-    return process.seconds();
-}
-
-std::vector<std::string> shell(const std::string& script) {
-    return {"/bin/sh", "-c", script};
-}
-
-bool runs(pid_t id) {
-    const std::string status = readFile("/proc/" + std::to_string(id) + "/stat");
-    return !status.empty() && status.find(") Z ") == std::string::npos;  // a dead one may not be reaped yet
-}
-
-// Waits for what happens soon.
-template <class Condition>
-bool soon(const Condition& condition) {
-    for (int i = 0; i < 500 && !condition(); ++i) usleep(10'000);
-    return condition();
-}
-
-TEST(Process, SaysHowItEnded) {
-    ChildProcess good(shell("echo one; echo; echo two >&2; printf three"), -1, kLong);
-    finish(good);
-    EXPECT_TRUE(good.end().ok());
-    EXPECT_EQ(good.lastOutput(), "three") << "even without an end of line";
-    EXPECT_EQ(good.lastError(), "two");
-
-    ChildProcess bad(shell("exit 3"), -1, kLong);
-    finish(bad);
-    EXPECT_EQ(bad.end().exit_code, 3);
-    EXPECT_FALSE(bad.end().ok());
-
-    ChildProcess crashed(shell("kill -SEGV $$"), -1, kLong);
-    finish(crashed);
-    EXPECT_EQ(crashed.end().signal, SIGSEGV);
-    EXPECT_FALSE(crashed.end().ok());
-}
-
-TEST(Process, ProgramThatIsNotThere) {
-    ChildProcess process({"/no/such/program"}, -1, kLong);
-    finish(process);
-    EXPECT_FALSE(process.end().ok());
-    EXPECT_NE(process.lastError().find("cannot be started: No such file"), std::string::npos)
-        << process.lastError();
-}
-
-TEST(Process, OutputLongerThanAPipeDoesNotStopIt) {
-    ChildProcess process(shell("i=0; while [ $i -lt 40000 ]; do echo line $i; i=$((i+1)); done"), -1, kLong);
-    finish(process);
-    EXPECT_TRUE(process.end().ok());
-    EXPECT_EQ(process.lastOutput(), "line 39999");
-}
-
-TEST(Process, IsEndedWithItsOwnChildrenWhenItsTimeIsUp) {
-    const TemporaryFolder folder;
-    ChildProcess process(shell("sleep 100 & echo $! > " + (folder / "pid") + "; echo ready; wait"), -1, 1);
-    EXPECT_LT(finish(process), kLong / 2);
-    EXPECT_TRUE(process.end().timed_out);
-    EXPECT_FALSE(process.end().ok());
-    EXPECT_EQ(process.lastOutput(), "ready");
-    const pid_t grandchild = std::stoi(readFile(folder / "pid"));
-    EXPECT_TRUE(soon([&] { return !runs(grandchild); }));
-}
-
-TEST(Process, EndsWithItsObject) {
-    const TemporaryFolder folder;
-    pid_t child = 0;
-    {
-        ChildProcess process(shell("echo ready; sleep 100"), -1, kLong);
-        child = process.id();
-        ASSERT_TRUE(soon([&] { return process.update() && process.lastOutput() == "ready"; }));
-        EXPECT_TRUE(runs(child));
-    }
-    EXPECT_TRUE(soon([&] { return !runs(child); }));
-}
-
-TEST(Process, StaysOnItsCoreAndAwayFromCtrlC) {
-    const int core = allowedCores().back();
-    ChildProcess process(shell("grep Cpus_allowed_list /proc/self/status; ps -o pgid= -p $$ >&2 || true"),
-                         core, kLong);
-    finish(process);
-    EXPECT_NE(process.lastOutput().find("\t" + std::to_string(core)), std::string::npos)
-        << process.lastOutput();
-    EXPECT_EQ(process.lastOutput().find_first_of(",-"), std::string::npos) << process.lastOutput();
-    ChildProcess sleeper(shell("sleep 100"), -1, kLong);
-    EXPECT_EQ(getpgid(sleeper.id()), sleeper.id());
-    EXPECT_NE(getpgid(sleeper.id()), getpgid(0));
-}
 
 TEST(Contention, WaitingForOtherProgramsIsSeen) {
     if (!fs::exists("/proc/thread-self/schedstat")) GTEST_SKIP() << "the system does not tell";
@@ -151,28 +65,33 @@ class Queue : public testing::Test, public QueueObserver {
     }
 
     // Runs scripts, one for each task; $RUN is the folder for the result.
-    void runAll(const std::vector<std::string>& scripts, double timeout = kLong, std::size_t jobs = 1) {
+    void runAll(const std::vector<std::string>& scripts, double timeout = kLong, std::size_t jobs = 1,
+                int core = -1) {
         std::vector<RunTask> tasks;
         for (std::size_t i = 0; i < scripts.size(); ++i) tasks.push_back(task("m" + std::to_string(i)));
         const auto command = [&](const RunTask& task, const std::string& run_folder) {
             const auto index = static_cast<std::size_t>(&task - tasks.data());
             return shell("RUN='" + run_folder + "'; " + scripts[index]);
         };
-        runTasks(tasks, command, {std::vector<int>(jobs, -1), timeout}, *this);
+        runTasks(tasks, command, {std::vector<int>(jobs, core), timeout}, *this);
+    }
+
+    // A script that leaves this run in its folder.
+    std::string leave(const std::string& name, const MethodRun& run) {
+        const fs::path made = folder.path() / name;
+        fs::create_directory(made);
+        writeMethodRun(made.string(), run);
+        return "cp " + made.string() + "/* \"$RUN\"";
     }
 
     // A script that leaves a good result.
-    std::string success() {
-        const fs::path made = folder.path() / "made";
-        if (!fs::exists(made)) {
-            fs::create_directory(made);
-            MethodRun run;
-            run.method = "whatever";
-            run.frames = run.tracked = 3;
-            for (int i = 0; i < 3; ++i) run.trajectory.push_back({1.0 + i, Pose::Identity()});
-            writeMethodRun(made.string(), run);
-        }
-        return "cp " + made.string() + "/* \"$RUN\"";
+    std::string success(double core_lost = 0) {
+        MethodRun run;
+        run.method = "whatever";
+        run.frames = run.tracked = 3;
+        run.core_lost = core_lost;
+        for (int i = 0; i < 3; ++i) run.trajectory.push_back({1.0 + i, Pose::Identity()});
+        return leave("made", run);
     }
 
     std::string failure(const std::string& script, double timeout = kLong) {
@@ -219,17 +138,56 @@ TEST_F(Queue, FailuresAreKeptInWords) {
             EXPECT_NE(text.find(word), std::string::npos) << word << " in: " << text;
         EXPECT_EQ(text.find('\n'), std::string::npos);
     };
-    expect(failure("echo 12 0.5; echo stack smashed >&2; kill -SEGV $$"),
+    expect(failure("echo 12 0.5 > \"$RUN\"/progress.txt; echo stack smashed >&2; kill -SEGV $$"),
            {"signal 11", "Segmentation fault", "after 12 frames", "stack smashed"});
     EXPECT_EQ(done.at(0).frames, 12u);
     expect(failure("kill -KILL $$"), {"signal 9", "memory", "after 0 frames"});
-    expect(failure("echo 1 0.1; echo 34 0.7; sleep 100", 0.5), {"not done within 0.5 s", "after 34 frames"});
-    EXPECT_EQ(failure("echo noise >&2; echo 'roevo-compare: error: at frame 3: no depth' >&2; exit 1"),
-              "at frame 3: no depth");
-    expect(failure("echo 5 0.5; exit 7"), {"exit code 7", "5 frames", "without a word"});
+    expect(failure("echo 34 0.7 > \"$RUN\"/progress.txt; sleep 100", 0.5),
+           {"not done within 0.5 s", "after 34 frames"});
+    expect(failure("echo 5 0.5 > \"$RUN\"/progress.txt; exit 7"),
+           {"exit code 7", "5 frames", "without a word"});
+    expect(failure("echo 'roevo-compare: error: no such file' >&2; exit 1"),
+           {"exit code 1", "its last words: no such file"});
     expect(failure("exit 0"), {"no result", "run.json"});
     expect(failure("echo '{' > \"$RUN\"/run.json"), {"no result", "not whole"});
     expect(failure("rm -rf \"$RUN\"; exit 1"), {"exit code 1"});
+}
+
+TEST_F(Queue, WhatARunSaysOfItsOwnFailureCountsAndNotWhatIsPrinted) {
+    MethodRun run;
+    run.method = "whatever";
+    run.failure = "at frame 3: no depth";
+    const std::string script = leave("failed", run) + "; echo 2 0.2 > \"$RUN\"/progress.txt; " +
+                               "echo 77 0.77; echo library: all is well; echo library: noise >&2; ";
+    for (const char* end : {"exit 1", "exit 0"}) {
+        EXPECT_EQ(failure(script + end), "at frame 3: no depth") << end;
+        EXPECT_EQ(done.at(0).frames, 2u);
+    }
+    EXPECT_NE(failure(script + "kill -SEGV $$").find("signal 11"), std::string::npos);
+    EXPECT_NE(failure(success() + "; exit 3").find("exit code 3"), std::string::npos)
+        << "a result of a program that failed is none";
+}
+
+TEST_F(Queue, WhatLibrariesPrintIsNoProgress) {
+    std::set<double> shares;
+    while_going = [&](const std::map<std::size_t, double>& running) {
+        for (const auto& [index, share] : running) shares.insert(share);
+    };
+    runAll({"echo 1 0.75; echo '  3   -7' > \"$RUN\"/progress.txt; sleep 0.5; " + success()});
+    EXPECT_EQ(shares, std::set<double>{0});
+    EXPECT_FALSE(fs::exists(task("m0").folder + "/progress.txt")) << "it is of no use any more";
+}
+
+TEST_F(Queue, WhetherARunWasBoundToItsCoreIsKept) {
+    const auto notPinned = [&](int core) {
+        runAll({success()}, kLong, 1, core);
+        const MethodRun kept = readMethodRun(task("m0").folder);
+        EXPECT_TRUE(kept.ok()) << kept.failure;
+        return kept.not_pinned;
+    };
+    EXPECT_EQ(notPinned(allowedCores().back()), "");
+    EXPECT_NE(notPinned(CPU_SETSIZE - 1).find("core 1023"), std::string::npos);
+    EXPECT_NE(notPinned(-1), "");
 }
 
 TEST_F(Queue, NothingOfAFailedRunIsTakenForAResult) {
@@ -272,7 +230,9 @@ TEST_F(Queue, TellsHowFarTheRunsAre) {
     while_going = [&](const std::map<std::size_t, double>& running) {
         for (const auto& [index, share] : running) shares.insert(share);
     };
-    runAll({"echo 1 0.25; while [ ! -e " + (folder / "seen") + " ]; do sleep 0.02; done; " + success()}, 0.6);
+    runAll({"echo 1 0.25 > \"$RUN\"/progress.txt; while [ ! -e " + (folder / "seen") +
+            " ]; do sleep 0.02; done; " + success()},
+           0.6);
     EXPECT_TRUE(shares.count(0.25)) << shares.size();
 }
 
@@ -300,32 +260,49 @@ TEST_F(Queue, WhatAKilledProgramLeftIsNoHindrance) {
     EXPECT_TRUE(done.at(0).ok()) << done.at(0).failure;
 }
 
-TEST_F(Queue, FinishedRunsAreFoundAgainByTheirSettings) {
-    MethodRun found;
-    EXPECT_FALSE(findFinishedRun(task("m0"), kLong, found)) << "there is none yet";
+TEST_F(Queue, KeptRunsAreFoundAgainByTheirSettings) {
+    const auto found = [&](const RunTask& task) { return findKeptRun(task, kLong).run.has_value(); };
+    EXPECT_FALSE(found(task("m0"))) << "there is none yet";
     runAll({success()});
-    ASSERT_TRUE(findFinishedRun(task("m0"), kLong, found));
-    EXPECT_EQ(found.trajectory.size(), 3u);
+    const KeptRun kept = findKeptRun(task("m0"), kLong);
+    ASSERT_TRUE(kept.run);
+    EXPECT_EQ(kept.redo, "");
+    EXPECT_EQ(kept.run->trajectory.size(), 3u);
     RunTask other = task("m0");
     other.settings["first"] = "9";
-    EXPECT_FALSE(findFinishedRun(other, kLong, found));
+    EXPECT_FALSE(found(other));
     other = task("m0");
     other.settings["more"] = "";
-    EXPECT_FALSE(findFinishedRun(other, kLong, found));
+    EXPECT_FALSE(found(other));
     fs::remove(task("m0").folder + "/trajectory.txt");
-    EXPECT_FALSE(findFinishedRun(task("m0"), kLong, found)) << "it is not whole any more";
+    EXPECT_FALSE(found(task("m0"))) << "it is not whole any more";
 }
 
-TEST_F(Queue, FailedRunsAreFoundAgainUnlessTheyAreGivenMoreTime) {
-    MethodRun found;
-    failure("exit 1");
-    EXPECT_TRUE(findFinishedRun(task("m0"), kLong, found));
-    EXPECT_FALSE(found.ok());
+TEST_F(Queue, AMethodsOwnFailureIsKeptAndWhatCameFromOutsideIsMadeAnew) {
+    const auto redo = [&](double timeout) {
+        const KeptRun kept = findKeptRun(task("m0"), timeout);
+        EXPECT_TRUE(kept.run) << "it stands until there is another one";
+        return kept.redo;
+    };
+    for (const char* own : {"exit 1", "kill -SEGV $$", "kill -ABRT $$", "kill -FPE $$"}) {
+        failure(own);
+        EXPECT_EQ(redo(kLong), "") << own;
+    }
+    for (const auto& [name, number] : {std::pair("HUP", "1"), {"INT", "2"}, {"KILL", "9"}, {"TERM", "15"}}) {
+        failure(std::string("kill -") + name + " $$");
+        EXPECT_EQ(redo(kLong), "it was killed (signal " + std::string(number) + ")");
+    }
     failure("sleep 100", 0.3);
-    EXPECT_TRUE(findFinishedRun(task("m0"), 0.3, found));
-    EXPECT_EQ(found.settings, task("m0").settings);
-    EXPECT_TRUE(findFinishedRun(task("m0"), 0.2, found));
-    EXPECT_FALSE(findFinishedRun(task("m0"), 0.5, found));
+    EXPECT_EQ(redo(0.3), "") << "no more time than it had";
+    EXPECT_EQ(redo(0.2), "");
+    EXPECT_NE(redo(0.5), "");
+}
+
+TEST_F(Queue, RunsWhoseCoreOthersHadAreMadeAnew) {
+    runAll({success(0.04)});
+    EXPECT_EQ(findKeptRun(task("m0"), kLong).redo, "");
+    runAll({success(0.12)});
+    EXPECT_EQ(findKeptRun(task("m0"), kLong).redo, "other programs had its core for 12 % of the time");
 }
 
 TEST_F(Queue, ARunThatCannotBeKeptIsAnError) {

@@ -118,6 +118,10 @@ TEST_F(StudyProgram, Repeatability) {
     const auto rows = table("repeatability.csv");
     ASSERT_EQ(rows.size(), 3u);
     EXPECT_EQ(rows[2].at("judged_by"), "ground truth");
+    EXPECT_EQ(rows[2].at("reprojected_by"), "ground truth");
+    EXPECT_NE(index().find("recording: judged by ground truth; edges reprojected at ground truth"),
+              std::string::npos)
+        << index();
     EXPECT_NEAR(number(rows[2], "translation_m"), 0.03, 1e-9);
     for (const char* method : {"lk", "nearest", "normals", "keyframe", "disjoint_set"}) {
         EXPECT_GT(number(rows[0], std::string(method) + "_share"), 0.7) << method;
@@ -148,6 +152,10 @@ TEST_F(StudyProgram, NoGroundTruthIsSaidAndErrorsStayEmpty) {
     EXPECT_FALSE(exists("depth_weight.svg"));
     ASSERT_EQ(run("repeatability").exit_code, 0);
     EXPECT_EQ(table("repeatability.csv").at(0).at("judged_by"), "roevo-ba");
+    const std::string poses =
+        "judged by final poses of ROEVO ba; edges reprojected at final poses of ROEVO ba";
+    EXPECT_NE(index().find(poses), std::string::npos) << index();
+    EXPECT_NE(readFile(folder_ / "out/repeatability.svg").find(poses), std::string::npos);
 }
 
 TEST_F(StudyProgram, GroundTruthOfAnotherTimeIsSaid) {
@@ -166,6 +174,48 @@ TEST_F(StudyProgram, GroundTruthOfAnotherTimeIsSaid) {
                 {"repeatability", "no two frames"});
 }
 
+TEST_F(StudyProgram, ABadRecordingIsALineAndTheOthersGoOn) {
+    write(4);
+    // Opened without a fault, but its ground truth is of another time
+    test::writeTumFolder(folder_ / "other_time", test::slidingRecording(4));
+    writeFile(folder_ / "other_time/groundtruth.txt",
+              "5 0 0 0 0 0 0 1\n5.1 0 0 0 0 0 0 1\n5.2 0 0 0 0 0 0 1\n");
+    const std::vector<std::string> more{"--input", folder_ / "none", folder_ / "other_time"};
+    ProgramResult result = run("repeatability", more);
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    const std::string line = "other_time: left out: " + (folder_ / "other_time: no two frames");
+    EXPECT_NE(result.out.find(line), std::string::npos) << result.out;
+    EXPECT_NE(index().find("- " + line), std::string::npos) << index();
+    EXPECT_NE(result.out.find("not used       " + (folder_ / "none") + ": "), std::string::npos)
+        << result.out;
+    EXPECT_NE(index().find("| not used | " + (folder_ / "none") + " | | "), std::string::npos) << index();
+    for (const Row& row : table("repeatability.csv")) EXPECT_EQ(row.at("recording"), "recording");
+
+    result = run("canny", more);
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_EQ(table("canny.csv").size(), 18u);
+    EXPECT_NE(result.out.find("other_time: errors at Otsu's threshold are not known"), std::string::npos)
+        << result.out;
+
+    std::filesystem::remove_all(folder_ / "recording");
+    expectError(run("repeatability", more), 1, kName, {"repeatability: other_time: ", "no two frames"});
+    std::filesystem::remove_all(folder_ / "other_time");
+    expectError(run("canny", more), 1, kName, {"none of the 3 recordings", folder_ / "recording"});
+}
+
+TEST_F(StudyProgram, TheReportTellsHowItWasMade) {
+    write(3);
+    ASSERT_EQ(run("depth-weight", {"--mode", "tr"}).exit_code, 0);
+    const std::string text = index();
+    EXPECT_NE(text.find("    roevo-study --experiment depth-weight --input " + (folder_ / "recording") +
+                        " --output " + (folder_ / "out") + " --mode tr\n"),
+              std::string::npos)
+        << text;
+    for (const char* word : {"Machine: ", " core", "ROEVO ", "MRPT ", "OpenCV ", "Eigen ", "compiler ",
+                             "Protocol of errors: ", "0.02 s", "SE(3)", "RPE over 1 s", "UTC"})
+        EXPECT_NE(text.find(word), std::string::npos) << word << " in\n" << text;
+}
+
 TEST_F(StudyProgram, WithoutGnuplotTheTablesAreWritten) {
     write(4);
     const test::TemporaryFolder empty;
@@ -180,18 +230,24 @@ TEST_F(StudyProgram, WithoutGnuplotTheTablesAreWritten) {
     EXPECT_FALSE(exists("depth_weight.svg"));
 }
 
-TEST_F(StudyProgram, FramesThatCannotBeReadAreLeftOut) {
+TEST_F(StudyProgram, FramesThatCannotBeReadAreLeftOutAndSaid) {
     write(6);
     writeFile(folder_ / "recording/rgb/0003.png", "not an image");
     const ProgramResult result = run("repeatability");
     ASSERT_EQ(result.exit_code, 0) << result.all();
     EXPECT_NE(result.out.find("1 frame left out"), std::string::npos) << result.out;
     EXPECT_EQ(table("repeatability.csv").size(), 4u);
+    const ProgramResult canny = run("canny");
+    ASSERT_EQ(canny.exit_code, 0) << canny.all();
+    const std::string line = "recording: 1 of 6 frames could not be read and were left out, the first: ";
+    EXPECT_NE(canny.out.find("damaged        " + line), std::string::npos) << canny.out;
+    EXPECT_NE(index().find("- " + line), std::string::npos) << index();
 }
 
 TEST_F(StudyProgram, WrongUsage) {
     write(3);
     expectError(run("colour"), 2, kName, {"'colour'", "canny", "depth-weight", "repeatability", "all"});
+    expectError(run("--input"), 2, kName, {"--experiment", "there is no '--input'", "known are canny"});
     expectError(run("canny", {"--first", "2"}), 2, kName, {"--first 2", "at least 3"});
     expectError(run("canny", {"--set", "edges.canny_high_factor=100"}), 2, kName,
                 {"canny_high_factor", "100"});

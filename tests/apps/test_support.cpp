@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <stdexcept>
 
@@ -70,6 +73,36 @@ TEST(Program, TurnsExceptionsIntoExitCodes) {
     testing::internal::CaptureStderr();
     EXPECT_EQ(runProgram("p", []() -> int { throw UsageError("--x is wrong"); }), 2);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "p: error: --x is wrong (see p --help)\n");
+}
+
+// In a process of its own, which the signal ends.
+int exitCodeAfter(int signal, const std::string& file) {
+    const pid_t child = fork();
+    if (child == 0)
+        _exit(runProgram("p", [&] {
+            AtomicFile half(file);
+            half.stream() << "half" << std::flush;
+            raise(signal);
+            return 0;
+        }));
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+TEST(Program, LeavesNothingHalfWrittenWhenASignalEndsIt) {
+    const TemporaryFolder folder;
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        EXPECT_EQ(exitCodeAfter(signal, folder / "a.txt"), 128 + signal);
+        EXPECT_EQ(filesIn(folder), 0u) << signal;
+    }
+}
+
+TEST(Program, OutlivesItsTerminalUnderNohup) {
+    const TemporaryFolder folder;
+    const auto before = std::signal(SIGHUP, SIG_IGN);
+    EXPECT_EQ(exitCodeAfter(SIGHUP, folder / "a.txt"), 0);
+    std::signal(SIGHUP, before);
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ class RoevoMethod : public Method {
 
     std::optional<Background> background() const override {
         if (mode() != Mode::kBundleAdjustment) return std::nullopt;
-        return Background{"mapping of a keyframe",
+        // Not of a keyframe: after a frame that was left out two of them may come in at once
+        return Background{"mapping, by frame with which a map took effect",
                           mapped_ > 0 ? mapping_ms_ / static_cast<double>(mapped_) : 0, mapped_};
     }
 
@@ -63,7 +64,7 @@ class RoevoMethod : public Method {
     Odometry odometry_;
     bool started_ = false;
     double mapping_ms_ = 0;
-    std::size_t mapped_ = 0;
+    std::size_t mapped_ = 0;  // frames with which one map or more took effect
 };
 
 }  // namespace

@@ -11,16 +11,18 @@ namespace roevo {
 
 /// One recording and what every method made of it.
 struct SequenceComparison {
-    std::string name;          ///< of the table's row, e.g. "fr1_xyz"
-    std::string input;         ///< as given
-    std::string failure;       ///< why nothing could be run on it (unreadable, …); empty otherwise
-    std::string note;          ///< what a reader must know of it: damage, frames left out; may be empty
-    std::string ground_truth;  ///< file or folder, empty when there is none
+    std::string name;     ///< of the table's row, e.g. "fr1_xyz"
+    std::string input;    ///< as given
+    std::string failure;  ///< why nothing could be run on it (unreadable, …); empty otherwise
+    std::string part;     ///< what of the recording was run: "frames 10 to 24"; empty: all of it
+    /// What a reader must know of it, a line each: how images were paired, what was substituted or left out.
+    std::vector<std::string> notes;
+    std::string ground_truth;              ///< file or folder, empty when there is none
     std::vector<StampedPose> reference;    ///< the ground truth's poses; may be empty
     std::string ground_truth_fault;        ///< why there is none although one was named
     std::vector<MethodRun> runs;           ///< in the order of the tables
     std::vector<std::string> run_folders;  ///< where each is kept, for links and scenes
-    std::optional<double> paper_ate_cm;    ///< the paper's ROEVO-TR+BA on the whole sequence, when it has it
+    std::optional<double> paper_ate_cm;    ///< the paper's ROEVO-TR+BA on the same frames, when it has it
 };
 
 /// What a reader must know to repeat it.
@@ -30,7 +32,7 @@ struct ComparisonInfo {
     std::string machine;                                        ///< processor, cores, memory, system
     std::vector<std::pair<std::string, std::string>> versions;  ///< roevo, mrpt, opencv, eigen, compiler, …
     /// What a reader must know of this comparison, a sentence each: runs side by side, sequences that were
-    /// not there, an interrupt. To be printed with the protocol.
+    /// not there, an interrupt.
     std::vector<std::string> notes;
 };
 
@@ -38,11 +40,13 @@ struct ComparisonInfo {
 struct EvaluatedRun {
     std::optional<Evaluation> evaluation;
     std::string fault;
+    std::string scale_warning;  ///< see scaleContradiction(); mostly empty
 };
 std::vector<EvaluatedRun> evaluateRuns(const SequenceComparison& sequence);
 
 /// Writes table.csv, table.md and report.html (all pictures inside, no network) into the folder, each whole
-/// or not at all. @throws std::runtime_error in one line
+/// or not at all. @throws std::runtime_error in one line; Interrupted after a signal (needs an
+/// InterruptGuard), and then nothing has been written
 void writeComparison(const std::string& folder, const std::vector<SequenceComparison>& sequences,
                      const ComparisonInfo& info);
 

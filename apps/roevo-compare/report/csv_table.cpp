@@ -6,6 +6,7 @@
 #include "roevo-compare/report/metrics.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/remarks.h"
 #include "support/text.h"
 
 namespace roevo {
@@ -100,6 +101,12 @@ const char* statusOf(const SequenceComparison& sequence, const MethodRun* run) {
     return isComplete(*run) ? "ok" : "incomplete";
 }
 
+std::string joined(const std::vector<std::string>& lines) {
+    std::string text;
+    for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
+    return text;
+}
+
 // Ranks among all methods, by metric and run.
 std::vector<std::vector<std::optional<int>>> allRanks(const SequenceResults& results) {
     std::vector<std::vector<std::optional<int>>> ranks;
@@ -150,10 +157,12 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
     row.text("ground_truth", sequence.ground_truth);
     row.text("run_folder", index && *index < sequence.run_folders.size() ? sequence.run_folders[*index] : "");
     row.text("note", run ? run->note : "");
-    row.text("sequence_note", sequence.note);
-    row.text("warning", run ? run->warning : "");
+    row.text("sequence_part", sequence.part);
+    row.text("sequence_note", joined(sequence.notes));
+    row.text("warning", run ? joined(warningsOf(*run, *evaluated)) : "");
     row.count("jobs_side_by_side", counted(&MethodRun::jobs));
-    row.text("protocol", errorProtocol() + " " + costProtocol());
+    row.text("not_pinned", run ? run->not_pinned : "");
+    row.text("protocol", errorProtocol() + " " + costProtocol(!run || run->not_pinned.empty()));
     return row;
 }
 

@@ -10,9 +10,9 @@
 namespace roevo {
 namespace {
 
-constexpr std::size_t kMaxIntervals = 800;   // of a line, each with its largest error
-constexpr int kWidth = 1120, kHeight = 330;  // px
-constexpr double kMinError = 1e-3;           // cm: what is less is of no interest, and has no logarithm
+constexpr std::size_t kMaxIntervals = 800;  // of a line, each with its largest error
+constexpr int kWidth = 960, kHeight = 300;  // px
+constexpr double kMinError = 1e-3;          // cm: what is less is of no interest, and has no logarithm
 
 struct Line {
     std::string name;
@@ -80,7 +80,7 @@ std::string shownTic(double value) {
 
 // 1, 2, 5 in every decade while these are few: gnuplot would label the powers of ten only.
 std::string ticsOf(double low, double high) {
-    const bool few = high / low < 300;
+    const bool few = high / low < 1000;
     std::string tics;
     for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10)
         for (const double step : {1.0, 2.0, 5.0})
@@ -104,8 +104,8 @@ Figure errorFigure(const SequenceResults& results, const Legend& legend) {
     const double low = std::max(percentile(all, 0.01), kMinError);
     const double high = std::max(percentile(all, 1) * 1.3, 10 * low);
     std::string script =
-        "unset key\nset logscale y\nset lmargin 9\nset rmargin 2\nset tmargin 1\nset bmargin 3.2\n"
-        "set xlabel 'time [s]'\nset ylabel 'position error [cm]'\nset format y '%g'\n"
+        "unset key\nset logscale y\nset lmargin 9\nset rmargin 2\nset tmargin 1\nset bmargin 2.6\n"
+        "set xlabel 'time [s]' offset 0,0.4\nset ylabel 'position error [cm]'\nset format y '%g'\n"
         "set xrange [0:" +
         exactNumber(std::max(end, 1e-3)) + "]\nset yrange [" + exactNumber(low) + ":" + exactNumber(high) +
         "]\n";
@@ -117,8 +117,8 @@ Figure errorFigure(const SequenceResults& results, const Legend& legend) {
         plot += (i == 0 ? "plot " : ", ") + std::string("$") + block + " using 1:2 with lines " +
                 gnuplotStyle(lines[i].style);
     }
-    return {drawInline(script + plot + "\n", kWidth, kHeight),
-            results.sequence->name + ": position error over time", ""};
+    return drawFigure(script + plot + "\n", kWidth, kHeight,
+                      results.sequence->name + ": position error over time", "");
 }
 
 }  // namespace roevo

@@ -1,12 +1,11 @@
-#include <algorithm>
-#include <filesystem>
-#include <stdexcept>
+#include <set>
 
 #include "roevo-compare/report/documents.h"
 #include "roevo-compare/report/html_parts.h"
 #include "roevo-compare/report/html_sequence.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/remarks.h"
 #include "support/program.h"
 #include "support/text.h"
 
@@ -14,7 +13,8 @@ namespace roevo {
 namespace {
 
 // Of the figures in the summary of several sequences: the rest is with each sequence.
-constexpr std::size_t kSummaryMetrics[] = {0, 1, 2, 5, 6};
+constexpr std::size_t kFewSequences = 2;  // so many let two tables stand side by side on a wide page
+constexpr std::size_t kSummaryMetrics[] = {0, 1, 2, 5, 6, 8};
 
 std::string count(std::size_t n, const std::string& what) {
     return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
@@ -41,22 +41,41 @@ std::string header(const std::vector<SequenceResults>& results, const Legend& le
     return html + "</nav>\n</header>\n";
 }
 
+// Where a table is nothing but dashes: why; else empty.
+std::string whyEmpty(const Table& table) {
+    std::set<std::string> reasons;
+    for (const Table::Row& row : table.rows)
+        for (const TableCell& cell : row.cells) {
+            if (cell.text != kDash) return {};
+            reasons.insert(cell.note);
+        }
+    std::string all;
+    for (const std::string& reason : reasons) all += (all.empty() ? "" : "; ") + reason;
+    return all;
+}
+
 std::string summary(const std::vector<SequenceResults>& results, const Legend& legend,
                     const std::string& folder) {
     std::string html =
         "<section>\n<h2>Summary</h2>\n<p>The best figure is bold on blue. A dash is explained beneath the "
         "table; figures in italics are of runs that tracked less than 90 % of the frames.</p>\n";
     if (results.size() == 1) return html + allFigures(results[0], "summary", folder) + "</section>\n";
-    for (const std::size_t m : kSummaryMetrics)
-        html +=
-            setTable(figureTable(shownMetrics()[m], results, legend.methods), "summary" + std::to_string(m));
-    return html + "</section>\n";
+    html += results.size() <= kFewSequences ? "<div class=\"few\">\n" : "<div>\n";
+    std::string without;
+    for (const std::size_t m : kSummaryMetrics) {
+        const Table table = figureTable(shownMetrics()[m], results, legend.methods);
+        if (const std::string reasons = whyEmpty(table); !reasons.empty())
+            without += element("p", table.title + ": no figures (" + reasons + ")") + "\n";
+        else
+            html += setTable(table, "summary" + std::to_string(m));
+    }
+    return html + "</div>\n" + without + "</section>\n";
 }
 
 std::string ranking(const std::vector<SequenceResults>& results, const Legend& legend) {
     std::string html =
-        "<section id=\"Ranking\">\n<h2>Ranking</h2>\n<p>Number of sequences on which a method is among the "
-        "first 1, 2 and 3, and its mean rank.</p>\n";
+        "<section id=\"Ranking\">\n<h2>Ranking</h2>\n<p>Number of sequences, as they were run here, on "
+        "which a method is among the first 1, 2 and 3, and its mean rank.</p>\n";
     const auto one = oneRoevo(legend.methods);
     if (one.size() != legend.methods.size())
         html +=
@@ -75,10 +94,9 @@ std::string methodList(const Legend& legend) {
     return html + "</dl>\n</section>\n";
 }
 
-std::string protocol(const ComparisonInfo& info) {
+std::string protocol(bool pinned) {
     std::string html = "<section id=\"Protocol\">\n<h2>Protocol</h2>\n<ul class=\"lines\">\n";
-    for (const std::string& line : protocolLines()) html += element("li", line) + "\n";
-    for (const std::string& note : info.notes) html += element("li", note) + "\n";
+    for (const std::string& line : protocolLines(pinned)) html += element("li", line) + "\n";
     return html + "</ul>\n</section>\n";
 }
 
@@ -111,7 +129,8 @@ std::string htmlReport(const std::vector<SequenceResults>& results, const Compar
         std::string(pageStyle()) + "</style>\n</head>\n<body>\n" + header(results, legend, info);
     if (!writer.plotFault().empty()) html += remark("No plots: " + writer.plotFault());
     return html + "<main>\n" + summary(results, legend, folder) + sequences + ranking(results, legend) +
-           methodList(legend) + protocol(info) + repeating(info) + "</main>\n</body>\n</html>\n";
+           methodList(legend) + protocol(allPinned(results)) + repeating(info) +
+           "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace roevo

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
-#include <stdexcept>
 #include <utility>
 
 #include "roevo-compare/report/html_parts.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/scene_picture.h"
+#include "support/gnuplot.h"
 #include "support/text.h"
 
 namespace roevo {
@@ -25,6 +24,7 @@ std::string facts(const SequenceComparison& sequence) {
     if (frames > 0)
         parts.push_back(std::to_string(frames) + " frames" +
                         (rejected > 0 ? ", " + std::to_string(rejected) + " of them unusable" : ""));
+    if (!sequence.part.empty()) parts.push_back("only " + sequence.part + " of the recording");
     double duration = 0;
     for (const MethodRun& run : sequence.runs)
         if (!run.trajectory.empty())
@@ -51,6 +51,41 @@ std::string mapFigure(const MethodRun& run, const std::string& scene, const std:
            "</figcaption></figure>\n";
 }
 
+bool isReferenced(const SequenceResults& results) {
+    return std::any_of(results.evaluated.begin(), results.evaluated.end(),
+                       [](const EvaluatedRun& run) { return run.evaluation.has_value(); });
+}
+
+std::string block(const std::string& title, const std::string& legend, const std::string& figures) {
+    return "<div class=\"block\"><h3>" + title + "</h3>\n" + legend + figures + "</div>\n";
+}
+
+std::string trajectoryBlock(const SequenceResults& results, const Legend& legend) {
+    std::string figures;
+    bool any = false;
+    for (const Figure& figure : trajectoryFigures(results, legend)) {
+        figures += setFigure(figure);
+        any = any || !figure.svg.empty();
+    }
+    return block(isReferenced(results) ? "Trajectories, aligned with the ground truth"
+                                       : "Trajectories, each from its own first pose",
+                 any ? lineLegend(results, legend, true) : "",
+                 "<div class=\"pair\">\n" + figures + "</div>\n");
+}
+
+std::string errorBlock(const SequenceResults& results, const Legend& legend) {
+    if (!isReferenced(results)) return {};
+    const Figure figure = errorFigure(results, legend);
+    return block("Position error over time, after the alignment",
+                 figure.svg.empty() ? "" : lineLegend(results, legend, false), setFigure(figure));
+}
+
+std::string stageBlock(const SequenceResults& results, std::vector<std::string>& stages) {
+    const Figure figure = stageFigure(results, stages);
+    return block("Mean time per tracked frame by stage", figure.svg.empty() ? "" : stageLegend(figure),
+                 setFigure(figure));
+}
+
 }  // namespace
 
 std::string allFigures(const SequenceResults& results, const std::string& id, const std::string& folder) {
@@ -69,12 +104,14 @@ std::string SequenceWriter::write(const SequenceResults& results, std::size_t nu
     const std::string id = "sequence" + std::to_string(number);
     std::string html = "<section class=\"sequence\" id=\"" + id + "\">\n<h2>" + breakable(sequence.name) +
                        "</h2>\n" + facts(sequence);
-    for (const std::string& what : {sequence.failure, sequence.ground_truth_fault, sequence.note})
-        if (!what.empty()) html += "<p class=\"remark\">" + htmlText(what) + "</p>\n";
-    for (const MethodRun& run : sequence.runs)
-        if (!run.warning.empty())
-            html += "<p class=\"remark\">" + htmlText(run.label + ": " + run.warning) + "</p>\n";
-    if (sequence.runs.empty()) return html + "</section>\n";
+    if (!sequence.notes.empty()) {
+        html += "<ul class=\"lines facts\">\n";
+        for (const std::string& note : sequence.notes) html += element("li", note) + "\n";
+        html += "</ul>\n";
+    }
+    if (sequence.runs.empty())
+        return html +
+               "<p>Nothing could be run on it; the reason is at the top of this page.</p>\n</section>\n";
     if (with_table_) html += allFigures(results, id + "_figures", folder_);
     html += plots(results);
     html += setTable(stageTable(results), id + "_stages");
@@ -83,40 +120,14 @@ std::string SequenceWriter::write(const SequenceResults& results, std::size_t nu
 
 std::string SequenceWriter::plots(const SequenceResults& results) {
     if (!plot_fault_.empty()) return {};
-    const auto drawn = [&](const std::function<std::string()>& draw) -> std::string {
-        if (!plot_fault_.empty()) return {};
-        try {
-            const std::string html = draw();
-            any_plot_ = true;
-            return html;
-        } catch (const std::runtime_error& e) {
-            if (any_plot_) return "<p class=\"remark\">No plot: " + htmlText(e.what()) + "</p>\n";
-            plot_fault_ =
-                e.what();  // not even the first: gnuplot is missing, so the others need not be tried
-            return {};
-        }
-    };
-    const bool referenced = std::any_of(results.evaluated.begin(), results.evaluated.end(),
-                                        [](const EvaluatedRun& run) { return run.evaluation.has_value(); });
-    std::string html = drawn([&] {
-        std::string part =
-            "<div class=\"block\"><h3>Trajectories" +
-            std::string(referenced ? ", aligned with the ground truth" : ", each from its own first pose") +
-            "</h3>\n" + lineLegend(results, legend_, true) + "<div class=\"pair\">\n";
-        for (const Figure& figure : trajectoryFigures(results, legend_)) part += setFigure(figure);
-        return part + "</div>\n</div>\n";
-    });
-    if (referenced)
-        html += drawn([&] {
-            return "<div class=\"block\"><h3>Position error over time, after the alignment</h3>\n" +
-                   lineLegend(results, legend_, false) + setFigure(errorFigure(results, legend_)) +
-                   "</div>\n";
-        });
-    return html + drawn([&] {
-               const Figure figure = stageFigure(results, stages_);
-               return "<div class=\"block\"><h3>Mean time per tracked frame by stage</h3>\n" +
-                      (figure.svg.empty() ? "" : stageLegend(figure)) + setFigure(figure) + "</div>\n";
-           });
+    try {
+        std::string html = trajectoryBlock(results, legend_);
+        html += errorBlock(results, legend_);
+        return html + stageBlock(results, stages_);
+    } catch (const NoGnuplot& e) {
+        plot_fault_ = e.what();  // the others need not be tried
+        return {};
+    }
 }
 
 std::string SequenceWriter::maps(const SequenceResults& results) const {

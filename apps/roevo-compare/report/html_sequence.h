@@ -16,6 +16,7 @@ class SequenceWriter {
     /// @param with_table  of all figures; not when the summary shows it already
     SequenceWriter(const Legend& legend, std::string folder, bool with_table);
 
+    /// @throws Interrupted after a signal
     std::string write(const SequenceResults& results, std::size_t number);
 
     /// Why there are no plots at all, e.g. that gnuplot is missing; empty when there are.
@@ -29,7 +30,6 @@ class SequenceWriter {
     std::string folder_;
     bool with_table_;
     std::vector<std::string> stages_;  // in the order of their colours
-    bool any_plot_ = false;
     std::string plot_fault_;
 };
 

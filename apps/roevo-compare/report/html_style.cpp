@@ -31,7 +31,7 @@ table { border-collapse: collapse; border-top: 2px solid var(--ink); border-bott
 thead th { border-bottom: 1px solid var(--ink); vertical-align: bottom; font-weight: 600; line-height: 1.3; }
 th, td { padding: 4px 16px 4px 8px; text-align: right; }
 th[scope=col] { min-width: 72px; max-width: 190px; }
-th:first-child { text-align: left; min-width: 150px; max-width: 260px; position: sticky; left: 0; background: #fff;
+th:first-child { text-align: left; min-width: 170px; max-width: 260px; position: sticky; left: 0; background: #fff;
   z-index: 1; }
 th[scope=colgroup] { text-align: center; border-bottom: 1px solid var(--rule); padding-bottom: 2px; }
 table.dense { font-size: 13px; }
@@ -65,9 +65,20 @@ figcaption { font-size: 13px; color: var(--muted); margin: 2px 0 0; overflow-wra
 .methods dt { font-weight: 600; display: flex; align-items: center; gap: 9px; margin-top: 10px; }
 .methods dd { margin: 0 0 0 39px; max-width: 90ch; }
 ul.lines { padding-left: 20px; max-width: 90ch; }
+ul.facts { font-size: 13.5px; line-height: 1.4; margin: 8px 0 14px; }
 ul.lines li { margin: 3px 0; }
+@media (min-width: 1100px), print {
+  .few { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 36px; }
+  .few table { font-size: 13px; }
+  .few th, .few td { padding: 4px 12px 4px 5px; }
+  .few th:first-child { min-width: 130px; }
+}
 @media (max-width: 900px) {
   body { padding: 22px 18px 48px; }
+  table.dense { font-size: 12px; }
+  .dense th, .dense td { padding: 3px 6px 3px 3px; }
+  .dense th[scope=col] { min-width: 40px; }
+  .dense th:first-child { min-width: 110px; }
 }
 @media (max-width: 560px) { .pair, .maps { grid-template-columns: minmax(0, 1fr); } }
 @page { size: A4; margin: 14mm 13mm; }
@@ -82,8 +93,8 @@ ul.lines li { margin: 3px 0; }
   a { color: inherit; text-decoration: none; }
   .sequence { break-before: page; }
   .scroll { overflow: visible; }
-  table { font-size: 7.6pt; width: 100%; }
-  th, td { padding: 2pt 9pt 2pt 3pt; }
+  table, table.dense, .few table { font-size: 7.6pt; width: 100%; }
+  th, td, .dense th, .dense td, .few th, .few td { padding: 2pt 9pt 2pt 3pt; }
   th[scope=col] { min-width: 0; }
   th:first-child { position: static; min-width: 32mm; }
   thead { display: table-header-group; }

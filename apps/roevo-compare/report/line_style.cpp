@@ -14,7 +14,7 @@ constexpr std::array<const char*, 6> kForeign{"#D55E00", "#009E73", "#CC79A7",
                                               "#E69F00", "#5B5B5B", "#7A4B16"};
 constexpr std::array<const char*, 3> kForeignDashes{"", "7,3", "2,3"};
 
-// The last mode is the fullest and gets the first style.
+// From the fullest mode on.
 const std::array<LineStyle, 4> kOurs{LineStyle{"#0072B2", 3.2, ""}, LineStyle{"#56B4E9", 2.4, ""},
                                      LineStyle{"#0072B2", 1.8, "5,3"}, LineStyle{"#56B4E9", 1.8, "2,3"}};
 
@@ -22,9 +22,14 @@ const std::array<LineStyle, 4> kOurs{LineStyle{"#0072B2", 3.2, ""}, LineStyle{"#
 
 std::vector<LineStyle> lineStyles(const std::vector<TableMethod>& methods) {
     std::vector<LineStyle> styles(methods.size());
-    std::size_t ours = 0, foreign = 0;
-    for (std::size_t i = methods.size(); i-- > 0;)
-        if (isOurs(methods[i].name)) styles[i] = kOurs[std::min(ours++, kOurs.size() - 1)];
+    std::vector<std::size_t> ours;
+    for (std::size_t i = 0; i < methods.size(); ++i)
+        if (isOurs(methods[i].name)) ours.push_back(i);
+    std::stable_sort(ours.begin(), ours.end(), [&](std::size_t a, std::size_t b) {
+        return fullnessOf(methods[a].name) > fullnessOf(methods[b].name);
+    });
+    for (std::size_t k = 0; k < ours.size(); ++k) styles[ours[k]] = kOurs[std::min(k, kOurs.size() - 1)];
+    std::size_t foreign = 0;
     for (std::size_t i = 0; i < methods.size(); ++i)
         if (!isOurs(methods[i].name)) {
             const std::size_t round = std::min(foreign / kForeign.size(), kForeignDashes.size() - 1);

@@ -3,6 +3,7 @@
 #include "roevo-compare/report/documents.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/remarks.h"
 #include "roevo-compare/report/tables.h"
 #include "support/text.h"
 
@@ -56,6 +57,14 @@ std::string code(const std::string& text) {
     return "    " + cleanText(text) + "\n";
 }
 
+std::string recordings(const std::vector<SequenceResults>& results) {
+    std::string text;
+    for (const SequenceResults& result : results)
+        for (const std::string& note : result.sequence->notes)
+            text += "- " + markdownText(result.sequence->name + ": " + note) + "\n";
+    return text.empty() ? text : "\n## Recordings\n\n" + text;
+}
+
 }  // namespace
 
 std::string markdownTables(const std::vector<SequenceResults>& results, const ComparisonInfo& info) {
@@ -63,8 +72,9 @@ std::string markdownTables(const std::vector<SequenceResults>& results, const Co
     Footnotes notes;
     std::string text = "# Comparison of RGB-D odometries\n\n" + markdownText(verdict(results)) +
                        " The best figures are bold.\n\n";
-    for (const std::string& remark : remarks(results)) text += "- " + markdownText(remark) + "\n";
-    if (!remarks(results).empty()) text += "\n";
+    const auto important = remarks(results);
+    for (const std::string& remark : important) text += "- " + markdownText(remark) + "\n";
+    if (!important.empty()) text += "\n";
     text += "## Figures\n\n";
     for (const Metric& metric : shownMetrics())
         text += setTable(figureTable(metric, results, methods), notes);
@@ -75,7 +85,9 @@ std::string markdownTables(const std::vector<SequenceResults>& results, const Co
         table.title = result.sequence->name + ": " + table.title;
         text += setTable(table, notes);
     }
-    text += "## Ranking\n\nNumber of sequences on which a method is among the first 1, 2, 3.\n\n";
+    text +=
+        "## Ranking\n\nNumber of sequences, as they were run here, on which a method is among the first 1, "
+        "2, 3.\n\n";
     const auto one = oneRoevo(methods);
     if (one.size() != methods.size())
         text += "As in the paper, one ROEVO (the last mode of these tables) against the others:\n\n" +
@@ -85,8 +97,8 @@ std::string markdownTables(const std::vector<SequenceResults>& results, const Co
     text += notes.list() + "## Methods\n\n";
     for (const TableMethod& method : methods)
         text += "- **" + markdownText(method.label) + "**: " + markdownText(method.note) + "\n";
-    text += "\n## Protocol\n\n";
-    for (const std::string& line : protocolLines()) text += "- " + line + "\n";
+    text += recordings(results) + "\n## Protocol\n\n";
+    for (const std::string& line : protocolLines(allPinned(results))) text += "- " + line + "\n";
     for (const std::string& note : info.notes) text += "- " + markdownText(note) + "\n";
     text += "\n## Repeating it\n\n" + code(info.command) + "\n- Date: " + markdownText(info.date) +
             "\n- Machine: " + markdownText(info.machine) + "\n";

@@ -1,40 +1,22 @@
 #include "roevo-compare/report/plots.h"
 
 #include <atomic>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <regex>
-#include <sstream>
 #include <stdexcept>
 
-#include "roevo-compare/report/scratch_folder.h"
 #include "support/gnuplot.h"
+#include "support/interrupt.h"
 #include "support/text.h"
 
 namespace roevo {
+namespace {
 
-std::size_t Legend::indexOf(const std::string& method) const {
-    for (std::size_t i = 0; i < methods.size(); ++i)
-        if (methods[i].name == method) return i;
-    throw std::out_of_range("no method " + method);
-}
-
-std::string drawInline(const std::string& script, int width, int height) {
-    const ScratchFolder scratch;
-    const std::string path = scratch.file("plot.svg");
-    try {
-        drawSvg(path, script, width, height);
-    } catch (const std::runtime_error& e) {
-        // The reader knows nothing of our scratch file.
-        throw std::runtime_error(replaceAll(e.what(), "cannot draw " + path + ": ", ""));
-    }
-    std::string svg = readWhole(path);
+// An <svg> element for a page that holds many, from gnuplot's document.
+std::string inlined(const std::string& svg, int width, int height) {
     const std::size_t begin = svg.find("<svg"), end = svg.find('>', begin);
     if (begin == std::string::npos || end == std::string::npos)
         throw std::runtime_error("gnuplot drew nothing");
-
-    // A page holds many drawings, and gnuplot calls its parts the same in each.
+    // gnuplot calls its parts the same in each drawing
     static std::atomic<unsigned> drawings{0};
     const std::string own = "p" + std::to_string(drawings++) + "_";
     std::string body = svg.substr(end + 1);
@@ -44,6 +26,27 @@ std::string drawInline(const std::string& script, int width, int height) {
     body = std::regex_replace(body, std::regex("<title>[^<]*</title>|<desc>[^<]*</desc>"), "");
     return "<svg class=\"plot\" viewBox=\"0 0 " + std::to_string(width) + " " + std::to_string(height) +
            "\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">" + body;
+}
+
+}  // namespace
+
+std::size_t Legend::indexOf(const std::string& method) const {
+    for (std::size_t i = 0; i < methods.size(); ++i)
+        if (methods[i].name == method) return i;
+    throw std::out_of_range("no method " + method);
+}
+
+Figure drawFigure(const std::string& script, int width, int height, const std::string& name,
+                  const std::string& note) {
+    try {
+        return {inlined(drawSvgText(script, width, height), width, height), name, note};
+    } catch (const Interrupted&) {
+        throw;
+    } catch (const NoGnuplot&) {
+        throw;
+    } catch (const std::runtime_error& e) {
+        return {"", name, "No plot (" + name + "): " + e.what()};
+    }
 }
 
 std::vector<StampedPose> aligned(const std::vector<StampedPose>& trajectory, const Evaluation& evaluation) {

@@ -26,19 +26,21 @@ struct Legend {
 
 /// Trajectories from above and from the side, aligned with the ground truth; without one each from its own
 /// first pose. Up is the axis of the world nearest to the mean of the cameras' up. @return two figures, or
-/// one that says why there is none. @throws std::runtime_error when gnuplot cannot draw
+/// one that says why there is none. @throws as drawFigure()
 std::vector<Figure> trajectoryFigures(const SequenceResults& results, const Legend& legend);
 
-/// Distance of the aligned camera centres from the ground truth over time. @throws std::runtime_error
+/// Distance of the aligned camera centres from the ground truth over time. @throws as drawFigure()
 Figure errorFigure(const SequenceResults& results, const Legend& legend);
 
 /// Mean time per frame of each run as a bar of its stages. @param stages  names in the order of stageRgb();
-/// new ones are added, so that a stage has one colour in all plots. @throws std::runtime_error
+/// new ones are added, so that a stage has one colour in all plots. @throws as drawFigure()
 Figure stageFigure(const SequenceResults& results, std::vector<std::string>& stages);
 
-/// Draws with gnuplot, see support/gnuplot.h. @return an <svg> element whose names are its own, as wide as
-/// its place. @throws std::runtime_error in one line
-std::string drawInline(const std::string& script, int width, int height);
+/// Draws with gnuplot, see support/gnuplot.h: an <svg> element whose names are its own, as wide as its place.
+/// Where gnuplot cannot draw just this, there is no drawing and the note says why.
+/// @throws NoGnuplot; Interrupted
+Figure drawFigure(const std::string& script, int width, int height, const std::string& name,
+                  const std::string& note);
 
 /// Poses brought into the ground truth's world.
 std::vector<StampedPose> aligned(const std::vector<StampedPose>& trajectory, const Evaluation& evaluation);

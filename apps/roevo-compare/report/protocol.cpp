@@ -2,17 +2,23 @@
 
 namespace roevo {
 
-const std::vector<std::string>& protocolLines() {
-    static const std::vector<std::string> lines{
+namespace {
+
+std::string coreText(bool pinned) {
+    return pinned ? "One processor core for each run." : "Not pinned: not every run was bound to one core.";
+}
+
+}  // namespace
+
+std::vector<std::string> protocolLines(bool pinned) {
+    return {
         "Association: each pose with the ground truth pose of the nearest time stamp, at most 0.02 s apart, "
-        "one "
-        "to one, the closest pair first. The time of a frame is that of its colour image.",
+        "one to one, the closest pair first. The time of a frame is that of its colour image.",
         "ATE: distances between camera centres after an SE(3) alignment without scale (Umeyama) over all "
         "associated poses; RMSE in cm.",
         "RPE over 1 s: error of the relative motion from each pose to the one nearest to 1 s later (within "
         "0.1 s); RMSE in cm/s and deg/s. RPE per frame: the same to the next pose, in cm and deg. Neither "
-        "needs "
-        "an alignment.",
+        "needs an alignment.",
         "Same frames for every method, in the same order, as the lens saw them, depth registered to "
         "colour. Frames that cannot be read are given to none and do not count. All use depth within the "
         "same limits; options of the sensor and of the motion model hold for all that know them.",
@@ -20,14 +26,13 @@ const std::vector<std::string>& protocolLines() {
         "poses that a method gave, those that it predicted where it had lost track, too. Below 90 % it ranks "
         "behind all that tracked more, and its errors are marked.",
         "One configuration for all sequences; no option is tuned to a sequence.",
-        "One processor core for each run. Times per frame are over tracked frames, without reading and "
-        "decoding; "
-        "memory is the largest resident memory of the run's process.",
+        coreText(pinned) +
+            " Times per frame are over tracked frames, without reading and decoding; memory is the largest "
+            "resident memory of the run's process.",
         "Rank: by RMSE, 1 is best; equal errors share the better rank. A method without a result counts as "
-        "last "
-        "in the mean rank; one that could not be run on this machine is not ranked.",
+        "last in the mean rank; one that could not be run on this machine is not ranked. A sequence is what "
+        "was run of it here, be it the whole or a part.",
     };
-    return lines;
 }
 
 std::string errorProtocol() {
@@ -40,10 +45,10 @@ std::string shareProtocol() {
     return "Share of the usable frames to which the method measured the motion; the same frames for all.";
 }
 
-std::string costProtocol() {
-    return "One core, reading and decoding apart; times over tracked frames; same frames and one "
-           "configuration "
-           "for all.";
+std::string costProtocol(bool pinned) {
+    return std::string(pinned ? "One core" : "Not pinned to one core") +
+           ", reading and decoding apart; times over tracked frames; same frames and one configuration for "
+           "all.";
 }
 
 }  // namespace roevo

@@ -5,7 +5,8 @@
 namespace roevo {
 
 /// The evaluation protocol, a sentence each, as it goes with every document.
-const std::vector<std::string>& protocolLines();
+/// @param pinned  each run was bound to one core, see allPinned()
+std::vector<std::string> protocolLines(bool pinned);
 
 /// What a single table of errors must say of it.
 std::string errorProtocol();
@@ -14,6 +15,6 @@ std::string errorProtocol();
 std::string shareProtocol();
 
 /// What a single table of times and memory must say of it.
-std::string costProtocol();
+std::string costProtocol(bool pinned);
 
 }  // namespace roevo

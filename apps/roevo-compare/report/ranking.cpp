@@ -57,15 +57,19 @@ bool isOurs(const std::string& method) {
     return method.rfind("roevo", 0) == 0;
 }
 
+int fullnessOf(const std::string& method) {
+    static const std::vector<std::string> modes{"roevo-ct", "roevo-tr", "roevo-ba"};
+    const auto at = std::find(modes.begin(), modes.end(), method);
+    return at == modes.end() ? 0 : 1 + static_cast<int>(at - modes.begin());
+}
+
 std::vector<TableMethod> oneRoevo(const std::vector<TableMethod>& methods) {
-    std::string fullest;
-    for (const char* mode : {"roevo-ct", "roevo-tr", "roevo-ba"})
-        if (std::any_of(methods.begin(), methods.end(),
-                        [&](const TableMethod& method) { return method.name == mode; }))
-            fullest = mode;
+    int fullest = 0;
+    for (const TableMethod& method : methods) fullest = std::max(fullest, fullnessOf(method.name));
     std::vector<TableMethod> chosen;
     for (const TableMethod& method : methods)
-        if (!isOurs(method.name) || method.name == fullest) chosen.push_back(method);
+        if (!isOurs(method.name) || (fullest > 0 && fullnessOf(method.name) == fullest))
+            chosen.push_back(method);
     return chosen;
 }
 

@@ -33,6 +33,9 @@ std::vector<RankRow> rankTable(const Metric& metric, const std::vector<SequenceR
 /// not several such modes.
 std::vector<TableMethod> oneRoevo(const std::vector<TableMethod>& methods);
 
+/// Of ROEVO's modes: 1 for the least, more for the fuller ones. 0 for other methods and unknown modes.
+int fullnessOf(const std::string& method);
+
 /// Whether a method is one of ROEVO's own modes.
 bool isOurs(const std::string& method);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 
+#include "evaluation/scale_check.h"
 #include "support/program.h"
 
 namespace roevo {
@@ -39,10 +40,12 @@ EvaluatedRun evaluateRun(const SequenceComparison& sequence, const MethodRun& ru
     }
     try {
         const Evaluation evaluation = evaluate(sequence.reference, run.trajectory);
-        if (allFinite(evaluation))
+        if (allFinite(evaluation)) {
             result.evaluation = evaluation;
-        else
+            result.scale_warning = scaleContradiction(sequence.reference, run.trajectory, evaluation.pairs);
+        } else {
             result.fault = "its errors are too large to be computed";
+        }
     } catch (const std::exception& e) {
         result.fault = firstLine(e.what());
     }
@@ -105,6 +108,14 @@ std::optional<std::size_t> findRun(const SequenceComparison& sequence, const std
 bool allFinite(const std::vector<StampedPose>& trajectory) {
     return std::all_of(trajectory.begin(), trajectory.end(), [](const StampedPose& pose) {
         return std::isfinite(pose.timestamp) && pose.T_world_camera.matrix().allFinite();
+    });
+}
+
+bool allPinned(const std::vector<SequenceResults>& results) {
+    return std::all_of(results.begin(), results.end(), [](const SequenceResults& result) {
+        const auto& runs = result.sequence->runs;
+        return std::all_of(runs.begin(), runs.end(),
+                           [](const MethodRun& run) { return run.not_pinned.empty(); });
     });
 }
 

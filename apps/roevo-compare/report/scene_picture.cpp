@@ -1,11 +1,10 @@
 #include "roevo-compare/report/scene_picture.h"
 
-#include <chrono>
 #include <filesystem>
 #include <stdexcept>
-#include <thread>
 
 #include "roevo-compare/report/scratch_folder.h"
+#include "support/interrupt.h"
 #include "support/process.h"
 #include "support/text.h"
 
@@ -24,12 +23,12 @@ std::string draw(const std::string& renderer, const std::string& scene, const st
     ChildProcess process(
         {renderer, "--scene", scene, "--output", picture, "--size", kSize, "--view", "iso", "--layer", layer},
         -1, kTimeout);
-    while (process.update()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    if (process.end().timed_out) throw std::runtime_error(std::string(kRenderer) + " did not come to an end");
-    if (process.end().signal != 0)
+    const ProcessEnd& end = process.finish();
+    if (end.timed_out) throw std::runtime_error(std::string(kRenderer) + " did not come to an end");
+    if (end.signal != 0)
         throw std::runtime_error(std::string(kRenderer) + " was ended by signal " +
-                                 std::to_string(process.end().signal));
-    if (!process.end().ok()) throw std::runtime_error(process.lastError());
+                                 std::to_string(end.signal));
+    if (!end.ok()) throw std::runtime_error(process.lastError());
     const std::string png = readWhole(picture);
     if (png.empty()) throw std::runtime_error(std::string(kRenderer) + " drew nothing");
     return png;
@@ -46,6 +45,8 @@ ScenePicture renderScene(const std::string& scene, const std::string& layer) {
         if (!fs::exists(scene, error))
             return {"", "the scene " + fs::path(scene).filename().string() + " is missing"};
         return {draw(renderer.string(), scene, layer), ""};
+    } catch (const Interrupted&) {
+        throw;
     } catch (const std::exception& e) {
         return {"", cleanText(e.what())};
     }

@@ -11,6 +11,7 @@ struct ScenePicture {
 
 /// Has `roevo-render`, which lies beside the running program, draw a layer of a .3Dscene. Never throws for
 /// what is wrong with the scene or the renderer: `fault` says it.
+/// @throws Interrupted after a signal (needs an InterruptGuard)
 ScenePicture renderScene(const std::string& scene, const std::string& layer);
 
 /// RFC 4648, with padding.

@@ -9,10 +9,13 @@
 namespace roevo {
 namespace {
 
-constexpr int kWidth = 1120, kBarHeight = 30, kBesideHeight = 66;  // px
-constexpr std::size_t kLongestLabel = 42;                          // characters
-constexpr double kMarginByCharacter = 0.75;                        // gnuplot counts in widths of a wide one
+constexpr int kWidth = 960, kBarHeight = 30, kBesideHeight = 56;  // px
+constexpr std::size_t kLongestLabel = 42;                         // characters
+constexpr double kMarginByCharacter = 0.75;                       // gnuplot counts in widths of a wide one
+constexpr double kPixelsByCharacter = 6.7;                        // of a label, on the whole
+constexpr double kPixelsOfMargin = 8.4;                           // of a character of a margin
 constexpr double kClipAt = 5;  // times the median bar: what is longer is cut off, so that others stay legible
+constexpr double kMarksAt = 2;       // times the longest bar: marks that lie further out are cut off, too
 constexpr double kLeastRest = 0.02;  // share of the total that is worth a piece of the bar
 
 struct Bar {
@@ -52,70 +55,115 @@ std::vector<Bar> barsOf(const SequenceComparison& sequence, std::vector<std::str
     return bars;
 }
 
-std::string barLabel(const Bar& bar) {
-    return shownNumber(bar.total.mean, bar.total.mean < 10 ? 2 : 1) + " ms";
+std::string timeText(double ms) {
+    return shownNumber(ms, ms < 10 ? 2 : 1);
 }
 
-}  // namespace
+// What a bar's label says. Where something lies beyond the right edge the label stands there, on what is
+// drawn of the bar, and names every figure.
+struct BarLabel {
+    std::string text;
+    bool beyond = false;
+};
 
-Figure stageFigure(const SequenceResults& results, std::vector<std::string>& stages) {
-    const std::vector<Bar> bars = barsOf(*results.sequence, stages);
-    if (bars.empty()) return {"", "", "No run has times that could be drawn."};
+BarLabel labelOf(const Bar& bar, double end) {
+    const auto isBeyond = [&](double ms) { return isTime(ms) && ms > end; };
+    const auto text = [&](double ms) { return timeText(ms) + (isBeyond(ms) ? " ▶" : ""); };
+    BarLabel label{"mean " + timeText(bar.total.mean) + " ms",
+                   isBeyond(bar.total.mean) || isBeyond(bar.total.p95) || isBeyond(bar.processor)};
+    if (!label.beyond) return label;
+    label.text = "mean " + text(bar.total.mean);
+    if (isTime(bar.total.p95)) label.text += ", 95th percentile " + text(bar.total.p95);
+    if (isTime(bar.processor)) label.text += ", processor " + text(bar.processor);
+    return label;
+}
 
+// Right edge of the picture: all bars and marks, but for what is so far out that it would squash the others.
+double rightEdge(const std::vector<Bar>& bars) {
     std::vector<double> totals;
     for (const Bar& bar : bars) totals.push_back(bar.total.mean);
-    const double limit = kClipAt * percentile(totals, 0.5);
-    double longest = 0;
+    double longest = percentile(totals, 0);
+    const auto include = [&](double ms, double limit) {
+        if (isTime(ms) && ms <= limit) longest = std::max(longest, ms);
+    };
+    for (const double total : totals) include(total, kClipAt * percentile(totals, 0.5));
+    const double limit = kMarksAt * longest;
     for (const Bar& bar : bars)
-        for (const double ms : {bar.total.mean, bar.total.p95, bar.processor})
-            if (isTime(ms) && ms <= limit) longest = std::max(longest, ms);
-    const double end = 1.12 * std::max(longest, percentile(totals, 0));
+        for (const double ms : {bar.total.p95, bar.processor}) include(ms, limit);
+    return 1.16 * longest;
+}
 
-    std::size_t longest_label = 0;
-    for (const Bar& bar : bars) longest_label = std::max(longest_label, countCharacters(bar.label));
-    std::string script = "unset key\nset lmargin " +
-                         exactNumber(kMarginByCharacter * static_cast<double>(longest_label) + 2) +
-                         "\nset rmargin 3\nset tmargin 0.5\nset bmargin 3.2\nset border 1\n"
-                         "set xlabel 'time per frame [ms]'\nset grid noytics xtics\nset ytics scale 0\n";
-    script += "set xrange [0:" + exactNumber(end) + "]\nset yrange [" +
-              exactNumber(static_cast<double>(bars.size()) - 0.35) + ":-0.6]\nset ytics (";
+// In gnuplot's characters.
+double leftMargin(const std::vector<Bar>& bars) {
+    std::size_t longest = 0;
+    for (const Bar& bar : bars) longest = std::max(longest, countCharacters(bar.label));
+    return kMarginByCharacter * static_cast<double>(longest) + 2;
+}
+
+// Up to where a bar is drawn: one that goes on beyond the edge makes room for its label there.
+double drawnEnd(const Bar& bar, double end, double left_margin) {
+    if (bar.total.mean <= end) return end;
+    const double text = kPixelsByCharacter * static_cast<double>(countCharacters(labelOf(bar, end).text) + 1);
+    return end * std::max(0.1, 1 - text / (kWidth - kPixelsOfMargin * (left_margin + 3)));
+}
+
+std::string axes(const std::vector<Bar>& bars, double end) {
+    std::string tics;
+    for (std::size_t i = 0; i < bars.size(); ++i)
+        tics += (i == 0 ? "" : ", ") + gnuplotText(bars[i].label) + " " + std::to_string(i);
+    return "unset key\nset lmargin " + exactNumber(leftMargin(bars)) +
+           "\nset rmargin 3\nset tmargin 0.5\nset bmargin 2.6\nset border 1\n"
+           "set xlabel 'time per frame [ms]' offset 0,0.4\nset grid noytics xtics\nset ytics scale 0\n"
+           "set xrange [0:" +
+           exactNumber(end) + "]\nset yrange [" + exactNumber(static_cast<double>(bars.size()) - 0.35) +
+           ":-0.6]\nset ytics (" + tics + ")\n";
+}
+
+// The label stands behind all that is drawn of the bar, or at the edge where something lies beyond it.
+std::string labelScript(const Bar& bar, std::size_t row, double end) {
+    const BarLabel label = labelOf(bar, end);
+    double behind = std::min(bar.total.mean, end);
+    for (const double ms : {bar.total.p95, bar.processor})
+        if (isTime(ms) && ms <= end) behind = std::max(behind, ms);
+    return "set label " + gnuplotText(label.text) + " at " +
+           (label.beyond ? "graph 1, first " : "first " + exactNumber(behind) + ",") + std::to_string(row) +
+           (label.beyond ? " right front" : " left offset 0.7,0 front") + " textcolor rgb '#222222'\n";
+}
+
+std::string plotScript(const std::vector<Bar>& bars, double end) {
     std::vector<std::vector<double>> rectangles, ticks, processor;
-    std::string labels, cut;
+    std::string labels;
     for (std::size_t i = 0; i < bars.size(); ++i) {
         const Bar& bar = bars[i];
         const double y = static_cast<double>(i);
-        script += (i == 0 ? "" : ", ") + gnuplotText(bar.label) + " " + std::to_string(i);
+        const double last = drawnEnd(bar, end, leftMargin(bars));
         double x = 0;
         for (const auto& [stage, ms] : bar.pieces) {
-            if (x < end)
-                rectangles.push_back(
-                    {x, y, x, std::min(x + ms, end), y - 0.3, y + 0.3, static_cast<double>(stageRgb(stage))});
+            if (x < last)
+                rectangles.push_back({x, y, x, std::min(x + ms, last), y - 0.3, y + 0.3,
+                                      static_cast<double>(stageRgb(stage))});
             x += ms;
         }
-        if (isTime(bar.total.p95) && bar.total.p95 <= end)
+        if (isTime(bar.total.p95) && bar.total.p95 <= last)
             ticks.push_back({bar.total.p95, y - 0.38, 0, 0.76});
-        if (isTime(bar.processor) && bar.processor <= end) processor.push_back({bar.processor, y});
-        const bool clipped = bar.total.mean > end;
-        // The label stands behind all that is drawn of the bar
-        double behind = std::min(bar.total.mean, end);
-        for (const double ms : {bar.total.p95, bar.processor})
-            if (isTime(ms) && ms <= end) behind = std::max(behind, ms);
-        labels += "set label " + gnuplotText(barLabel(bar) + (clipped ? " ▶" : "")) + " at " +
-                  (clipped ? "graph 0.995, first " : "first " + exactNumber(behind) + ",") +
-                  std::to_string(i) + (clipped ? " right front" : " left offset 0.7,0 front") +
-                  " textcolor rgb '#222222'\n";
-        if (clipped) cut += (cut.empty() ? "" : ", ") + bar.label;
+        if (isTime(bar.processor) && bar.processor <= last) processor.push_back({bar.processor, y});
+        labels += labelScript(bar, i, end);
     }
-    script += ")\n" + labels + gnuplotData("bars", rectangles);
+    std::string data = gnuplotData("bars", rectangles);
     std::string plot = "plot $bars using 1:2:3:4:5:6:7 with boxxyerror fc rgb variable fs solid 1 noborder";
     if (!ticks.empty()) {
-        script += gnuplotData("ticks", ticks);
+        data += gnuplotData("ticks", ticks);
         plot += ", $ticks using 1:2:3:4 with vectors nohead lc rgb '#222222' lw 1.6 dt 1";
     }
     if (!processor.empty()) {
-        script += gnuplotData("processor", processor);
+        data += gnuplotData("processor", processor);
         plot += ", $processor using 1:2 with points pt 13 ps 0.9 lc rgb '#222222'";
     }
+    return labels + data + plot + "\n";
+}
+
+std::vector<std::pair<std::string, unsigned>> fillsOf(const std::vector<Bar>& bars,
+                                                      const std::vector<std::string>& stages) {
     std::vector<std::pair<std::string, unsigned>> fills;
     const auto used = [&](std::size_t stage) {
         return std::any_of(bars.begin(), bars.end(), [&](const Bar& bar) {
@@ -126,10 +174,25 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
     for (std::size_t k = 0; k < stages.size(); ++k)
         if (used(k)) fills.emplace_back(stages[k], stageRgb(k));
     if (used(kNoStage)) fills.emplace_back("in no stage", stageRgb(kNoStage));
+    return fills;
+}
+
+}  // namespace
+
+Figure stageFigure(const SequenceResults& results, std::vector<std::string>& stages) {
+    const std::vector<Bar> bars = barsOf(*results.sequence, stages);
+    if (bars.empty()) return {"", "", "No run has times that could be drawn."};
+    const double end = rightEdge(bars);
+    const bool beyond =
+        std::any_of(bars.begin(), bars.end(), [&](const Bar& bar) { return labelOf(bar, end).beyond; });
     const int height = kBarHeight * static_cast<int>(bars.size()) + kBesideHeight;
-    return {drawInline(script + plot + "\n", kWidth, height),
-            results.sequence->name + ": time per frame by stage",
-            cut.empty() ? "" : "Bars cut off at the right: " + cut + ".", fills};
+    Figure figure = drawFigure(axes(bars, end) + plotScript(bars, end), kWidth, height,
+                               results.sequence->name + ": time per frame by stage",
+                               !beyond ? ""
+                                       : "A bar whose mean has a ▶ goes on beyond the right edge, as do the "
+                                         "marks of other figures with one.");
+    figure.fills = fillsOf(bars, stages);
+    return figure;
 }
 
 }  // namespace roevo

@@ -1,7 +1,6 @@
 #include "roevo-compare/report/tables.h"
 
 #include <algorithm>
-#include <set>
 
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
@@ -12,7 +11,6 @@ namespace {
 
 constexpr std::size_t kMaxSequenceColumns = 8;  // more do not fit a page beside each other
 constexpr std::size_t kRankedMetrics = 3;       // ATE, RPE over 1 s: the first ones
-constexpr char kDash[] = "–";
 
 std::string reasonOf(const Metric& metric, const SequenceResults& results, std::size_t index) {
     const MethodRun& run = results.sequence->runs[index];
@@ -104,8 +102,10 @@ std::string inUnit(const Metric& metric) {
     return metric.title + " [" + metric.unit + "]";
 }
 
-std::string protocolOf(const Metric& metric) {
-    return metric.is_error ? errorProtocol() : metric.is_share ? shareProtocol() : costProtocol();
+std::string protocolOf(const Metric& metric, const std::vector<SequenceResults>& results) {
+    return metric.is_error   ? errorProtocol()
+           : metric.is_share ? shareProtocol()
+                             : costProtocol(allPinned(results));
 }
 
 void addPaperRow(Table& table, const std::vector<SequenceResults>& results) {
@@ -116,7 +116,12 @@ void addPaperRow(Table& table, const std::vector<SequenceResults>& results) {
         row.cells.push_back({shownNumber(result.sequence->paper_ate_cm, 3), false, false, {}});
     row.cells.resize(table.columns.size());
     table.rows.push_back(row);
-    table.protocol += " The paper's figures are of whole sequences, by its own protocol.";
+    table.protocol += " The paper's figures are by its own protocol, of whole sequences";
+    for (const SequenceResults& result : results)
+        if (known(result) && !result.sequence->part.empty())
+            table.protocol +=
+                "; that of " + result.sequence->name + ", as ours, of its " + result.sequence->part;
+    table.protocol += ".";
 }
 
 // Appends the four columns of a rank table to the rows.
@@ -139,21 +144,11 @@ void addRanks(Table& table, const std::vector<RankRow>& rows) {
     }
 }
 
-// Why no run that went well has errors; nothing when one has.
-std::optional<std::string> commonFault(const SequenceResults& results) {
-    std::optional<std::string> fault;
-    for (std::size_t i = 0; i < results.evaluated.size(); ++i) {
-        if (results.evaluated[i].evaluation) return std::nullopt;
-        if (results.sequence->runs[i].ok() && !fault) fault = results.evaluated[i].fault;
-    }
-    return fault;
-}
-
 }  // namespace
 
 Table figureTable(const Metric& metric, const std::vector<SequenceResults>& results,
                   const std::vector<TableMethod>& methods) {
-    Table table{inUnit(metric), "Method", {}, {}, protocolOf(metric)};
+    Table table{inUnit(metric), "Method", {}, {}, protocolOf(metric, results)};
     std::vector<std::vector<bool>> best;
     for (const SequenceResults& result : results) {
         table.columns.push_back(result.sequence->name);
@@ -176,7 +171,7 @@ Table sequenceTable(const SequenceResults& results) {
                 "Method",
                 {},
                 {},
-                "Errors and times per frame. " + errorProtocol() + " " + costProtocol()};
+                "Errors and times per frame. " + errorProtocol() + " " + costProtocol(allPinned({results}))};
     for (const MethodRun& run : results.sequence->runs)
         table.rows.push_back({labelOf(run), isOurs(run.method), false, {}, {}});
     for (const Metric& metric : shownMetrics()) {
@@ -193,7 +188,7 @@ Table stageTable(const SequenceResults& results) {
                 "Method",
                 {"In all", "Decoding, apart", "By stage"},
                 {},
-                costProtocol(),
+                costProtocol(allPinned({results})),
                 true};
     const auto show = [](const StageStatistics& s) {
         return shownNumber(s.median, 2) + " / " + shownNumber(s.p95, 2);
@@ -236,31 +231,6 @@ Table rankingTable(const std::vector<SequenceResults>& results, const std::vecto
     return table;
 }
 
-std::vector<std::string> remarks(const std::vector<SequenceResults>& results) {
-    std::vector<std::string> sentences;
-    for (const SequenceResults& result : results) {
-        const SequenceComparison& sequence = *result.sequence;
-        const auto say = [&](const std::string& what) { sentences.push_back(sequence.name + ": " + what); };
-        if (!sequence.failure.empty()) {
-            say("nothing could be run on it: " + sequence.failure);
-            continue;
-        }
-        if (!sequence.ground_truth_fault.empty())
-            say("its ground truth could not be used: " + sequence.ground_truth_fault);
-        else if (sequence.reference.empty())
-            say("no ground truth, so no errors and no rank");
-        else if (const auto fault = commonFault(result))
-            say("no run could be compared with its ground truth: " + *fault);
-        std::set<std::size_t> counts;
-        for (const MethodRun& run : sequence.runs)
-            if (run.ok()) counts.insert(run.frames - std::min(run.rejected, run.frames));
-        if (counts.size() > 1)
-            say("the methods were given " + std::to_string(*counts.begin()) + " to " +
-                std::to_string(*counts.rbegin()) + " frames, so their figures are not of the same frames");
-    }
-    return sentences;
-}
-
 std::string verdict(const std::vector<SequenceResults>& results) {
     const Metric& ate = shownMetrics().front();
     const auto rows = rankTable(ate, results, tableMethods(results));
@@ -272,13 +242,15 @@ std::string verdict(const std::vector<SequenceResults>& results) {
         const auto ranks = rankRuns(ate, result, std::vector<bool>(result.evaluated.size(), true));
         ranked += std::any_of(ranks.begin(), ranks.end(), [](const auto& r) { return r.has_value(); });
     }
-    std::string best;
+    std::vector<std::string> best;
     for (const RankRow& row : rows)
-        if (row.top[0] == first->top[0]) best += (best.empty() ? "" : " and ") + row.method.label;
-    const bool tied = best != first->method.label;
-    return best + (tied ? " each have" : " has") + " the smallest ATE on " + std::to_string(first->top[0]) +
-           " of " + std::to_string(ranked) + " sequence" + (ranked == 1 ? "" : "s") +
-           " that could be ranked.";
+        if (row.top[0] == first->top[0]) best.push_back(row.method.label);
+    std::string names;
+    for (std::size_t i = 0; i < best.size(); ++i)
+        names += (i == 0 ? "" : i + 1 < best.size() ? ", " : " and ") + best[i];
+    return names + (best.size() > 1 ? " each have" : " has") + " the smallest ATE on " +
+           std::to_string(first->top[0]) + " of " + std::to_string(ranked) + " sequence" +
+           (ranked == 1 ? "" : "s") + " that could be ranked.";
 }
 
 }  // namespace roevo

@@ -7,6 +7,9 @@
 
 namespace roevo {
 
+/// Stands where there is no figure.
+constexpr char kDash[] = "–";
+
 struct TableCell {
     std::string text;
     bool best = false;
@@ -47,10 +50,6 @@ Table stageTable(const SequenceResults& results);
 
 /// The paper's rank table, see rankTable(), by ATE and by RPE over 1 s.
 Table rankingTable(const std::vector<SequenceResults>& results, const std::vector<TableMethod>& methods);
-
-/// What a reader must know before the figures, a sentence each: sequences that failed, ground truth that is
-/// missing, methods that were not given the same frames. Normally none.
-std::vector<std::string> remarks(const std::vector<SequenceResults>& results);
 
 /// What stands out, in a sentence: the method with the smallest ATE on most sequences.
 std::string verdict(const std::vector<SequenceResults>& results);

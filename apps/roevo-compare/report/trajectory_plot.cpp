@@ -10,8 +10,8 @@ namespace roevo {
 namespace {
 
 constexpr std::size_t kMaxPoints = 1500;               // of a line; more are not seen
-constexpr int kWidth = 560;                            // px
-constexpr int kBesideWidth = 90, kBesideHeight = 62;   // px that the axes' texts take
+constexpr int kWidth = 480;                            // px
+constexpr int kBesideWidth = 94, kBesideHeight = 76;   // px that the axes' texts take
 constexpr double kMargin = 0.12;                       // around the ground truth, as a share of its extent
 constexpr double kMinExtent = 0.02;                    // m: of a camera that stands
 constexpr double kMinAspect = 0.42, kMaxAspect = 0.8;  // height to width of a picture
@@ -88,8 +88,9 @@ std::string rangeText(const Range& range, bool flipped) {
 std::string scriptFor(const View& view, const Range& right, const Range& up, const std::vector<Line>& lines) {
     std::string script =
         "unset key\nset size ratio -1\nset border 15\nset lmargin 9\nset rmargin 2\nset tmargin "
-        "1\nset bmargin 3\nset xtics autofreq\n";
-    script += "set xlabel " + axisLabel(view.right) + "\nset ylabel " + axisLabel(view.up) + "\n";
+        "1\nset bmargin 2.5\nset xtics autofreq\n";
+    script +=
+        "set xlabel " + axisLabel(view.right) + " offset 0,0.4\nset ylabel " + axisLabel(view.up) + "\n";
     std::string plot;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const std::string block = "line" + std::to_string(i);
@@ -191,7 +192,7 @@ std::vector<Figure> trajectoryFigures(const SequenceResults& results, const Lege
         shown[static_cast<std::size_t>(view.right)].widenTo(right.extent());
         shown[static_cast<std::size_t>(view.up)].widenTo(up.extent());
         const std::string name = results.sequence->name + ": trajectories, " + view.name;
-        figures.push_back({drawInline(scriptFor(view, right, up, lines), kWidth, height), name, view.name});
+        figures.push_back(drawFigure(scriptFor(view, right, up, lines), kWidth, height, name, view.name));
     }
     const std::string leaving = leavingNames(lines, shown);
     if (!leaving.empty()) figures.back().note += ". Leaving the picture: " + leaving;

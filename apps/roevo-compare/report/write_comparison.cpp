@@ -10,9 +10,13 @@ void writeComparison(const std::string& folder, const std::vector<SequenceCompar
                      const ComparisonInfo& info) {
     const auto results = evaluateAll(sequences);
     const auto file = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
-    writeTextAtomically(file("table.csv"), csvTable(results));
-    writeTextAtomically(file("table.md"), markdownTables(results, info));
-    writeTextAtomically(file("report.html"), htmlReport(results, info, folder));
+    // All are made before the first is written, so that an interrupt does not leave two new ones and an old
+    // one
+    const std::string csv = csvTable(results), md = markdownTables(results, info),
+                      html = htmlReport(results, info, folder);
+    writeTextAtomically(file("table.csv"), csv);
+    writeTextAtomically(file("table.md"), md);
+    writeTextAtomically(file("report.html"), html);
 }
 
 }  // namespace roevo

@@ -26,9 +26,9 @@ struct FeatureFrame {
     OrganizedEdges edges;    ///< all of the image
     EdgePoints3D lifted;     ///< of them, those with depth
     EdgeGrid grid, lifted_grid;
-    Pose T_world_camera = Pose::Identity();  ///< the true one, by which associations are judged
-    Pose T_world_estimated =
-        Pose::Identity();  ///< the odometry's, by which edges are reprojected to associate them
+    Pose T_world_camera = Pose::Identity();    ///< the true one, by which associations are judged
+    Pose T_world_search = Pose::Identity();    ///< by which edges are reprojected to associate them
+    Pose T_world_odometry = Pose::Identity();  ///< as the odometry has it in the end
 };
 
 /// Makes them of the frames of one recording, in time order: thresholds of edges are smoothed over time.

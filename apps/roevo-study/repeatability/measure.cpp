@@ -37,50 +37,58 @@ struct Reference {
     EdgeLinks nearest, normals;  // chained to the edges of the last frame
 };
 
+/// The poses of one recording.
+struct Poses {
+    std::vector<StampedPose> odometry;
+    std::vector<StampedPose> judging;    ///< where features truly are
+    std::vector<StampedPose> searching;  ///< edges are reprojected at these to be associated
+    std::vector<double> keyframe_times;
+    std::size_t frames = 0;
+};
+
 class Measurement {
   public:
-    Measurement(const StudyInput& input, const ReferencePlan& plan)
+    Measurement(const StudyInput& input, const ReferencePlan& plan, const Poses& poses, std::string label)
         : input_(input),
           plan_(plan),
+          poses_(poses),
+          label_(std::move(label)),
           extractor_(input.camera, input.options),
           sets_(input.camera, input.options) {}
 
     Repeatability run() {
-        const StudyRun odometry = trackRecording(input_, input_.options);
-        const bool judged_by_truth = !input_.ground_truth.empty();
-        result_.judged_by = judged_by_truth ? "ground truth" : "roevo-ba";
-        const std::vector<StampedPose>& truth = judged_by_truth ? input_.ground_truth : ownTruth(odometry);
-        keyframe_times_ = odometry.keyframe_times;
-
-        Progress progress("repeatability of " + input_.name, odometry.frames);
+        Progress progress(label_, poses_.frames);
         const auto source = input_.open();
         std::size_t number = 0;
         for (SourceFrame frame; source->next(frame); ++number) {
             progress.update(number + 1);
-            const auto estimated = poseAt(odometry.trajectory, frame.timestamp, kLargestGap);
-            const auto real = poseAt(truth, frame.timestamp, kLargestGap);
-            if (!frame.fault.empty() || !estimated || !real) {
+            last_ = frame.timestamp;
+            if (number == 0) first_ = last_;
+            const auto odometry = poseAt(poses_.odometry, frame.timestamp, kLargestGap);
+            const auto judging = poseAt(poses_.judging, frame.timestamp, kLargestGap);
+            const auto searching = poseAt(poses_.searching, frame.timestamp, kLargestGap);
+            if (!frame.fault.empty() || !odometry || !judging || !searching) {
                 ++result_.left_out;
                 continue;
             }
             auto current = extractor_.extract(frame.frame, number);
-            current->T_world_camera = *real;
-            current->T_world_estimated = *estimated;
+            current->T_world_camera = *judging;
+            current->T_world_search = *searching;
+            current->T_world_odometry = *odometry;
             add(std::move(current));
         }
         progress.finish();
         if (result_.rows.empty())
-            throw std::runtime_error(input_.path + ": no two frames with poses and features to compare");
+            throw std::runtime_error(input_.path + ": no two frames with poses and features to compare" +
+                                     lackOfPoses());
         return std::move(result_);
     }
 
   private:
-    const std::vector<StampedPose>& ownTruth(const StudyRun& odometry) {
-        if (input_.options.mode == Mode::kBundleAdjustment) return odometry.trajectory;
-        OdometryOptions options = input_.options;
-        options.mode = Mode::kBundleAdjustment;
-        own_ = trackRecording(input_, options).trajectory;
-        return own_;
+    std::string lackOfPoses() const {
+        if (result_.references > 0 || poses_.judging.empty()) return "";
+        return format("; frames from %.3f to %.3f s, poses of the ground truth from %.3f to %.3f s", first_,
+                      last_, poses_.judging.front().timestamp, poses_.judging.back().timestamp);
     }
 
     void add(std::shared_ptr<FeatureFrame> current) {
@@ -141,12 +149,12 @@ class Measurement {
 
     double disagreement(const Reference& reference, const FeatureFrame& current,
                         const TrueView& judged) const {
-        const Pose T_estimated = current.T_world_estimated.inverse() * reference.frame->T_world_estimated;
+        const Pose T_odometry = current.T_world_odometry.inverse() * reference.frame->T_world_odometry;
         const PinholeCamera ideal = input_.camera.undistorted();
         std::vector<double> distances;
         for (std::size_t i = 0; i < judged.visible.size(); ++i) {
             if (judged.visible[i] == 0) continue;
-            const Eigen::Vector3d point = T_estimated * reference.edge_points[i];
+            const Eigen::Vector3d point = T_odometry * reference.edge_points[i];
             if (point.z() > 0)
                 distances.push_back((ideal.project(point) - Eigen::Vector2d(static_cast<double>(judged.u[i]),
                                                                             static_cast<double>(judged.v[i])))
@@ -156,20 +164,28 @@ class Measurement {
     }
 
     bool isKeyframe(double time) const {
-        const auto next = std::lower_bound(keyframe_times_.begin(), keyframe_times_.end(), time - kSameTime);
-        return next != keyframe_times_.end() && *next < time + kSameTime;
+        const auto next =
+            std::lower_bound(poses_.keyframe_times.begin(), poses_.keyframe_times.end(), time - kSameTime);
+        return next != poses_.keyframe_times.end() && *next < time + kSameTime;
     }
 
     const StudyInput& input_;
     ReferencePlan plan_;
+    const Poses& poses_;
+    std::string label_;
     FeatureExtractor extractor_;
     DisjointSets sets_;
-    std::vector<StampedPose> own_;
-    std::vector<double> keyframe_times_;
     std::deque<Reference> references_;
     std::shared_ptr<FeatureFrame> previous_;
     Repeatability result_;
+    double first_ = 0, last_ = 0;  // s, of the frames
 };
+
+double medianDisagreement(const Repeatability& measured) {
+    std::vector<double> all;
+    for (const RepeatabilityRow& row : measured.rows) all.push_back(row.disagreement);
+    return median(std::move(all)).value_or(0);
+}
 
 }  // namespace
 
@@ -186,7 +202,29 @@ std::optional<Pose> poseAt(const std::vector<StampedPose>& trajectory, double ti
 }
 
 Repeatability measureRepeatability(const StudyInput& input, const ReferencePlan& plan) {
-    return Measurement(input, plan).run();
+    const StudyRun odometry = trackRecording(input, input.options);
+    const bool truth = !input.ground_truth.empty();
+    Poses poses{odometry.trajectory, input.ground_truth, odometry.trajectory, odometry.keyframe_times,
+                odometry.frames};
+    if (!truth && input.options.mode == Mode::kBundleAdjustment) poses.judging = poses.odometry;
+    if (!truth && input.options.mode != Mode::kBundleAdjustment) {
+        OdometryOptions options = input.options;
+        options.mode = Mode::kBundleAdjustment;
+        poses.judging = trackRecording(input, options).trajectory;
+    }
+    const std::string label = "repeatability of " + input.name;
+    Repeatability measured = Measurement(input, plan, poses, label).run();
+    measured.disagreement = medianDisagreement(measured);
+    const bool exact = truth && measured.disagreement <= kExactPoses;
+    if (exact) {  // then the odometry, which saw these very associations, need not be asked
+        const double disagreement = measured.disagreement;
+        poses.searching = poses.judging;
+        measured = Measurement(input, plan, poses, label + ", at the ground truth").run();
+        measured.disagreement = disagreement;
+    }
+    measured.judged_by = truth ? "ground truth" : "roevo-ba";
+    measured.searched_by = exact ? "ground truth" : "roevo-" + std::string(toString(input.options.mode));
+    return measured;
 }
 
 }  // namespace roevo

@@ -26,9 +26,15 @@ struct RepeatabilityRow {
 
 struct Repeatability {
     std::vector<RepeatabilityRow> rows;
-    std::string judged_by;                     ///< "ground truth", or the odometry's mode where there is none
+    std::string judged_by;                     ///< poses of the true places: "ground truth", else "roevo-ba"
+    std::string searched_by;                   ///< poses at which edges were reprojected to be associated
+    double disagreement = 0;                   ///< px, median over the rows
     std::size_t references = 0, left_out = 0;  ///< left out: frames that cannot be read or have no pose
 };
+
+/// Ground truth that puts edges so close (px, median) to where the odometry does is exact enough to associate
+/// by, too. Motion capture often is not.
+inline constexpr double kExactPoses = 1.5;
 
 /// How references are chosen.
 struct ReferencePlan {
@@ -36,6 +42,9 @@ struct ReferencePlan {
     std::size_t follow = 150;  ///< frames after it in which a reference's features are looked for
 };
 
+/// Features are judged by ground truth, or without it by the final poses of ROEVO ba. Edges are reprojected,
+/// to be associated, at the ground truth where it is exact (kExactPoses), else at the odometry's final poses
+/// of the same recording; optical flow needs none.
 /// @throws std::runtime_error when no frame can be compared with another
 Repeatability measureRepeatability(const StudyInput& input, const ReferencePlan& plan);
 

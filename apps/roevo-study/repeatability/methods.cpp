@@ -65,7 +65,7 @@ void CornerTracks::advance(const FeatureFrame& previous, const FeatureFrame& cur
 EdgeLinks associateEdges(const FeatureFrame& from, const FeatureFrame& current, EdgeRule rule,
                          const PinholeCamera& camera, const OdometryOptions& options) {
     const EdgePoints3D& edges = from.lifted;
-    const Pose T_current_from = current.T_world_estimated.inverse() * from.T_world_estimated;
+    const Pose T_current_from = current.T_world_search.inverse() * from.T_world_search;
     const std::size_t padded = edges.x.size();
     std::vector<float> x(padded), y(padded), z(padded), u(padded), v(padded);
     kernels::best().project(makeProjection(T_current_from, camera.undistorted(), RowMotion()), edges.x.data(),
@@ -114,7 +114,7 @@ void DisjointSets::insert(const FeatureFrame& frame, bool keyframe) {
     Keyframe tracked;
     tracked.id = static_cast<int>(frame.number);
     tracked.timestamp = frame.timestamp;
-    tracked.T_world_camera = frame.T_world_estimated;
+    tracked.T_world_camera = frame.T_world_search;
     tracked.edges = frame.lifted;
     tracked.median_depth = static_cast<double>(frame.lifted.medianDepth());
     keyframes_.push_back(

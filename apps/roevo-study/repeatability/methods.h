@@ -31,8 +31,8 @@ class CornerTracks {
 /// kNearest: every edge that is the nearest neighbour of some point.
 enum class EdgeRule { kNearest, kNormals };
 
-/// Edges of `current` (those with depth) associated with those of `from`, which are reprojected at the
-/// odometry's poses and looked for within the last search radius.
+/// Edges of `current` (those with depth) associated with those of `from`, which are reprojected by
+/// T_world_search and looked for within the last search radius.
 EdgeLinks associateEdges(const FeatureFrame& from, const FeatureFrame& current, EdgeRule rule,
                          const PinholeCamera& camera, const OdometryOptions& options);
 

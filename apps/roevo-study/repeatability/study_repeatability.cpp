@@ -2,6 +2,7 @@
 // "Cross-frame association result using different methods").
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "repeatability/bins.h"
 #include "repeatability/judge.h"
@@ -13,14 +14,14 @@ namespace roevo {
 namespace {
 
 struct MethodLook {
-    const char *key, *label, *colour;  // colours as in the paper's figure
+    const char *key, *name, *label, *colour;  // colours as in the paper's figure
 };
 constexpr MethodLook kMethods[kNumAssociationMethods] = {
-    {"lk", "Shi-Tomasi, LK optical flow", "#E69F00"},
-    {"nearest", "edges, nearest neighbour", "#D62728"},
-    {"normals", "edges, frame to frame, normals", "#0072B2"},
-    {"keyframe", "edges, keyframe to frame, normals", "#56B4E9"},
-    {"disjoint_set", "edges, disjoint set", "#009E73"},
+    {"lk", "optical flow", "Shi-Tomasi, LK optical flow", "#E69F00"},
+    {"nearest", "nearest neighbour", "edges, nearest neighbour", "#D62728"},
+    {"normals", "normals", "edges, frame to frame, normals", "#0072B2"},
+    {"keyframe", "keyframe to frame", "edges, keyframe to frame, normals", "#56B4E9"},
+    {"disjoint_set", "disjoint set", "edges, disjoint set", "#009E73"},
 };
 
 struct DistanceLook {
@@ -52,9 +53,9 @@ void append(std::vector<std::string>& fields,
 }
 
 CsvTable rowsTable() {
-    std::vector<std::string> head{"recording",       "judged_by",          "reference",     "frame",
-                                  "frames",          "rotation_deg",       "translation_m", "disagreement_px",
-                                  "visible_corners", "visible_edge_points"};
+    std::vector<std::string> head{"recording",       "judged_by",       "reprojected_by",     "reference",
+                                  "frame",           "frames",          "rotation_deg",       "translation_m",
+                                  "disagreement_px", "visible_corners", "visible_edge_points"};
     append(head, columns("_share"));
     append(head, columns("_precision"));
     return CsvTable(head);
@@ -64,6 +65,7 @@ void addRows(CsvTable& table, const std::string& recording, const Repeatability&
     for (const RepeatabilityRow& row : measured.rows) {
         std::vector<std::string> fields{recording,
                                         measured.judged_by,
+                                        measured.searched_by,
                                         std::to_string(row.reference),
                                         std::to_string(row.frame),
                                         std::to_string(row.frame - row.reference),
@@ -94,6 +96,35 @@ void addBins(CsvTable& table, const std::string& recording, const std::vector<Re
         }
 }
 
+std::string inWords(const std::string& poses) {
+    if (poses.rfind("roevo-", 0) != 0) return poses;
+    return "final poses of ROEVO " + poses.substr(6);
+}
+
+// For the small space over a panel.
+std::string posesInShort(const Repeatability& measured) {
+    const auto shortly = [](const std::string& poses) {
+        return poses.rfind("roevo-", 0) == 0 ? "ROEVO " + poses.substr(6) : poses;
+    };
+    return "judged by " + shortly(measured.judged_by) + ", reprojected by " + shortly(measured.searched_by);
+}
+
+std::string posesInWords(const Repeatability& measured) {
+    return "judged by " + inWords(measured.judged_by) + "; edges reprojected at " +
+           inWords(measured.searched_by);
+}
+
+// "ground truth (3), final poses of ROEVO ba (2)"
+std::string countedPoses(const std::vector<Repeatability>& measured, std::string Repeatability::*poses) {
+    std::map<std::string, std::size_t> counts;
+    for (const Repeatability& one : measured) ++counts[inWords(one.*poses)];
+    std::string text;
+    for (auto entry = counts.rbegin(); entry != counts.rend(); ++entry)  // ground truth first
+        text += (text.empty() ? "" : ", ") + entry->first +
+                (counts.size() > 1 ? " (" + std::to_string(entry->second) + ")" : "");
+    return text;
+}
+
 // One panel, a curve for each method.
 std::string panel(const std::string& block, const std::vector<RepeatabilityRow>& rows,
                   const DistanceLook& look) {
@@ -119,7 +150,7 @@ struct Sheet {
     int columns = 1, lines = 1, width = 0, height = 0, key_rows = 1;  // panels; px
 
     // A panel's axes, px left of, below, right of and above them.
-    static constexpr int kLeft = 80, kBelow = 60, kRight = 15, kAbove = 40, kKeyRow = 24;
+    static constexpr int kLeft = 80, kBelow = 60, kRight = 15, kAbove = 58, kKeyRow = 24;
 
     int keyHeight() const { return key_rows * kKeyRow + 16; }
     std::string head() const {
@@ -144,12 +175,18 @@ struct Sheet {
 };
 
 // All recordings pooled, over the three kinds of distance.
-void drawPooled(StudyReport& report, const std::string& folder, const std::vector<RepeatabilityRow>& rows) {
-    const Sheet sheet{3, 1, 1200, 470, 2};
-    std::string script = sheet.head() + "set ylabel 'rightly associated features (%)'\n";
+void drawPooled(StudyReport& report, const std::string& folder, const std::vector<RepeatabilityRow>& rows,
+                const std::vector<Repeatability>& measured) {
+    const Sheet sheet{3, 1, 1200, 480, 2};
+    const std::string title = counted(measured.size(), "recording") + "; judged by " +
+                              countedPoses(measured, &Repeatability::judged_by) + "; edges reprojected at " +
+                              countedPoses(measured, &Repeatability::searched_by);
+    std::string script = sheet.head() + "set label 1 " + gnuplotText(title) +
+                         format(" at screen 0.5, %g center\n", 1 - 18.0 / sheet.height) +
+                         "set ylabel 'rightly associated features (%)'\n";
     for (std::size_t i = 0; i < std::size(kDistances); ++i)
         script += sheet.place(i) + panel("pooled" + std::to_string(i), rows, kDistances[i]) +
-                  "unset key\nunset ylabel\n";
+                  "unset key\nunset ylabel\nunset label 1\n";
     addPlot(report, folder, "repeatability.svg", script + "unset multiplot", sheet.width, sheet.height);
 }
 
@@ -166,7 +203,8 @@ void drawRecordings(StudyReport& report, const std::string& folder, const std::v
     std::string script = sheet.head();
     for (std::size_t i = 0; i < names.size(); ++i)
         script +=
-            sheet.place(i) + "set title " + gnuplotText(names[i]) + "\nset ylabel " +
+            sheet.place(i) + "set title " + gnuplotText(names[i]) + ".\"\\n\".'{/=11 '." +
+            gnuplotText(posesInShort(measured[i])) + ".'}'\nset ylabel " +
             gnuplotText(i % static_cast<std::size_t>(sheet.columns) == 0 ? "rightly associated (%)" : "") +
             '\n' + panel("recording" + std::to_string(i), measured[i].rows, kDistances[0]) + "unset key\n";
     addPlot(report, folder, "repeatability_recordings.svg", script + "unset multiplot", sheet.width,
@@ -176,9 +214,22 @@ void drawRecordings(StudyReport& report, const std::string& folder, const std::v
 std::string percentages(const std::array<std::optional<double>, kNumAssociationMethods>& shares) {
     std::string text;
     for (std::size_t m = 0; m < kNumAssociationMethods; ++m)
-        text += (m > 0 ? ", " : "") + std::string(kMethods[m].key) + ' ' +
+        text += (m > 0 ? ", " : "") + std::string(kMethods[m].name) + ' ' +
                 (shares[m] ? format("%.0f %%", 100 * *shares[m]) : "-");
     return text;
+}
+
+std::string noteOf(const std::string& name, const Repeatability& measured) {
+    std::string note =
+        name + ": " + posesInWords(measured) + "; " + counted(measured.references, "reference");
+    if (measured.disagreement > kExactPoses)
+        note += format(
+            "; its poses and the odometry's put the same edge %.1f px apart (median): too much to reproject "
+            "by them, and to judge well by them; compare with --no-ground-truth",
+            measured.disagreement);
+    if (measured.left_out > 0)
+        note += "; " + counted(measured.left_out, "frame") + " left out (unreadable or without a pose)";
+    return note;
 }
 
 }  // namespace
@@ -190,31 +241,19 @@ StudyReport studyRepeatability(const std::vector<StudyInput>& inputs, const std:
     std::vector<Repeatability> measured;
     std::vector<std::string> names;
     std::vector<RepeatabilityRow> pooled;
-    for (const StudyInput& input : inputs) {
+    forEachInput(inputs, report, [&](const StudyInput& input) {
         measured.push_back(measureRepeatability(input, plan));
         const Repeatability& of_input = measured.back();
         names.push_back(input.name);
         addRows(rows, input.name, of_input);
         addBins(bins, input.name, of_input.rows);
         pooled.insert(pooled.end(), of_input.rows.begin(), of_input.rows.end());
-        std::string note = input.name + ": judged by " + of_input.judged_by + "; " +
-                           counted(of_input.references, "reference");
-        std::vector<double> disagreements;
-        for (const RepeatabilityRow& row : of_input.rows) disagreements.push_back(row.disagreement);
-        if (const double typical = median(disagreements).value_or(0);
-            typical > 0.5 * static_cast<double>(kTolerance))
-            note += format(
-                "; its poses and the odometry's put the same edge %.1f px apart (median): too much to judge "
-                "well, compare with --no-ground-truth",
-                typical);
-        if (of_input.left_out > 0)
-            note += "; " + counted(of_input.left_out, "frame") + " left out (unreadable or without a pose)";
-        report.notes.push_back(note);
-    }
+        report.notes.push_back(noteOf(input.name, of_input));
+    });
     addBins(bins, "all", pooled);
     addTable(report, folder, "repeatability.csv", rows);
     addTable(report, folder, "repeatability_binned.csv", bins);
-    drawPooled(report, folder, pooled);
+    drawPooled(report, folder, pooled, measured);
     drawRecordings(report, folder, names, measured);
 
     const std::string notes[] = {
@@ -227,8 +266,13 @@ StudyReport studyRepeatability(const std::vector<StudyInput>& inputs, const std:
                "the associations that is right.",
                static_cast<double>(kTolerance)),
         "Nearest neighbour and frame to frame are chained: as with optical flow, what is lost in one frame "
-        "stays lost. "
-        "Keyframe to frame is what the tracker does. Edges are reprojected at the odometry's poses.",
+        "stays lost. Keyframe to frame is what the tracker does.",
+        format("Judged by: the poses that tell where a feature truly is. Reprojected at: the poses by which "
+               "edges are put into the other frame to be associated, the same for all edge methods; optical "
+               "flow needs none. That is the ground truth where it is exact (edges within %g px, median, of "
+               "where the odometry puts them), else the final, refined poses of the odometry's own run over "
+               "the same recording.",
+               kExactPoses),
         "Pooled curves mix recordings that move differently; each has a panel of its own."};
     report.notes.insert(report.notes.begin(), std::begin(notes), std::end(notes));
     double farthest = 0;

@@ -1,0 +1,91 @@
+#include "study_source.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace roevo {
+namespace {
+
+/// Another source with something changed.
+class ForwardingSource : public FrameSource {
+  public:
+    explicit ForwardingSource(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
+
+    bool next(SourceFrame& frame) override { return source_->next(frame); }
+    bool skip() override { return source_->skip(); }
+    const PinholeCamera& camera() const override { return source_->camera(); }
+    std::string kind() const override { return source_->kind(); }
+    std::string cameraSource() const override { return source_->cameraSource(); }
+    GroundTruth groundTruth() const override { return source_->groundTruth(); }
+    std::vector<std::string> notes() const override { return source_->notes(); }
+    std::size_t size() const override { return source_->size(); }
+    std::string warning() const override { return source_->warning(); }
+
+  private:
+    std::unique_ptr<FrameSource> source_;
+};
+
+class FirstFrames : public ForwardingSource {
+  public:
+    FirstFrames(std::unique_ptr<FrameSource> source, std::size_t count)
+        : ForwardingSource(std::move(source)), left_(count), count_(count) {}
+
+    bool next(SourceFrame& frame) override {
+        if (left_ == 0 || !ForwardingSource::next(frame)) return false;
+        --left_;
+        return true;
+    }
+    bool skip() override {
+        if (left_ == 0 || !ForwardingSource::skip()) return false;
+        --left_;
+        return true;
+    }
+    std::size_t size() const override { return std::min(ForwardingSource::size(), count_); }
+
+  private:
+    std::size_t left_, count_;
+};
+
+class WatchedSource : public ForwardingSource {
+  public:
+    WatchedSource(std::unique_ptr<FrameSource> source, std::shared_ptr<RecordingDamage> damage)
+        : ForwardingSource(std::move(source)), damage_(std::move(damage)) {}
+
+    bool next(SourceFrame& frame) override {
+        if (!ForwardingSource::next(frame)) {
+            seen_.warning = warning();
+            *damage_ = seen_;
+            return false;
+        }
+        ++seen_.frames;
+        if (frame.fault.empty()) return true;
+        if (seen_.unreadable++ == 0) seen_.first_fault = frame.fault;
+        return true;
+    }
+
+  private:
+    std::shared_ptr<RecordingDamage> damage_;
+    RecordingDamage seen_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> firstFrames(std::unique_ptr<FrameSource> source, std::size_t count) {
+    return std::make_unique<FirstFrames>(std::move(source), count);
+}
+
+std::unique_ptr<FrameSource> watched(std::unique_ptr<FrameSource> source,
+                                     std::shared_ptr<RecordingDamage> damage) {
+    return std::make_unique<WatchedSource>(std::move(source), std::move(damage));
+}
+
+std::string RecordingDamage::text() const {
+    std::string text;
+    if (unreadable > 0)
+        text = std::to_string(unreadable) + " of " + counted(frames, "frame") +
+               " could not be read and were left out, the first: " + first_fault;
+    if (!warning.empty()) text += (text.empty() ? "" : "; ") + warning;
+    return text;
+}
+
+}  // namespace roevo

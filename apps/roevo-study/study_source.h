@@ -1,0 +1,17 @@
+#pragma once
+#include <cstddef>
+#include <memory>
+
+#include "recording/frame_source.h"
+#include "study.h"
+
+namespace roevo {
+
+/// Ends after so many frames.
+std::unique_ptr<FrameSource> firstFrames(std::unique_ptr<FrameSource> source, std::size_t count);
+
+/// Notes what is wrong with a recording once it has been read to its end.
+std::unique_ptr<FrameSource> watched(std::unique_ptr<FrameSource> source,
+                                     std::shared_ptr<RecordingDamage> damage);
+
+}  // namespace roevo
