@@ -20,7 +20,11 @@ constexpr double kReadoutCaution = 50;
 /// does not depend on it.
 constexpr double kReadoutGain = 2.5;
 constexpr double kOverRelaxation = 1.6;
+/// Once the search radius is the final one, points keep what they were associated with until the image has
+/// moved so far since, px: what they would be associated with instead lies on the same edge next to it.
+constexpr double kKeptMotion = 0.1;
 constexpr float kUnknown = -1;  ///< depth not looked up yet
+constexpr double kFar = 1e9;    ///< px; further than any motion
 
 }  // namespace
 
@@ -214,13 +218,19 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
     Pose pose = T_start;
     Brightness gain = brightness;
     PoseSystem system;
+    double moved_px = kFar;  // since points were associated within the final radius
     const double narrowing = std::clamp(options_.max_iterations - 1.0, 1.0, 4.0);
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
         const double share = std::min(1.0, iteration / narrowing);
         const double radius =
             options_.search_radius + share * (options_.final_radius - options_.search_radius);
         const RowMotion row_motion = shutter.motion(pose);
-        associate(keyframe, frame, pose, row_motion, radius);
+        if (share < 1 || moved_px > kKeptMotion) {
+            associate(keyframe, frame, pose, row_motion, radius);
+            moved_px = share < 1 ? kFar : 0;
+        } else {
+            project(keyframe, pose, camera, row_motion);
+        }
         if (static_cast<int>(matches_.size()) < options_.min_inliers) break;
         geometricResiduals(current);
         depthResiduals(keyframe, frame);
@@ -246,6 +256,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
         const Vector6d step = (iteration < 2 ? 1 : kOverRelaxation) * system.solve();
         pose = poseIncrement(step) * pose;
         const double motion_px = camera.fx * (step.tail<3>().norm() + step.head<3>().norm() / depth);
+        moved_px += motion_px;
         if (motion_px < 0.01 && share >= 1) break;
     }
     // What is reported belongs to the final pose
