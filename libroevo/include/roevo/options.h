@@ -90,7 +90,7 @@ struct MappingOptions {
     double depth_weight = 0.3;     ///< weight of the depth of an observation
     double depth_chi2 = 12;        ///< chi-square limit of a depth
     double prior_weight = 0.03;    ///< weight of the tracked motion between keyframes
-    double max_spread = 12;        ///< sigmas; an edge whose observations differ by more is a pseudo-edge
+    double max_spread = 16;        ///< sigmas; an edge whose observations differ by more is a pseudo-edge
     double min_seen = 0.5;         ///< share of the keyframes that look at an edge's place and must see it
     int min_looks = 3;             ///< fewer such keyframes cannot judge
     bool reuse_keyframes = true;   ///< old keyframes that look at the same place take part again
