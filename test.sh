@@ -17,4 +17,5 @@ build "$preset"
 say "Testing (preset $preset)"
 # Leaks inside the libraries of others (OpenGL drivers, MRPT's registries) are not ours to count.
 export ASAN_OPTIONS="${ASAN_OPTIONS:-detect_leaks=0}"
+export TSAN_OPTIONS="${TSAN_OPTIONS:-suppressions=$PWD/scripts/tsan.supp}"
 exec ctest --test-dir "build/$preset" -j 2 --output-on-failure "$@"
