@@ -40,7 +40,7 @@ struct ComparisonInfo {
 struct EvaluatedRun {
     std::optional<Evaluation> evaluation;
     std::string fault;
-    std::string scale_warning;  ///< see scaleContradiction(); mostly empty
+    std::string scale_warning;  ///< see scaleContradiction(); empty unless most methods say so
 };
 std::vector<EvaluatedRun> evaluateRuns(const SequenceComparison& sequence);
 
