@@ -69,7 +69,7 @@ cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
     const cv::Mat& rays = raysOf(depth_camera);
     const bool distorted = colour_camera.isDistorted();
     const double farthest = unfoldedRadiusSquared(colour_camera);
-    cv::Mat registered = cv::Mat::zeros(colour_camera.height, colour_camera.width, CV_32FC1);
+    cv::Mat registered(colour_camera.height, colour_camera.width, CV_32FC1, cv::Scalar(0));
     for (int v = 0; v < depth.rows; ++v) {
         for (int u = 0; u < depth.cols; ++u) {
             const double z = static_cast<double>(depth.at<float>(v, u));

@@ -22,7 +22,7 @@ void keepSurfaces(cv::Mat& depth, const SensorOptions& sensor, double jump) {
     depth.setTo(0, (depth < sensor.min_depth) | (depth > sensor.max_depth));
     cv::Mat farthest, nearest = depth.clone();
     nearest.setTo(std::numeric_limits<float>::max(), depth == 0);
-    const cv::Mat neighbours = cv::Mat::ones(3, 3, CV_8UC1);
+    const cv::Mat neighbours(3, 3, CV_8UC1, cv::Scalar(1));
     cv::erode(nearest, nearest, neighbours);
     cv::dilate(depth, farthest, neighbours);
     depth.setTo(0, farthest > (1 + jump) * nearest);

@@ -38,7 +38,7 @@ PinholeCamera makeCamera(const SimulationOptions& options) {
 
 /// 1 within 2 pixels of a change of `shadow` between neighbours that show the same object.
 cv::Mat borderOf(const cv::Mat& shadow, const cv::Mat& objects) {
-    cv::Mat border = cv::Mat::zeros(shadow.size(), CV_8UC1);
+    cv::Mat border(shadow.size(), CV_8UC1, cv::Scalar(0));
     for (int row = 0; row < shadow.rows; ++row)
         for (int col = 0; col < shadow.cols; ++col)
             for (const auto& [r, c] : {std::pair(row, col + 1), std::pair(row + 1, col)}) {
