@@ -186,10 +186,8 @@ void FineTracker::countHits(Keyframe& keyframe, const PinholeCamera& camera) con
     for (std::size_t i = associator_.firstLookedUp(); i < keyframe.edges.size(); i += associator_.stride()) {
         if (u_[i] >= kMargin && v_[i] >= kMargin && u_[i] <= max_u && v_[i] <= max_v) ++keyframe.trials[i];
     }
-    // By the residual: what the map takes for a pseudo-edge may have no weight, and is found all the same
-    const float limit = std::sqrt(static_cast<float>(options_.chi2)) * static_cast<float>(scale_);
     for (std::size_t k = 0; k < matches_.size(); ++k) {
-        if (std::abs(residual_[k]) <= limit) ++keyframe.hits[static_cast<std::size_t>(matches_.reference[k])];
+        if (weight_[k] > 0) ++keyframe.hits[static_cast<std::size_t>(matches_.reference[k])];
     }
 }
 
