@@ -10,7 +10,7 @@ out=demo_output
 rawlog=$out/livingroom.rawlog
 
 install_packages
-build release
+build release rawlog-simulate roevo-odometry roevo-render
 PATH="$PWD/build/release/bin:$PATH"
 mkdir -p "$out"
 

@@ -19,6 +19,13 @@ target_include_directories(roevo_simulator PUBLIC ${CMAKE_CURRENT_LIST_DIR}/simu
 target_link_libraries(roevo_simulator PUBLIC roevo opencv_core opencv_imgproc Threads::Threads PRIVATE roevo_build_flags)
 # Lets the compiler inline square roots and floors; results stay those of IEEE arithmetic.
 target_compile_options(roevo_simulator PRIVATE -fno-math-errno -fno-trapping-math)
+# These only read the scene, many times per pixel: watched for races they would make every simulated test ten
+# times slower. What starts threads and what they write, renderer.cpp and baked_light.cpp, stays watched.
+if(ROEVO_SANITIZE MATCHES thread)
+  set_source_files_properties(simulator/src/intersect.cpp simulator/src/occlusion.cpp simulator/src/surface.cpp
+    simulator/src/texture.cpp simulator/src/texture_pictures.cpp simulator/src/view.cpp
+    PROPERTIES COMPILE_OPTIONS -fno-sanitize=thread)
+endif()
 
 add_executable(rawlog-simulate
   rawlog-simulate/folder_layouts.cpp

@@ -34,13 +34,16 @@ install_packages() {
     $apt install -y --no-install-recommends $missing || die "apt-get install failed for:$missing"
 }
 
-# build PRESET: configures when there is no build yet, or when the last configuration did not finish, and builds.
+# build PRESET [TARGETS...]: configures when there is no build yet, or when the last configuration did not finish, and
+# builds the targets, or everything.
 build() {
-    say "Building (preset $1)"
-    [ -f "build/$1/build.ninja" ] || cmake --preset "$1" >"build-$1.log" 2>&1 || {
-        cat "build-$1.log"
-        die "cmake could not configure preset $1"
+    preset=$1
+    shift
+    say "Building ${*:-everything} (preset $preset)"
+    [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" >"build-$preset.log" 2>&1 || {
+        cat "build-$preset.log"
+        die "cmake could not configure preset $preset"
     }
-    rm -f "build-$1.log"
-    cmake --build --preset "$1" -j "$(nproc)" || die "the build of preset $1 failed"
+    rm -f "build-$preset.log"
+    cmake --build --preset "$preset" -j "$(nproc)" ${1:+--target "$@"} || die "the build of preset $preset failed"
 }

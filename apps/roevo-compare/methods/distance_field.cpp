@@ -72,10 +72,7 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
     scale_ = robustScale(magnitudes_);
     const auto inverse = static_cast<float>(1 / (scale_ * scale_));
     const auto chi2 = static_cast<float>(options_.chi2);
-    const std::size_t padded = kernels::paddedSize(near_.size());
-    for (auto& array : matrix_) array.assign(padded, 0);
-    for (auto& array : vector_) array.assign(padded, 0);
-    for (auto& array : position_) array.assign(padded, 0);
+    rows_.reset(near_.size());
     const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
     for (std::size_t k = 0; k < near_.size(); ++k) {
         const std::size_t i = near_[k];
@@ -87,18 +84,9 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
         float matrix[6], vector[3];
         liftInformation(x_[i], y_[i], z_[i], fx, fy, w * du * du, w * du * dv, w * dv * dv, w * du * r,
                         w * dv * r, matrix, vector);
-        for (int a = 0; a < 6; ++a) matrix_[a][k] = matrix[a];
-        for (int a = 0; a < 3; ++a) vector_[a][k] = vector[a];
-        position_[0][k] = x_[i];
-        position_[1][k] = y_[i];
-        position_[2][k] = z_[i];
+        rows_.set(k, matrix, vector, x_[i], y_[i], z_[i]);
     }
-    kernels::PointInformation points{position_[0].data(), position_[1].data(), position_[2].data(), {}, {}};
-    for (int a = 0; a < 6; ++a) points.matrix[a] = matrix_[a].data();
-    for (int a = 0; a < 3; ++a) points.vector[a] = vector_[a].data();
-    kernels::NormalEquations equations;
-    kernels::best().accumulate(points, padded, equations);
-    system.add(equations);
+    system.add(rows_.sum());
     return system;
 }
 

@@ -66,7 +66,7 @@ class DistanceFieldTracker {
     std::vector<float> x_, y_, z_, u_, v_;  // of all keyframe points
     std::vector<std::size_t> near_;         // points that count
     std::vector<float> gradient_u_, gradient_v_, residual_, magnitudes_;
-    std::vector<float> matrix_[6], vector_[3], position_[3];
+    InformationRows rows_;
     double scale_ = 1;
     int visible_ = 0, inliers_ = 0;
     Times times_;

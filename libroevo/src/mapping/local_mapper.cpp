@@ -1,11 +1,10 @@
 #include "roevo/mapping/local_mapper.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "roevo/mapping/edge_smoothing.h"
+#include "map_edges.h"
 #include "roevo/tracking/se3.h"
 
 namespace roevo {
@@ -26,6 +25,12 @@ constexpr double kMostSigmas = 4;
 bool hasInformation(const MapKeyframe& keyframe) {
     return keyframe.parent_information.allFinite() &&
            (keyframe.parent_information.diagonal().array() > 0).all();
+}
+
+std::vector<const MapKeyframe*> pointersTo(const std::map<int, MapKeyframe>& keyframes) {
+    std::vector<const MapKeyframe*> pointers;
+    for (const auto& [id, keyframe] : keyframes) pointers.push_back(&keyframe);
+    return pointers;
 }
 
 }  // namespace
@@ -243,67 +248,6 @@ void LocalMapper::takePoses(MapUpdate& update) {
     }
 }
 
-EdgeVerdict LocalMapper::keptVerdict(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
-                                     std::size_t edge) const {
-    std::array<int, 4> votes{};
-    const auto first =
-        static_cast<std::size_t>(edges.observation_begin[static_cast<std::size_t>(edges.begin[edge])]);
-    const auto end =
-        static_cast<std::size_t>(edges.observation_begin[static_cast<std::size_t>(edges.begin[edge + 1])]);
-    for (std::size_t k = first; k < end; ++k) {
-        const MapKeyframe& keyframe = *window[static_cast<std::size_t>(edges.observations[k].slot)].keyframe;
-        const auto kept = verdicts_.find(keyframe.id);
-        if (kept == verdicts_.end()) continue;
-        const auto own = static_cast<std::size_t>(
-            keyframe.image.edge_of[static_cast<std::size_t>(edges.observations[k].point)]);
-        ++votes[static_cast<std::size_t>(kept->second[own])];
-    }
-    const auto most = std::max_element(votes.begin(), votes.end());
-    return static_cast<EdgeVerdict>(most - votes.begin());
-}
-
-EdgeMap LocalMapper::fusedMap() const {
-    std::vector<WindowKeyframe> window;
-    std::vector<const MapKeyframe*> members;
-    const std::map<int, MapKeyframe> all = unpacked();
-    for (const auto& [id, keyframe] : all) {
-        members.push_back(&keyframe);
-        window.push_back({&keyframe, keyframe.T_world_camera, true});
-    }
-    FusedEdges edges;
-    EdgeFuser fuser(camera_.fx, options_.sensor.depth_noise);
-    fuser.fuse(window, graph_.clusters(members), edges);
-    BundleAdjuster(options_.mapping, options_.sensor, camera_).refine(window, edges, {}, kRoughIterations);
-    EdgeMap map;
-    for (int e = 0; e < edges.numEdges(); ++e) {
-        const auto number = static_cast<std::size_t>(e);
-        MapEdge edge;
-        edge.cluster = edges.clusters[number];
-        edge.views = edges.views[number];
-        edge.verdict = keptVerdict(window, edges, number);
-        edge.confidence = isPseudo(edge.verdict) ? 0 : 1 - 1 / (1 + static_cast<float>(edge.views));
-        std::vector<Eigen::Vector3d> points(edges.points.begin() + edges.begin[number],
-                                            edges.points.begin() + edges.begin[number + 1]);
-        const auto reference = static_cast<std::size_t>(
-            edges.observation_begin[static_cast<std::size_t>(edges.begin[number]) + 1] - 1);
-        smoothDepthAlong(points,
-                         window[static_cast<std::size_t>(edges.observations[reference].slot)].T_world_camera,
-                         options_.sensor.depth_noise);
-        for (auto p = static_cast<std::size_t>(edges.begin[number]);
-             p < static_cast<std::size_t>(edges.begin[number + 1]); ++p) {
-            // Observations are in reverse order: the last one is the reference's own
-            const Observation& seen =
-                edges.observations[static_cast<std::size_t>(edges.observation_begin[p + 1]) - 1];
-            const MapKeyframe& keyframe = *window[static_cast<std::size_t>(seen.slot)].keyframe;
-            if (edge.points.empty()) edge.keyframe_id = keyframe.id;
-            edge.points.push_back(points[p - static_cast<std::size_t>(edges.begin[number])].cast<float>());
-            edge.colours.push_back(keyframe.colours[static_cast<std::size_t>(seen.point)]);
-        }
-        map.push_back(std::move(edge));
-    }
-    return map;
-}
-
 void LocalMapper::describeNewest(MapUpdate& update) const {
     // Where the newest keyframe's points are according to all that see them, and which are no true edges
     const bool depth = options_.mapping.refine_depth, weight = options_.mapping.pseudo_weight < 1;
@@ -314,12 +258,10 @@ void LocalMapper::describeNewest(MapUpdate& update) const {
     if (weight) update.weight.assign(keyframe.size(), 1);
     update.source = keyframe.source;
     const Pose T_camera_world = keyframe.T_world_camera.inverse();
-    for (int e = 0; e < fused_.numEdges(); ++e) {
-        const auto edge = static_cast<std::size_t>(e);
-        for (auto p = static_cast<std::size_t>(fused_.begin[edge]);
-             p < static_cast<std::size_t>(fused_.begin[edge + 1]); ++p) {
-            const auto first = static_cast<std::size_t>(fused_.observation_begin[p]);
-            const auto end = static_cast<std::size_t>(fused_.observation_begin[p + 1]);
+    for (std::size_t edge = 0; edge < fused_.views.size(); ++edge) {
+        const IndexRange own = fused_.pointsOf(edge);
+        for (std::size_t p = own.first; p < own.end; ++p) {
+            const auto [first, end] = fused_.observationsOf(p);
             for (std::size_t k = first; k < end; ++k) {
                 if (fused_.observations[k].slot != newest) continue;
                 const auto i = static_cast<std::size_t>(fused_.observations[k].point);
@@ -335,17 +277,12 @@ void LocalMapper::describeNewest(MapUpdate& update) const {
 }
 
 void LocalMapper::keepVerdicts() {
-    std::vector<const MapKeyframe*> members;
     for (const WindowKeyframe& view : window_) {
         auto& verdicts = verdicts_[view.keyframe->id];
         verdicts.resize(static_cast<std::size_t>(view.keyframe->image.numEdges()), EdgeVerdict::kUnconfirmed);
     }
-    for (int e = 0; e < fused_.numEdges(); ++e) {
-        const auto edge = static_cast<std::size_t>(e);
-        const auto first =
-            static_cast<std::size_t>(fused_.observation_begin[static_cast<std::size_t>(fused_.begin[edge])]);
-        const auto end = static_cast<std::size_t>(
-            fused_.observation_begin[static_cast<std::size_t>(fused_.begin[edge + 1])]);
+    for (std::size_t edge = 0; edge < fused_.views.size(); ++edge) {
+        const auto [first, end] = fused_.observationsOfEdge(edge);
         for (std::size_t k = first; k < end; ++k) {
             const MapKeyframe& keyframe =
                 *window_[static_cast<std::size_t>(fused_.observations[k].slot)].keyframe;
@@ -356,33 +293,14 @@ void LocalMapper::keepVerdicts() {
     }
 }
 
-EdgeMap LocalMapper::keyframeEdges() const {
-    std::vector<const MapKeyframe*> members;
+EdgeMap LocalMapper::fusedMap() const {
     const std::map<int, MapKeyframe> all = unpacked();
-    for (const auto& [id, keyframe] : all) members.push_back(&keyframe);
-    const auto clusters = graph_.clusters(members);
-    EdgeMap map;
-    std::vector<Eigen::Vector3d> points;
-    for (std::size_t k = 0; k < members.size(); ++k) {
-        const MapKeyframe& keyframe = *members[k];
-        const auto verdicts = verdicts_.find(keyframe.id);
-        for (std::size_t e = 0; e + 1 < keyframe.image.begin.size(); ++e) {
-            MapEdge edge;
-            edge.keyframe_id = keyframe.id;
-            edge.cluster = clusters[k][e];
-            if (verdicts != verdicts_.end()) edge.verdict = verdicts->second[e];
-            points.clear();
-            for (auto i = static_cast<std::size_t>(keyframe.image.begin[e]);
-                 i < static_cast<std::size_t>(keyframe.image.begin[e + 1]); ++i) {
-                points.push_back(keyframe.T_world_camera * keyframe.point(i));
-                edge.colours.push_back(keyframe.colours[i]);
-            }
-            smoothDepthAlong(points, keyframe.T_world_camera, options_.sensor.depth_noise);
-            for (const Eigen::Vector3d& point : points) edge.points.push_back(point.cast<float>());
-            map.push_back(std::move(edge));
-        }
-    }
-    return map;
+    return fuseEdges({all, graph_.clusters(pointersTo(all)), verdicts_}, camera_, options_);
+}
+
+EdgeMap LocalMapper::keyframeEdges() const {
+    const std::map<int, MapKeyframe> all = unpacked();
+    return edgesAsSeen({all, graph_.clusters(pointersTo(all)), verdicts_}, options_.sensor);
 }
 
 }  // namespace roevo

@@ -37,8 +37,7 @@ PseudoEdgeJudge::~PseudoEdgeJudge() = default;
 
 double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
                                  std::size_t p) const {
-    const auto first = static_cast<std::size_t>(edges.observation_begin[p]);
-    const auto end = static_cast<std::size_t>(edges.observation_begin[p + 1]);
+    const auto [first, end] = edges.observationsOf(p);
     double sum = 0;
     for (std::size_t k = first; k < end; ++k) {
         const WindowKeyframe& view = window[static_cast<std::size_t>(edges.observations[k].slot)];
@@ -64,8 +63,7 @@ bool PseudoEdgeJudge::project(std::size_t slot, const Eigen::Vector3d& point, Ei
 
 PseudoEdgeJudge::Looks PseudoEdgeJudge::countLooks(const std::vector<WindowKeyframe>& window,
                                                    const FusedEdges& edges, std::size_t edge) const {
-    const auto first = static_cast<std::size_t>(edges.begin[edge]);
-    const auto end = static_cast<std::size_t>(edges.begin[edge + 1]);
+    const auto [first, end] = edges.pointsOf(edge);
     Looks looks;
     Eigen::Vector2f pixel;
     const std::size_t stride = 1 + (end - first) / kMostLooks;
@@ -75,14 +73,11 @@ PseudoEdgeJudge::Looks PseudoEdgeJudge::countLooks(const std::vector<WindowKeyfr
         for (std::size_t p = first; p < end; p += stride) {
             if (!project(slot, edges.points[p], pixel)) continue;
             ++inside;
-            const auto from = edges.observations.begin() + edges.observation_begin[p];
-            const auto to = edges.observations.begin() + edges.observation_begin[p + 1];
-            observed += std::any_of(from, to,
-                                    [&](const Observation& observation) {
-                                        return observation.slot == static_cast<std::int32_t>(slot);
-                                    })
-                            ? 1
-                            : 0;
+            const IndexRange range = edges.observationsOf(p);
+            bool sees = false;
+            for (std::size_t k = range.first; k < range.end && !sees; ++k)
+                sees = edges.observations[k].slot == static_cast<std::int32_t>(slot);
+            observed += sees ? 1 : 0;
         }
         if (inside < kLookShare * count) continue;
         ++looks.looked;
@@ -97,8 +92,7 @@ PseudoEdgeJudge::Looks PseudoEdgeJudge::countLooks(const std::vector<WindowKeyfr
 
 bool PseudoEdgeJudge::isInImage(std::size_t slot, const OrganizedEdges& image, const FusedEdges& edges,
                                 std::size_t edge) const {
-    const auto first = static_cast<std::size_t>(edges.begin[edge]);
-    const auto end = static_cast<std::size_t>(edges.begin[edge + 1]);
+    const auto [first, end] = edges.pointsOf(edge);
     int inside = 0, found = 0;
     Eigen::Vector2f pixel, before, after;
     for (std::size_t p = first; p < end; p += 1 + (end - first) / kMostLooks) {
@@ -121,15 +115,13 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
     T_camera_world_.clear();
     for (const WindowKeyframe& view : window) T_camera_world_.push_back(view.T_world_camera.inverse());
     std::vector<double> spreads;
-    for (int e = 0; e < edges.numEdges(); ++e) {
-        const auto edge = static_cast<std::size_t>(e);
+    for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
         EdgeVerdict& verdict = edges.verdicts[edge];
         verdict = edges.views[edge] > 1 ? EdgeVerdict::kTrue : EdgeVerdict::kUnconfirmed;
         spreads.clear();
-        for (auto p = static_cast<std::size_t>(edges.begin[edge]);
-             p < static_cast<std::size_t>(edges.begin[edge + 1]); ++p) {
-            if (edges.observation_begin[p + 1] - edges.observation_begin[p] < 2) continue;
-            spreads.push_back(spreadOf(window, edges, p));
+        const auto [first, end] = edges.pointsOf(edge);
+        for (std::size_t p = first; p < end; ++p) {
+            if (edges.observationsOf(p).size() >= 2) spreads.push_back(spreadOf(window, edges, p));
         }
         if (!spreads.empty()) {
             const auto middle = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
@@ -176,11 +168,8 @@ double PseudoEdgeJudge::foundShare(const std::vector<WindowKeyframe>& window, co
                                    std::size_t edge) const {
     double sum = 0;
     int count = 0;
-    for (auto k =
-             static_cast<std::size_t>(edges.observation_begin[static_cast<std::size_t>(edges.begin[edge])]);
-         k <
-         static_cast<std::size_t>(edges.observation_begin[static_cast<std::size_t>(edges.begin[edge + 1])]);
-         ++k) {
+    const auto [first, end] = edges.observationsOfEdge(edge);
+    for (std::size_t k = first; k < end; ++k) {
         const MapKeyframe& keyframe = *window[static_cast<std::size_t>(edges.observations[k].slot)].keyframe;
         const std::int32_t own =
             keyframe.image.edge_of[static_cast<std::size_t>(edges.observations[k].point)];

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roevo/tracking/robust.h"
 #include "roevo/tracking/se3.h"
 
 namespace roevo {
 namespace {
 
-constexpr double kMinScale = 0.1, kMaxScale = 2.0;  ///< px
-constexpr double kStudentNu = 5;         ///< degrees of freedom of the t-distribution that residuals follow
+constexpr double kNoScale = 2.0;         ///< px of spread where nothing is seen
 constexpr double kLeastVariance = 1e-6;  ///< m^2 of depth: a millimetre, whatever the sensor
 constexpr double kNearest = 0.05;        ///< m; nearer points cannot be projected
 constexpr std::size_t kScaleStep = 3;    ///< every so manieth point is enough for a median
@@ -29,13 +29,11 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     points_.clear();
     begin_.assign(1, 0);
     sights_.clear();
-    for (int e = 0; e < edges.numEdges(); ++e) {
-        const auto edge = static_cast<std::size_t>(e);
+    for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
         if (edges.verdicts[edge] != EdgeVerdict::kTrue) continue;
-        for (std::int32_t p = edges.begin[edge]; p < edges.begin[edge + 1]; ++p) {
-            const auto first = static_cast<std::size_t>(edges.observation_begin[static_cast<std::size_t>(p)]);
-            const auto end =
-                static_cast<std::size_t>(edges.observation_begin[static_cast<std::size_t>(p) + 1]);
+        const IndexRange own = edges.pointsOf(edge);
+        for (std::size_t p = own.first; p < own.end; ++p) {
+            const auto [first, end] = edges.observationsOf(p);
             if (end - first < 2) continue;
             for (std::size_t k = first; k < end; ++k) {
                 const std::int32_t slot = edges.observations[k].slot;
@@ -53,7 +51,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
                                    static_cast<double>(keyframe.slope[i]), trust,
                                    1 / (sigma * sigma + kLeastVariance), slot});
             }
-            points_.push_back(p);
+            points_.push_back(static_cast<std::int32_t>(p));
             begin_.push_back(static_cast<std::int32_t>(sights_.size()));
         }
     }
@@ -117,10 +115,7 @@ double WindowEquations::spread(std::int32_t slot, double least_scale) {
             scratch_.push_back(static_cast<float>(std::abs(residuals_[k].across)));
         }
     }
-    if (scratch_.empty()) return kMaxScale;
-    const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
-    std::nth_element(scratch_.begin(), middle, scratch_.end());
-    return std::max(std::clamp(1.4826 * static_cast<double>(*middle), kMinScale, kMaxScale), least_scale);
+    return std::max(scratch_.empty() ? kNoScale : robustScale(scratch_), least_scale);
 }
 
 void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vector<Eigen::Vector3d>& points) {
@@ -165,9 +160,8 @@ bool WindowEquations::addSight(const Sight& sight, const Residual& residual, con
         share.pull.setZero();
         touched_.push_back(sight.slot);
     }
-    // Weights of the t-distribution, (nu + 1) / (nu + r^2 / sigma^2)
     const double z = residual.inverse_z;
-    const double weight = sight.weight * (kStudentNu + 1) / (kStudentNu * variance + squared);
+    const double weight = studentWeight(sight.weight, squared, variance);
     const Eigen::Vector3d across =
         R * Eigen::Vector3d(z * sight.across_a, z * sight.across_b, -z * (residual.across + sight.across_c));
     const Eigen::Vector3d weighted = weight * across;
@@ -179,8 +173,8 @@ bool WindowEquations::addSight(const Sight& sight, const Residual& residual, con
     const double along = (sight.along_a * residual.x + sight.along_b * residual.y) * z;
     const Eigen::Vector3d depth =
         R * Eigen::Vector3d(-slope * sight.along_a, -slope * sight.along_b, 1 + slope * along);
-    const double depth_weight = options_.depth_weight * sight.weight * sight.depth_information *
-                                (kStudentNu + 1) / (kStudentNu + depth_squared);
+    const double depth_weight =
+        studentWeight(options_.depth_weight * sight.weight * sight.depth_information, depth_squared);
     const Eigen::Vector3d weighted_depth = depth_weight * depth;
     share.information.noalias() += weighted_depth * depth.transpose();
     share.pull += residual.depth * weighted_depth;

@@ -108,10 +108,7 @@ void FineTracker::weigh(const Keyframe& keyframe) {
 }
 
 void FineTracker::accumulate(const PinholeCamera& camera, const OrganizedEdges& current, PoseSystem& system) {
-    const std::size_t padded = kernels::paddedSize(matches_.size());
-    for (auto& array : matrix_) array.assign(padded, 0);
-    for (auto& array : vector_) array.assign(padded, 0);
-    for (auto& array : position_) array.assign(padded, 0);
+    rows_.reset(matches_.size());
     const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
     for (std::size_t k = 0; k < matches_.size(); ++k) {
         if (weight_[k] <= 0) continue;
@@ -123,18 +120,9 @@ void FineTracker::accumulate(const PinholeCamera& camera, const OrganizedEdges& 
                         w * ny * r, matrix, vector);
         matrix[5] += depth_weight_[k];
         vector[2] += depth_weight_[k] * depth_residual_[k];
-        for (int a = 0; a < 6; ++a) matrix_[a][k] = matrix[a];
-        for (int a = 0; a < 3; ++a) vector_[a][k] = vector[a];
-        position_[0][k] = x_[i];
-        position_[1][k] = y_[i];
-        position_[2][k] = z_[i];
+        rows_.set(k, matrix, vector, x_[i], y_[i], z_[i]);
     }
-    kernels::PointInformation rows{position_[0].data(), position_[1].data(), position_[2].data(), {}, {}};
-    for (int a = 0; a < 6; ++a) rows.matrix[a] = matrix_[a].data();
-    for (int a = 0; a < 3; ++a) rows.vector[a] = vector_[a].data();
-    kernels::NormalEquations equations;
-    kernels::best().accumulate(rows, padded, equations);
-    system.add(equations);
+    system.add(rows_.sum());
 }
 
 void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe,

@@ -5,6 +5,22 @@
 
 namespace roevo {
 
+void InformationRows::reset(std::size_t count) {
+    const std::size_t padded = kernels::paddedSize(count);
+    for (auto& array : matrix_) array.assign(padded, 0);
+    for (auto& array : vector_) array.assign(padded, 0);
+    for (auto* array : {&x_, &y_, &z_}) array->assign(padded, 0);
+}
+
+kernels::NormalEquations InformationRows::sum() const {
+    kernels::PointInformation points{x_.data(), y_.data(), z_.data(), {}, {}};
+    for (int a = 0; a < 6; ++a) points.matrix[a] = matrix_[a].data();
+    for (int a = 0; a < 3; ++a) points.vector[a] = vector_[a].data();
+    kernels::NormalEquations equations;
+    kernels::best().accumulate(points, x_.size(), equations);
+    return equations;
+}
+
 void PoseSystem::add(const kernels::NormalEquations& part) {
     int k = 0;
     for (int r = 0; r < 6; ++r) {

@@ -73,7 +73,8 @@ RollingShutter MotionModel::shutter(double timestamp, const Pose& T_world_keyfra
         if (velocity_dt_ >= kShortestStep && velocity_dt_ <= kLongestStep) {
             const Eigen::AngleAxisd turn(velocity_.linear());
             shutter.earlier_turn = turn.angle() / velocity_dt_ * turn.axis();
-            shutter.earlier_velocity = velocity_.linear().transpose() * velocity_.translation() / velocity_dt_;
+            shutter.earlier_velocity =
+                velocity_.linear().transpose() * velocity_.translation() / velocity_dt_;
             shutter.earlier_interval = velocity_dt_;
         }
     }

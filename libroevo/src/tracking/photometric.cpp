@@ -162,19 +162,12 @@ Brightness PhotometricResiduals::fitBrightness(const PhotometricPoints& points, 
 
 void PhotometricResiduals::accumulate(const PhotometricPoints& points, int level, const PinholeCamera& camera,
                                       double factor, kernels::NormalEquations& out) {
-    const std::size_t n = points.size(), padded = points.x.size();
-    for (auto& array : matrix_) array.resize(padded);
-    for (auto& array : vector_) array.resize(padded);
+    rows_.reset(points.size());
     const auto& patches = points.patches[static_cast<std::size_t>(level)];
     const auto scale = static_cast<float>(factor / (scale_ * scale_));
     const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
-    for (std::size_t i = 0; i < padded; ++i) {
-        if (i >= n || weight_[i] == 0) {
-            for (auto& array : matrix_) array[i] = 0;
-            for (auto& array : vector_) array[i] = 0;
-            x_[i] = y_[i] = z_[i] = 0;
-            continue;
-        }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (weight_[i] == 0) continue;
         // From the aligned frame to the image: M = A G A^T, v = A g with A = [c -s; s c]
         const float c = axis_x_[i], s = axis_y_[i], w = weight_[i] * scale;
         const float g0 = patches[i].gram[0] * w, g1 = patches[i].gram[1] * w, g2 = patches[i].gram[2] * w;
@@ -185,13 +178,9 @@ void PhotometricResiduals::accumulate(const PhotometricPoints& points, int level
         float matrix[6], vector[3];
         liftInformation(x_[i], y_[i], z_[i], fx, fy, m00, m01, m11, c * r0 - s * r1, s * r0 + c * r1, matrix,
                         vector);
-        for (int k = 0; k < 6; ++k) matrix_[k][i] = matrix[k];
-        for (int k = 0; k < 3; ++k) vector_[k][i] = vector[k];
+        rows_.set(i, matrix, vector, x_[i], y_[i], z_[i]);
     }
-    kernels::PointInformation rows{x_.data(), y_.data(), z_.data(), {}, {}};
-    for (int k = 0; k < 6; ++k) rows.matrix[k] = matrix_[k].data();
-    for (int k = 0; k < 3; ++k) rows.vector[k] = vector_[k].data();
-    kernels::best().accumulate(rows, padded, out);
+    out = rows_.sum();
 }
 
 }  // namespace roevo

@@ -19,7 +19,8 @@ RowMotion RollingShutter::motion(const Pose& T_current_keyframe) const {
     const Pose T_previous_current = T_previous_keyframe * T_current_keyframe.inverse();
     const Eigen::AngleAxisd turn(T_previous_current.linear());
     rows.turn = turn.angle() / since_previous * turn.axis();
-    rows.velocity = T_previous_current.linear().transpose() * T_previous_current.translation() / since_previous;
+    rows.velocity =
+        T_previous_current.linear().transpose() * T_previous_current.translation() / since_previous;
     if (earlier_interval > 0) {
         // Means of two intervals, to the end of the last one
         const double ahead = since_previous / (since_previous + earlier_interval);

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct Observation {
     std::int32_t slot = 0, point = 0;
 };
 
+/// Half open.
+struct IndexRange {
+    std::size_t first = 0, end = 0;
+    std::size_t size() const { return end - first; }
+};
+
 /// Edges of the world, each fused from a cluster of keyframe edges. Points of an edge are consecutive and in
 /// order, and so are the observations of a point.
 struct FusedEdges {
@@ -30,6 +37,19 @@ struct FusedEdges {
     std::vector<EdgeVerdict> verdicts;   ///< of each edge
 
     int numEdges() const { return static_cast<int>(begin.size()) - 1; }
+    IndexRange pointsOf(std::size_t edge) const {
+        return {static_cast<std::size_t>(begin[edge]), static_cast<std::size_t>(begin[edge + 1])};
+    }
+    IndexRange observationsOf(std::size_t point) const {
+        return {static_cast<std::size_t>(observation_begin[point]),
+                static_cast<std::size_t>(observation_begin[point + 1])};
+    }
+    /// Of all its points.
+    IndexRange observationsOfEdge(std::size_t edge) const {
+        const IndexRange own = pointsOf(edge);
+        return {static_cast<std::size_t>(observation_begin[own.first]),
+                static_cast<std::size_t>(observation_begin[own.end])};
+    }
     void clear();
 };
 

@@ -57,8 +57,6 @@ class LocalMapper {
     bool acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const;
     void addPriors();
     void keepVerdicts();
-    EdgeVerdict keptVerdict(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
-                            std::size_t edge) const;
     void describeNewest(MapUpdate& update) const;
 
     PinholeCamera camera_;

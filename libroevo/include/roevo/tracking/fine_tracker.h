@@ -85,7 +85,7 @@ class FineTracker {
     std::vector<float> x_, y_, z_, u_, v_;                                  // of all keyframe points
     std::vector<float> residual_, weight_, depth_residual_, depth_weight_;  // of the matches
     std::vector<float> current_depth_, scratch_;
-    std::vector<float> matrix_[6], vector_[3], position_[3];
+    InformationRows rows_;
     double scale_ = 1;
     int inliers_ = 0;
 };

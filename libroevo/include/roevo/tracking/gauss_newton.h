@@ -1,4 +1,7 @@
 #pragma once
+#include <cstddef>
+#include <vector>
+
 #include "roevo/tracking/kernels.h"
 #include "roevo/types.h"
 
@@ -9,6 +12,26 @@ struct PosePrior {
     Pose mean = Pose::Identity();
     double sigma_translation = 1;  ///< m
     double sigma_rotation = 1;     ///< rad
+};
+
+/// What points contribute to the normal equations, laid out as the kernels want it. Keeps its memory.
+class InformationRows {
+  public:
+    /// All of `count` points contribute nothing until they are set.
+    void reset(std::size_t count);
+    /// @param matrix,vector  as in kernels::PointInformation, of a point at (x, y, z), m
+    void set(std::size_t point, const float (&matrix)[6], const float (&vector)[3], float x, float y,
+             float z) {
+        for (int a = 0; a < 6; ++a) matrix_[a][point] = matrix[a];
+        for (int a = 0; a < 3; ++a) vector_[a][point] = vector[a];
+        x_[point] = x;
+        y_[point] = y;
+        z_[point] = z;
+    }
+    kernels::NormalEquations sum() const;
+
+  private:
+    std::vector<float> matrix_[6], vector_[3], x_, y_, z_;
 };
 
 /// Symmetric 6x6 system H xi = -g of Eqs. (12), (13), in double precision.

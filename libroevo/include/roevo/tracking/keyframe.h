@@ -11,7 +11,8 @@ struct Keyframe {
     Pose T_world_camera = Pose::Identity();
     Matrix6d covariance = Matrix6d::Zero();  ///< of T_world_camera, as in FrameResult
     EdgePoints3D edges;
-    std::vector<std::uint16_t> hits, trials;  ///< of each edge point: frames that found it, frames that looked for it
+    /// Of each edge point: frames that found it, frames that looked for it.
+    std::vector<std::uint16_t> hits, trials;
     PhotometricPoints photometric;
     RowMotion row_motion;     ///< that `edges` were lifted with
     double median_depth = 0;  ///< m

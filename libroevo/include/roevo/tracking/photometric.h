@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "roevo/tracking/edge_points.h"
+#include "roevo/tracking/gauss_newton.h"
 #include "roevo/tracking/image_pyramid.h"
-#include "roevo/tracking/kernels.h"
 #include "roevo/tracking/rolling_shutter.h"
 #include "roevo/types.h"
 
@@ -51,13 +51,13 @@ class PhotometricResiduals {
     /// The brightness that fits the present alignment best (weighted linear regression).
     Brightness fitBrightness(const PhotometricPoints& points, int level, const Brightness& current) const;
 
-    /// Adds the points' information, scaled by `factor`, as rows for kernels::accumulate.
+    /// The normal equations of all points, their information scaled by `factor`.
     void accumulate(const PhotometricPoints& points, int level, const PinholeCamera& camera, double factor,
                     kernels::NormalEquations& out);
 
   private:
     std::vector<float> x_, y_, z_, u_, v_, axis_x_, axis_y_, weight_;
-    std::vector<float> matrix_[6], vector_[3];
+    InformationRows rows_;
     std::vector<kernels::PatchResidual> residuals_;
     std::vector<float> scratch_;
     int num_visible_ = 0;

@@ -20,8 +20,10 @@ inline double robustScale(std::vector<float>& magnitudes) {
 
 /// `weight` times what iteratively reweighted least squares gives a residual of the t-distribution.
 /// @param squared  residual over its spread, squared
-inline float studentWeight(float weight, float squared) {
-    return weight * (kStudentNu + 1) / (kStudentNu + squared);
+/// @param variance  of the residual where `squared` is in its unit and not over its spread
+template <typename Scalar>
+Scalar studentWeight(Scalar weight, Scalar squared, Scalar variance = 1) {
+    return weight * (kStudentNu + 1) / (kStudentNu * variance + squared);
 }
 
 }  // namespace roevo

@@ -34,9 +34,10 @@ struct RollingShutter {
     Pose T_previous_keyframe = Pose::Identity();
     double since_previous = 0;  ///< s; 0 when there is no trusted previous pose
 
-    /// Mean motion over the interval before that, in the previous camera's axes, and its length (0: not known).
-    Eigen::Vector3d earlier_velocity = Eigen::Vector3d::Zero(), earlier_turn = Eigen::Vector3d::Zero();  ///< m/s, rad/s
-    double earlier_interval = 0;  ///< s
+    /// Mean motion over the interval before that, in the previous camera's axes, m/s and rad/s, and its
+    /// length, s (0: not known).
+    Eigen::Vector3d earlier_velocity = Eigen::Vector3d::Zero(), earlier_turn = Eigen::Vector3d::Zero();
+    double earlier_interval = 0;
 
     RowMotion motion(const Pose& T_current_keyframe) const;
 };

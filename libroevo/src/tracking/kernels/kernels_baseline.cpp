@@ -11,7 +11,9 @@ const Table& baseline() {
 }
 
 #if !defined(ROEVO_HAVE_AVX2)
-const Table* avx2() { return nullptr; }
+const Table* avx2() {
+    return nullptr;
+}
 #endif
 
 const Table& best() {

@@ -1,0 +1,95 @@
+#include "map_edges.h"
+
+#include <algorithm>
+#include <array>
+
+#include "roevo/mapping/bundle_adjustment.h"
+#include "roevo/mapping/edge_fusion.h"
+#include "roevo/mapping/edge_smoothing.h"
+
+namespace roevo {
+namespace {
+
+constexpr int kIterations = 3;  ///< that fit the fused points; the poses stay
+
+/// What most of the keyframe edges that a fused edge is made of were thought to be.
+EdgeVerdict keptVerdict(const MapContents& map, const std::vector<WindowKeyframe>& window,
+                        const FusedEdges& edges, std::size_t edge) {
+    std::array<int, 4> votes{};
+    const auto [first, end] = edges.observationsOfEdge(edge);
+    for (std::size_t k = first; k < end; ++k) {
+        const MapKeyframe& keyframe = *window[static_cast<std::size_t>(edges.observations[k].slot)].keyframe;
+        const auto kept = map.verdicts.find(keyframe.id);
+        if (kept == map.verdicts.end()) continue;
+        const auto own = static_cast<std::size_t>(
+            keyframe.image.edge_of[static_cast<std::size_t>(edges.observations[k].point)]);
+        ++votes[static_cast<std::size_t>(kept->second[own])];
+    }
+    const auto most = std::max_element(votes.begin(), votes.end());
+    return static_cast<EdgeVerdict>(most - votes.begin());
+}
+
+}  // namespace
+
+EdgeMap fuseEdges(const MapContents& contents, const PinholeCamera& camera, const OdometryOptions& options) {
+    std::vector<WindowKeyframe> window;
+    for (const auto& [id, keyframe] : contents.keyframes)
+        window.push_back({&keyframe, keyframe.T_world_camera, true});
+    FusedEdges edges;
+    EdgeFuser fuser(camera.fx, options.sensor.depth_noise);
+    fuser.fuse(window, contents.clusters, edges);
+    BundleAdjuster(options.mapping, options.sensor, camera).refine(window, edges, {}, kIterations);
+    EdgeMap map;
+    for (std::size_t number = 0; number < edges.views.size(); ++number) {
+        MapEdge edge;
+        edge.cluster = edges.clusters[number];
+        edge.views = edges.views[number];
+        edge.verdict = keptVerdict(contents, window, edges, number);
+        edge.confidence = isPseudo(edge.verdict) ? 0 : 1 - 1 / (1 + static_cast<float>(edge.views));
+        const auto [first, end] = edges.pointsOf(number);
+        std::vector<Eigen::Vector3d> points(edges.points.data() + first, edges.points.data() + end);
+        // Observations are in reverse order: the last one is the reference's own
+        const auto reference = [&](std::size_t p) {
+            return edges.observations[edges.observationsOf(p).end - 1];
+        };
+        smoothDepthAlong(points, window[static_cast<std::size_t>(reference(first).slot)].T_world_camera,
+                         options.sensor.depth_noise);
+        for (std::size_t p = first; p < end; ++p) {
+            const Observation seen = reference(p);
+            const MapKeyframe& keyframe = *window[static_cast<std::size_t>(seen.slot)].keyframe;
+            if (edge.points.empty()) edge.keyframe_id = keyframe.id;
+            edge.points.push_back(points[p - first].cast<float>());
+            edge.colours.push_back(keyframe.colours[static_cast<std::size_t>(seen.point)]);
+        }
+        map.push_back(std::move(edge));
+    }
+    return map;
+}
+
+EdgeMap edgesAsSeen(const MapContents& contents, const SensorOptions& sensor) {
+    EdgeMap map;
+    std::vector<Eigen::Vector3d> points;
+    std::size_t k = 0;
+    for (const auto& [id, keyframe] : contents.keyframes) {
+        const std::vector<int>& clusters = contents.clusters[k++];
+        const auto verdicts = contents.verdicts.find(id);
+        for (std::size_t e = 0; e + 1 < keyframe.image.begin.size(); ++e) {
+            MapEdge edge;
+            edge.keyframe_id = id;
+            edge.cluster = clusters[e];
+            if (verdicts != contents.verdicts.end()) edge.verdict = verdicts->second[e];
+            points.clear();
+            for (auto i = static_cast<std::size_t>(keyframe.image.begin[e]);
+                 i < static_cast<std::size_t>(keyframe.image.begin[e + 1]); ++i) {
+                points.push_back(keyframe.T_world_camera * keyframe.point(i));
+                edge.colours.push_back(keyframe.colours[i]);
+            }
+            smoothDepthAlong(points, keyframe.T_world_camera, sensor.depth_noise);
+            for (const Eigen::Vector3d& point : points) edge.points.push_back(point.cast<float>());
+            map.push_back(std::move(edge));
+        }
+    }
+    return map;
+}
+
+}  // namespace roevo
