@@ -172,6 +172,8 @@ RunReport runOdometry(const RunSettings& settings) {
 
     report.trajectory = odometry.trajectory();
     report.keyframes = odometry.keyframes();
+    report.readout_time = odometry.readoutTime();
+    report.readout_learned = odometry.options().sensor.estimate_readout;
     SceneContent content;
     content.map = odometry.map();
     content.semi_dense = odometry.semiDense();

@@ -18,6 +18,8 @@ struct FrameRecord {
 struct RunReport {
     std::string input, kind, camera_source, warning, sensor_label;
     PinholeCamera camera;
+    double readout_time = 0;  ///< of the rolling shutter, as learned or set, s
+    bool readout_learned = false;
     Mode mode = Mode::kBundleAdjustment;
     std::vector<FrameRecord> frames;
     std::vector<StampedPose> trajectory;

@@ -73,7 +73,9 @@ Json cameraJson(const RunReport& report) {
             {"cx", c.cx},
             {"cy", c.cy},
             {"distortion_k1_k2_p1_p2_k3", c.distortion},
-            {"source", report.camera_source}};
+            {"source", report.camera_source},
+            {"readout_time_s", report.readout_time},
+            {"readout_learned", report.readout_learned}};
 }
 
 Json framesJson(const RunReport& report) {

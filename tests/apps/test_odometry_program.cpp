@@ -58,6 +58,20 @@ TEST_F(OdometryProgram, BothModesRunAndSayWhichTheyAre) {
     expectError(run(folder_ / "recording", {"--mode", "dense"}), 2, kName, {"'dense'", "ct, tr, ba"});
 }
 
+TEST_F(OdometryProgram, TheSummaryTellsTheReadoutTime) {
+    ASSERT_EQ(runFrames(slidingRecording(20), {}).exit_code, 0);
+    EXPECT_EQ(summary()["camera"]["readout_learned"], true);
+    const double learned = summary()["camera"]["readout_time_s"];
+    EXPECT_NE(learned, 0);
+    EXPECT_LT(std::abs(learned), 0.01) << "all rows are drawn at one time";
+    ASSERT_EQ(run(folder_ / "recording",
+                  {"--set", "sensor.estimate_readout=false", "--set", "sensor.readout_time=0.002"})
+                  .exit_code,
+              0);
+    EXPECT_EQ(summary()["camera"]["readout_learned"], false);
+    EXPECT_NEAR(summary()["camera"]["readout_time_s"], 0.002, 1e-9);
+}
+
 TEST_F(OdometryProgram, FirstAndSkipChooseFrames) {
     ASSERT_EQ(runFrames(slidingRecording(12), {"--skip", "3", "--first", "4", "--quiet"}).exit_code, 0);
     ASSERT_EQ(rows().size(), 4u);

@@ -43,9 +43,11 @@ TEST(ShadowEdges, ThoseOfMovingShadowsAreKeptOutAndOthersAreNot) {
     };
     std::map<double, Masks> masks;  // by the stamp of the frame
     Odometry odometry(simulator.camera(), OdometryOptions());
+    double longest_readout = 0;
     for (int i = 0; i < kFrames; ++i) {
         const simulator::SimulatedFrame frame = simulator.frame(i);
         odometry.processFrame({frame.timestamp, frame.grey, frame.depth_noisy, cv::Mat()});
+        longest_readout = std::max(longest_readout, std::abs(odometry.readoutTime()));
         masks[frame.timestamp] = {frame.shadow_border, frame.objects};
     }
     std::map<int, KeyframeInfo> keyframes;
@@ -76,6 +78,9 @@ TEST(ShadowEdges, ThoseOfMovingShadowsAreKeptOutAndOthersAreNot) {
     EXPECT_GE(shadows.kept_out, 0.9 * shadows.all) << shadows.kept_out << " of " << shadows.all;
     EXPECT_LE(others.pseudo, 0.05 * others.all) << others.pseudo << " of " << others.all;
     EXPECT_GE(others.all - others.kept_out, 0.6 * others.all) << "most are used";
+    // All rows of this camera are read at once; what moves in the scene must not teach otherwise
+    EXPECT_LT(longest_readout, 0.004);
+    RecordProperty("longest_readout_ms", std::to_string(1000 * longest_readout));
 }
 
 }  // namespace

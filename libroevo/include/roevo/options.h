@@ -12,14 +12,14 @@ namespace roevo {
 enum class Mode { kCoarse, kTracking, kBundleAdjustment };  ///< paper's ct, tr and tr+ba
 
 struct SensorOptions {
-    double depth_weight_k = 0.6;   ///< k of Eq. (20), 1/m
-    double min_depth = 0.2;        ///< d_min of Eq. (20), m; nearer depths are not used
-    double max_depth = 5.0;        ///< d_max of Eq. (20), m
-    double depth_limit = 9.0;      ///< farther depths are not used, m
-    double depth_noise = 2e-3;     ///< a in sigma_z = a z^2, 1/m
-    bool estimate_readout = true;  ///< learn the read-out time from the images; else it is readout_time
-    double readout_sigma = 0.01;   ///< how far from 0 the learned read-out time may well be, s, one sigma
-    double readout_memory = 0.95;  ///< share of what was learned that is kept from frame to frame
+    double depth_weight_k = 0.6;    ///< k of Eq. (20), 1/m
+    double min_depth = 0.2;         ///< d_min of Eq. (20), m; nearer depths are not used
+    double max_depth = 5.0;         ///< d_max of Eq. (20), m
+    double depth_limit = 9.0;       ///< farther depths are not used, m
+    double depth_noise = 2e-3;      ///< a in sigma_z = a z^2, 1/m
+    bool estimate_readout = true;   ///< learn the read-out time from the images; else it is readout_time
+    double readout_sigma = 0.01;    ///< how far from 0 the learned read-out time may well be, s, one sigma
+    double readout_memory = 0.995;  ///< share of what was learned that is kept from frame to frame
     double readout_time = 0;     ///< time from the first to the last row of a rolling shutter, s (0: global)
     double reference_row = 0.5;  ///< row whose time the stamp means, as a share of the height
 };
@@ -97,8 +97,8 @@ struct MappingOptions {
     int max_reused = 4;            ///< so many of them
     bool deterministic = true;     ///< the tracker waits for the map; else it takes what is ready
     int latency = 4;               ///< frames after which the mapping of a keyframe takes effect
-    bool refine_depth = false;      ///< the tracker uses the fused depth of its keyframe
-    double pseudo_weight = 0.3;     ///< what pseudo-edges of the keyframe still count in tracking
+    bool refine_depth = false;     ///< the tracker uses the fused depth of its keyframe
+    double pseudo_weight = 0.3;    ///< what pseudo-edges of the keyframe still count in tracking
     /// Surface points kept of a keyframe, next to its edges (0: none); in all modes. 10 bytes each.
     int semi_dense_points = 2500;
 };
