@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 
 #include "core/support/random_pose.h"
+#include "roevo/options.h"
 #include "roevo/tracking/rolling_shutter.h"
 
 namespace roevo {
@@ -190,6 +191,29 @@ TEST(ReadoutEstimator, FindsAKnownReadoutTimeInLinearData) {
     }
     EXPECT_NEAR(estimator.secondsPerRow(), truth, 0.01 * truth);
     EXPECT_LT(estimator.sigma(), sigma_before / 10);
+}
+
+// All frames that are tracked from a keyframe share its errors, which differ from keyframe to keyframe.
+TEST(ReadoutEstimator, ErrorsOfOneKeyframeDoNotLeadItAstray) {
+    std::mt19937 random(99);
+    const double truth = 2.5e-5, astray = 2e-5;  // s per row
+    ReadoutEstimator estimator(1e-4, SensorOptions().readout_memory);
+    double largest_error = 0;
+    for (int keyframe = 0; keyframe < 20; ++keyframe) {
+        const double seems = truth + (keyframe % 2 == 0 ? astray : -astray);
+        for (int frame = 0; frame < 27; ++frame) {
+            Evidence evidence;
+            evidence.information = Matrix6d::Identity() * 1e-6;
+            for (int i = 0; i < 50; ++i) {
+                const double by_readout = uniform(random, -1e5, 1e5);
+                evidence.add(randomJacobian(random), by_readout, -by_readout * seems);
+            }
+            evidence.giveTo(estimator);
+            if (keyframe >= 10)
+                largest_error = std::max(largest_error, std::abs(estimator.secondsPerRow() - truth));
+        }
+    }
+    EXPECT_LT(largest_error, 0.2 * astray);
 }
 
 TEST(ReadoutEstimator, WhatThePoseExplainsAsWellTeachesNothing) {
