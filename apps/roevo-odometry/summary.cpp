@@ -98,6 +98,17 @@ Json timingsJson(const RunReport& report) {
     return json;
 }
 
+// A frame's reasons, which are joined by semicolons.
+std::vector<std::string> singleReasons(const std::string& joined) {
+    std::vector<std::string> reasons;
+    for (std::size_t from = 0; from < joined.size();) {
+        const std::size_t end = std::min(joined.find("; ", from), joined.size());
+        reasons.push_back(joined.substr(from, end - from));
+        from = end + 2;
+    }
+    return reasons;
+}
+
 // What mapping took per keyframe, beside tracking, and how long tracking waited for it.
 Json mappingJson(const RunReport& report) {
     if (report.mode != Mode::kBundleAdjustment) return nullptr;
@@ -108,8 +119,8 @@ Json mappingJson(const RunReport& report) {
         longest_wait = std::max(longest_wait, f.result.ms.waiting);
         largest_correction = std::max(largest_correction, f.result.map_correction);
         largest_turn = std::max(largest_turn, f.result.map_turn);
-        if (f.result.map_reason.empty()) continue;
-        reasons[f.result.map_reason] = reasons.value(f.result.map_reason, 0) + 1;
+        for (const std::string& reason : singleReasons(f.result.map_reason))
+            reasons[reason] = reasons.value(reason, 0) + 1;
     }
     return {{"keyframes", times.size()},
             {"mean_ms", times.empty() ? 0 : sumOf(times) / static_cast<double>(times.size())},
