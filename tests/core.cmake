@@ -4,6 +4,7 @@ roevo_test(test_core_camera
 roevo_test(test_core_edges
   SOURCES core/test_gradient.cpp core/test_canny.cpp core/test_adjacency.cpp core/test_organize.cpp
           core/test_organize_trees.cpp core/test_normals.cpp core/test_edge_grid.cpp core/test_edge_depth.cpp
+          core/test_edge_sides.cpp
   LIBS roevo)
 roevo_test(test_core_tracking
   SOURCES core/test_kernels.cpp core/test_photometric.cpp core/test_fine_jacobians.cpp core/test_gauss_newton.cpp

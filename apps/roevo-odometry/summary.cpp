@@ -98,15 +98,14 @@ Json timingsJson(const RunReport& report) {
     return json;
 }
 
-// A frame's reasons, which are joined by semicolons.
-std::vector<std::string> singleReasons(const std::string& joined) {
-    std::vector<std::string> reasons;
+// Counts the kinds of a frame's reasons of mapping: "kind: which; kind: which".
+void countKinds(const std::string& joined, Json& kinds) {
     for (std::size_t from = 0; from < joined.size();) {
         const std::size_t end = std::min(joined.find("; ", from), joined.size());
-        reasons.push_back(joined.substr(from, end - from));
+        const std::string kind = joined.substr(from, std::min(joined.find(": ", from), end) - from);
+        kinds[kind] = kinds.value(kind, 0) + 1;
         from = end + 2;
     }
-    return reasons;
 }
 
 // What mapping took per keyframe, beside tracking, and how long tracking waited for it.
@@ -119,8 +118,7 @@ Json mappingJson(const RunReport& report) {
         longest_wait = std::max(longest_wait, f.result.ms.waiting);
         largest_correction = std::max(largest_correction, f.result.map_correction);
         largest_turn = std::max(largest_turn, f.result.map_turn);
-        for (const std::string& reason : singleReasons(f.result.map_reason))
-            reasons[reason] = reasons.value(reason, 0) + 1;
+        countKinds(f.result.map_reason, reasons);
     }
     return {{"keyframes", times.size()},
             {"mean_ms", times.empty() ? 0 : sumOf(times) / static_cast<double>(times.size())},

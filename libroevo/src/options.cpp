@@ -175,6 +175,8 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
          1, 5, &e.depth_patch_radius},
         {"edges", "depth_jump", "", "relative depth step that separates foreground from background", 0.005,
          0.5, &e.depth_jump},
+        {"edges", "two_sided_depth", "", "correct keyframe depths by the surfaces on both sides of each edge",
+         0, 0, &e.two_sided_depth},
         {"coarse", "levels", "", "image pyramid levels", 1, 7, &c.levels},
         {"coarse", "max_points", "points", "sampled edge points", 50, 100000, &c.max_points},
         {"coarse", "min_points", "points", "fewer cannot carry a photometric pose", 6, 1000, &c.min_points},

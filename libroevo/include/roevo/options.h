@@ -32,9 +32,10 @@ struct EdgeOptions {
     double threshold_smoothing = 0.7;  ///< share of the previous frame's threshold that is kept
     double angle_deg = 20;             ///< oriented BFS: largest angle between neighbouring gradients
     int min_length = 10;               ///< shortest organized edge, px
-    int tangent_span = 4;        ///< tangents are taken between the points this many places before and after
-    int depth_patch_radius = 2;  ///< foreground depth is looked for in a square of this radius, px
-    double depth_jump = 0.03;    ///< relative depth step that separates foreground from background
+    int tangent_span = 4;         ///< tangents are taken between the points this many places before and after
+    int depth_patch_radius = 2;   ///< foreground depth is looked for in a square of this radius, px
+    double depth_jump = 0.03;     ///< relative depth step that separates foreground from background
+    bool two_sided_depth = true;  ///< keyframe depths corrected by the surfaces on both sides of each edge
 };
 
 struct CoarseOptions {

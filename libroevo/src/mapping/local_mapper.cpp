@@ -135,27 +135,21 @@ double LocalMapper::sigmasFromTracked(const WindowKeyframe& view) const {
 bool LocalMapper::acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const {
     const MapKeyframe& keyframe = *view.keyframe;
     const Pose jump = keyframe.T_world_camera.inverse() * view.T_world_camera;
-    const double share = jump.translation().norm() / std::max(0.1, keyframe.median_depth);
-    const double degrees = rotationAngle(jump) / kDegree;
-    if (inliers < options_.fine.min_inliers) {
-        reason = "keyframe " + std::to_string(keyframe.id) + " left as it was: only " +
-                 std::to_string(inliers) + " observations of it fit the map";
+    const double moved = jump.translation().norm(), degrees = rotationAngle(jump) / kDegree;
+    const auto refuse = [&](const char* why, const char* detail, auto... values) {
+        char text[64];
+        std::snprintf(text, sizeof text, detail, values...);
+        reason = std::string("left as it was, ") + why + ": keyframe " + std::to_string(keyframe.id) + " (" +
+                 text + ")";
         return false;
+    };
+    if (inliers < options_.fine.min_inliers) return refuse("too few observations fit the map", "%d", inliers);
+    if (!view.T_world_camera.matrix().allFinite() ||
+        moved > kLargestJump * std::max(0.1, keyframe.median_depth) || degrees > kLargestTurn) {
+        return refuse("bundle adjustment moved it too far", "%.0f mm, %.1f deg", 1000 * moved, degrees);
     }
-    if (!view.T_world_camera.matrix().allFinite() || share > kLargestJump || degrees > kLargestTurn) {
-        reason = "keyframe " + std::to_string(keyframe.id) +
-                 " left as it was: bundle adjustment moved it by " +
-                 std::to_string(std::lround(1000 * jump.translation().norm())) + " mm";
-        return false;
-    }
-    if (const double sigmas = sigmasFromTracked(view); !(sigmas <= kMostSigmas)) {
-        char text[96];
-        std::snprintf(text, sizeof text,
-                      "keyframe %d left as it was tracked: bundle adjustment contradicts that by %.1f sigmas",
-                      keyframe.id, sigmas);
-        reason = text;
-        return false;
-    }
+    if (const double sigmas = sigmasFromTracked(view); !(sigmas <= kMostSigmas))
+        return refuse("bundle adjustment contradicts tracking", "%.1f sigmas", sigmas);
     return true;
 }
 

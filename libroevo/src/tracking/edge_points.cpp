@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "roevo/edges/edge_depth.h"
+#include "roevo/edges/edge_sides.h"
 #include "roevo/tracking/kernels.h"
 
 namespace roevo {
@@ -29,6 +30,9 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
     const bool distorted = camera.isDistorted();
     const auto jump = static_cast<float>(edge_options.depth_jump);
 
+    EdgeSides sides;
+    std::vector<float> edge_z;  // of the points of one edge
+    std::vector<std::uint8_t> edge_occluding;
     std::vector<std::size_t> piece;  // indices into `edges` of the run being built
     std::vector<float> piece_z;
     std::vector<std::uint8_t> piece_occluding;
@@ -57,20 +61,29 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
     for (int e = 0; e < edges.numEdges(); ++e) {
         const auto first = static_cast<std::size_t>(edges.begin[static_cast<std::size_t>(e)]);
         const auto end = static_cast<std::size_t>(edges.begin[static_cast<std::size_t>(e) + 1]);
+        edge_z.clear();
+        edge_occluding.clear();
         for (std::size_t i = first; i < end; ++i) {
             Eigen::Vector2d pixel(edges.x[i], edges.y[i]);
             if (distorted) pixel = camera.distortPixel(pixel);
             const EdgeDepth found = foregroundDepth(depth, static_cast<float>(pixel.x()),
                                                     static_cast<float>(pixel.y()), edge_options, sensor);
-            if (found.depth == 0) continue;
+            edge_z.push_back(found.depth);
+            edge_occluding.push_back(found.occluding ? 1 : 0);
+        }
+        if (edge_options.two_sided_depth)
+            sides.correct(edges, first, end, depth, camera, edge_options, edge_z);
+        for (std::size_t i = first; i < end; ++i) {
+            const float z = edge_z[i - first];
+            if (z == 0) continue;
             if (!piece.empty()) {
                 const float previous = piece_z.back();
                 const bool gap = i - piece.back() - 1 > kMaxGap;
-                if (gap || std::abs(found.depth - previous) > jump * std::min(found.depth, previous)) flush();
+                if (gap || std::abs(z - previous) > jump * std::min(z, previous)) flush();
             }
             piece.push_back(i);
-            piece_z.push_back(found.depth);
-            piece_occluding.push_back(found.occluding ? 1 : 0);
+            piece_z.push_back(z);
+            piece_occluding.push_back(edge_occluding[i - first]);
         }
         flush();
     }

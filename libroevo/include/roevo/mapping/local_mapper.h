@@ -23,7 +23,8 @@ struct MapUpdate {
     std::vector<std::int32_t> source;  ///< tracker's point of each of them
     int reused = 0;                    ///< old keyframes that took part
     RefinementResult refinement;
-    std::string reason;  ///< in words, where something was left as it was
+    /// In words, where something was left as it was: "kind: which", more of them joined by "; ".
+    std::string reason;
 };
 
 /// Local mapping: keeps the keyframes, relates the edges of a new one to those of its neighbours, fuses them

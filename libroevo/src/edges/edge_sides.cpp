@@ -1,0 +1,103 @@
+#include "roevo/edges/edge_sides.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roevo {
+namespace {
+
+constexpr int kReach = 4;                 ///< px to each side
+constexpr double kClear = 0.6;            ///< px; nearer samples may show either side
+constexpr std::size_t kWindow = 20;       ///< points before and after that help
+constexpr std::size_t kLeast = 4;         ///< of them at an end of the edge
+constexpr double kMinSamples = 12;        ///< of a side
+constexpr double kCorrelated = 4;         ///< neighbouring depths err together: one in so many is independent
+constexpr double kLeastVariance = 1e-10;  ///< relative: 1e-5 of the depth
+/// Squared standard errors at which a correction counts half. 1 to 4 are about as good.
+constexpr double kDoubt = 2;
+
+/// How much of an estimate to believe.
+double belief(double value, double variance) {
+    return value * value / (value * value + kDoubt * variance);
+}
+
+}  // namespace
+
+void EdgeSides::Sums::add(double distance, double value) {
+    count += 1;
+    s += distance;
+    q += value;
+    ss += distance * distance;
+    sq += distance * value;
+    qq += value * value;
+}
+
+EdgeSides::Sums EdgeSides::Sums::operator-(const Sums& other) const {
+    return {count - other.count, s - other.s, q - other.q, ss - other.ss, sq - other.sq, qq - other.qq};
+}
+
+void EdgeSides::sample(const OrganizedEdges& edges, std::size_t point, float z, const cv::Mat& depth,
+                       const PinholeCamera& camera, const EdgeOptions& options, Sums& plus,
+                       Sums& minus) const {
+    Eigen::Vector2d pixel(edges.x[point], edges.y[point]);
+    if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
+    const Eigen::Vector2d normal(edges.normal_x[point], edges.normal_y[point]);
+    const auto jump = static_cast<float>(options.depth_jump);
+    for (int step = -kReach; step <= kReach; ++step) {
+        const Eigen::Vector2d at = pixel + step * normal;
+        const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
+        if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
+        const double distance = normal.dot(Eigen::Vector2d(x, y) - pixel);
+        if (std::abs(distance) < kClear) continue;
+        const float there = depth.at<float>(y, x);
+        // Beyond a jump is what the edge does not belong to
+        if (!(there > 0) || std::abs(there - z) > jump * z) continue;
+        (distance > 0 ? plus : minus).add(std::abs(distance), static_cast<double>(z / there) - 1);
+    }
+}
+
+EdgeSides::Meeting EdgeSides::fit(const Sums& sums) {
+    if (sums.count < kMinSamples) return {};
+    const double mean_s = sums.s / sums.count, mean_q = sums.q / sums.count;
+    const double ss = sums.ss - sums.s * mean_s, sq = sums.sq - sums.s * mean_q,
+                 qq = sums.qq - sums.q * mean_q;
+    if (ss < 0.1 * sums.count) return {};
+    const double slope = sq / ss;
+    const double variance = kCorrelated * std::max(0.0, qq - slope * sq) / (sums.count - 2) + kLeastVariance;
+    return {true, mean_q - slope * mean_s, variance * (1 / sums.count + mean_s * mean_s / ss)};
+}
+
+double EdgeSides::correction(const Meeting& plus, const Meeting& minus) {
+    // With one side only there is nothing to tell apart, and the patch's plane is that side's
+    if (!plus.known || !minus.known) return 0;
+    const double variance = plus.variance + minus.variance;
+    const double bend = (plus.value * minus.variance + minus.value * plus.variance) / variance;
+    const double bend_belief = belief(bend, plus.variance * minus.variance / variance);
+    const double step_belief = belief(plus.value - minus.value, variance);
+    const double nearer = std::max(plus.value, minus.value);
+    return step_belief * nearer + (1 - step_belief) * bend_belief * bend;
+}
+
+void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first, std::size_t end, const cv::Mat& depth,
+                        const PinholeCamera& camera, const EdgeOptions& options, std::vector<float>& z) {
+    const std::size_t count = end - first;
+    plus_.assign(count + 1, Sums());
+    minus_.assign(count + 1, Sums());
+    for (std::size_t k = 0; k < count; ++k) {
+        plus_[k + 1] = plus_[k];
+        minus_[k + 1] = minus_[k];
+        if (z[k] > 0) sample(edges, first + k, z[k], depth, camera, options, plus_[k + 1], minus_[k + 1]);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        if (!(z[k] > 0)) continue;
+        // As many before as after, so that a depth that changes along the edge does not lean to one side
+        const std::size_t reach = std::min({kWindow, std::max(k, kLeast), std::max(count - 1 - k, kLeast)});
+        const std::size_t from = k > reach ? k - reach : 0, to = std::min(count, k + reach + 1);
+        const double value =
+            std::clamp(correction(fit(plus_[to] - plus_[from]), fit(minus_[to] - minus_[from])),
+                       -options.depth_jump, options.depth_jump);
+        z[k] = static_cast<float>(static_cast<double>(z[k]) / (1 + value));
+    }
+}
+
+}  // namespace roevo

@@ -1,0 +1,206 @@
+// Depth at an edge from the surfaces on both its sides.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "roevo/edges/edge_depth.h"
+#include "roevo/edges/edge_sides.h"
+#include "roevo/types.h"
+
+namespace roevo {
+namespace {
+
+const PinholeCamera kCamera{200, 160, 180, 180, 99.5, 79.5, {}};
+
+/// A straight edge through the image's middle, its image, and what is found along it.
+class EdgeSidesTest : public testing::Test {
+  protected:
+    /// @param degrees  direction of the edge's normal
+    void drawEdge(double degrees) {
+        normal_ = {std::cos(degrees * kDegree), std::sin(degrees * kDegree)};
+        const Eigen::Vector2d along(-normal_.y(), normal_.x());
+        edges_.clear();
+        for (int i = -40; i <= 40; ++i) {
+            const Eigen::Vector2d p = Eigen::Vector2d(99.7, 79.6) + i * along;
+            edges_.addPoint(static_cast<float>(p.x()), static_cast<float>(p.y()),
+                            static_cast<float>(normal_.x()), static_cast<float>(normal_.y()), 30);
+        }
+        edges_.finishEdge();
+        computeNormals(edges_, 4);
+    }
+
+    double distanceFromEdge(double u, double v) const {
+        return normal_.dot(Eigen::Vector2d(u - 99.7, v - 79.6));
+    }
+
+    /// @param depthAt  depth at a distance (px) from the edge and a height in the image
+    /// @param noise    one sigma, relative
+    void drawDepth(const std::function<double(double, double)>& depthAt, double noise = 0) {
+        std::normal_distribution<double> error(0, 1);
+        depth_.create(kCamera.height, kCamera.width, CV_32FC1);
+        for (int v = 0; v < kCamera.height; ++v) {
+            for (int u = 0; u < kCamera.width; ++u)
+                depth_.at<float>(v, u) =
+                    static_cast<float>(depthAt(distanceFromEdge(u, v), v) * (1 + noise * error(random_)));
+        }
+    }
+
+    std::vector<float> patches() const {
+        std::vector<float> z;
+        for (std::size_t i = 0; i < edges_.size(); ++i)
+            z.push_back(
+                foregroundDepth(depth_, edges_.x[i], edges_.y[i], EdgeOptions(), SensorOptions()).depth);
+        return z;
+    }
+    std::vector<float> corrected() {
+        std::vector<float> z = patches();
+        sides_.correct(edges_, 0, edges_.size(), depth_, kCamera, EdgeOptions(), z);
+        return z;
+    }
+    /// Root mean square, relative, of a step's or a bend's depth along the edge.
+    double errorOf(const std::vector<float>& z, const std::function<double(double, double)>& depthAt) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < z.size(); ++i) {
+            const double truth = depthAt(0, static_cast<double>(edges_.y[i]));
+            sum += std::pow(static_cast<double>(z[i]) / truth - 1, 2);
+        }
+        return std::sqrt(sum / static_cast<double>(z.size()));
+    }
+
+    Eigen::Vector2d normal_{1, 0};
+    OrganizedEdges edges_;
+    cv::Mat depth_;
+    EdgeSides sides_;
+    std::mt19937 random_{53};
+};
+
+double wall(double, double v) {
+    return 1 / (0.4 + 2e-4 * v);
+}
+/// Stands out from the wall by 1.5 % of the depth: below depth_jump, so that a patch does not cut there.
+double frameOnWall(double distance, double v) {
+    return distance <= 0 ? wall(0, v) : wall(0, v) * 1.015;
+}
+/// Two faces of a box that meet at the edge, which is nearer than both.
+double corner(double distance, double v) {
+    return 1 / (0.4 + 2e-4 * v - (distance > 0 ? 1.5e-3 : 8e-4) * std::abs(distance));
+}
+
+TEST_F(EdgeSidesTest, AnEdgeOnAPlaneStaysWhereItIs) {
+    for (const double degrees : {0.0, 30.0, 90.0, 217.0}) {
+        drawEdge(degrees);
+        drawDepth([](double d, double v) { return 1 / (0.4 + 1e-3 * d + 2e-4 * v); });
+        const std::vector<float> before = patches(), after = corrected();
+        for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(after[i], before[i], 5e-5) << degrees;
+    }
+}
+
+TEST_F(EdgeSidesTest, ASmallStepBelongsToTheNearerSideWhicheverThatIs) {
+    for (const double degrees : {0.0, 30.0, 45.0, 90.0, 180.0, 217.0}) {
+        drawEdge(degrees);
+        drawDepth(frameOnWall);
+        EXPECT_GT(errorOf(patches(), frameOnWall), 4e-3) << "the patch alone is in the middle";
+        EXPECT_LT(errorOf(corrected(), frameOnWall), 4e-4) << degrees;
+    }
+}
+
+TEST_F(EdgeSidesTest, WhereTwoFacesMeetTheEdgeIsTheirIntersection) {
+    for (const double degrees : {0.0, 30.0, 90.0, 217.0}) {
+        drawEdge(degrees);
+        drawDepth(corner);
+        EXPECT_GT(errorOf(patches(), corner), 2.5e-3) << "the patch cuts the corner";
+        EXPECT_LT(errorOf(corrected(), corner), 3e-4) << degrees;
+    }
+}
+
+TEST_F(EdgeSidesTest, NoiseMakesNoStepsOnAPlaneAndLeavesThoseThatAre) {
+    const auto plane = [](double, double v) { return wall(0, v); };
+    constexpr double kNoise = 5e-3;  // as a Kinect's at 2.5 m
+    double plane_before = 0, plane_after = 0, step_before = 0, step_after = 0;
+    constexpr int kRepeats = 20;
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+        drawEdge(17.0 * repeat);
+        drawDepth(plane, kNoise);
+        plane_before += errorOf(patches(), plane) / kRepeats;
+        plane_after += errorOf(corrected(), plane) / kRepeats;
+        drawDepth(frameOnWall, kNoise);
+        step_before += errorOf(patches(), frameOnWall) / kRepeats;
+        step_after += errorOf(corrected(), frameOnWall) / kRepeats;
+    }
+    EXPECT_LT(plane_after, 1.3 * plane_before) << plane_before;
+    EXPECT_LT(step_after, 0.5 * step_before) << step_before;
+}
+
+TEST_F(EdgeSidesTest, WithoutTheOtherSideOrWithoutDepthNothingIsChanged) {
+    drawEdge(0);
+    drawDepth(frameOnWall);
+    depth_.colRange(100, 200).setTo(0);  // a depth camera's shadow beside the step
+    const std::vector<float> before = patches();
+    EXPECT_EQ(corrected(), before);
+    drawDepth(frameOnWall);
+    std::vector<float> z = patches();
+    z[10] = z[11] = 0;
+    sides_.correct(edges_, 0, edges_.size(), depth_, kCamera, EdgeOptions(), z);
+    EXPECT_EQ(z[10], 0);
+    EXPECT_EQ(z[11], 0);
+    EXPECT_NEAR(z[12], frameOnWall(0, static_cast<double>(edges_.y[12])), 1e-3);
+}
+
+TEST_F(EdgeSidesTest, WhatLiesBeyondAJumpIsNotASide) {
+    const auto table = [](double distance, double) { return distance < 0 ? 1.5 : 2.5; };
+    drawEdge(0);
+    drawDepth(table);
+    for (const float z : corrected()) EXPECT_EQ(z, 1.5F);
+}
+
+TEST_F(EdgeSidesTest, StaysFiniteOnWhateverTheDepthImageHolds) {
+    std::uniform_real_distribution<float> any(0.2F, 9);
+    const float odd[] = {0, NAN, INFINITY, -1};
+    for (int repeat = 0; repeat < 20; ++repeat) {
+        drawEdge(40.0 * repeat);
+        drawDepth(wall, 0.02);
+        for (int i = 0; i < 8000; ++i) {
+            float& pixel =
+                depth_.at<float>(static_cast<int>(random_() % 160), static_cast<int>(random_() % 200));
+            pixel = i % 2 == 0 ? any(random_) : odd[random_() % 4];
+        }
+        const std::vector<float> before = patches(), after = corrected();
+        const double jump = EdgeOptions().depth_jump;
+        for (std::size_t i = 0; i < after.size(); ++i) {
+            ASSERT_TRUE(std::isfinite(after[i]));
+            EXPECT_LE(std::abs(static_cast<double>(before[i]) - static_cast<double>(after[i])),
+                      1.05 * jump * static_cast<double>(after[i]));
+        }
+    }
+}
+
+TEST_F(EdgeSidesTest, FollowsALensThatDistorts) {
+    // The edge is straight in ideal pixels; what the camera saw is bent
+    PinholeCamera lens = kCamera;
+    lens.distortion = {0.2, -0.1, 0, 0, 0};
+    drawEdge(0);
+    depth_.create(kCamera.height, kCamera.width, CV_32FC1);
+    for (int v = 0; v < kCamera.height; ++v) {
+        // The step runs where the lens puts the edge's column
+        const double seen = lens.distortPixel({99.7, static_cast<double>(v)}).x();
+        for (int u = 0; u < kCamera.width; ++u)
+            depth_.at<float>(v, u) = static_cast<float>(frameOnWall(u - seen, v));
+    }
+    std::vector<float> z;
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+        const Eigen::Vector2d p = lens.distortPixel({edges_.x[i], edges_.y[i]});
+        z.push_back(foregroundDepth(depth_, static_cast<float>(p.x()), static_cast<float>(p.y()),
+                                    EdgeOptions(), SensorOptions())
+                        .depth);
+    }
+    sides_.correct(edges_, 0, edges_.size(), depth_, lens, EdgeOptions(), z);
+    for (std::size_t i = 0; i < z.size(); ++i) {
+        const double v = lens.distortPixel({edges_.x[i], edges_.y[i]}).y();
+        EXPECT_NEAR(z[i] / frameOnWall(0, v), 1, 1e-3) << i;
+    }
+}
+
+}  // namespace
+}  // namespace roevo
