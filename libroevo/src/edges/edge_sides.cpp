@@ -23,13 +23,13 @@ double belief(double value, double variance) {
 
 }  // namespace
 
-void EdgeSides::Sums::add(double distance, double value) {
-    count += 1;
-    s += distance;
-    q += value;
-    ss += distance * distance;
-    sq += distance * value;
-    qq += value * value;
+void EdgeSides::Sums::add(double distance, double value, double weight) {
+    count += weight;
+    s += weight * distance;
+    q += weight * value;
+    ss += weight * distance * distance;
+    sq += weight * distance * value;
+    qq += weight * value * value;
 }
 
 EdgeSides::Sums EdgeSides::Sums::operator-(const Sums& other) const {
@@ -43,16 +43,29 @@ void EdgeSides::sample(const OrganizedEdges& edges, std::size_t point, float z, 
     if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
     const Eigen::Vector2d normal(edges.normal_x[point], edges.normal_y[point]);
     const auto jump = static_cast<float>(options.depth_jump);
-    for (int step = -kReach; step <= kReach; ++step) {
-        const Eigen::Vector2d at = pixel + step * normal;
-        const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
-        if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
+    const auto take = [&](int x, int y, double weight) {
+        if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) return;
         const double distance = normal.dot(Eigen::Vector2d(x, y) - pixel);
-        if (std::abs(distance) < kClear) continue;
+        if (std::abs(distance) < kClear) return;
         const float there = depth.at<float>(y, x);
         // Beyond a jump is what the edge does not belong to
-        if (!(there > 0) || std::abs(there - z) > jump * z) continue;
-        (distance > 0 ? plus : minus).add(std::abs(distance), static_cast<double>(z / there) - 1);
+        if (!(there > 0) || std::abs(there - z) > jump * z) return;
+        (distance > 0 ? plus : minus).add(std::abs(distance), static_cast<double>(z / there) - 1, weight);
+    };
+    // Column by column (or row by row), between the two pixels that the normal passes: where edges run along
+    // rows or columns, the nearest one would be off to the same side all along
+    const bool by_column = std::abs(normal.x()) >= std::abs(normal.y());
+    const int main = by_column ? 0 : 1, other = 1 - main;
+    const double slope = normal[other] / normal[main];
+    const int reach = static_cast<int>(std::lround(kReach * std::abs(normal[main])));
+    const int centre = static_cast<int>(std::lround(pixel[main]));
+    for (int i = centre - reach; i <= centre + reach; ++i) {
+        const double j = pixel[other] + (i - pixel[main]) * slope;
+        const int below = static_cast<int>(std::floor(j));
+        for (const int k : {below, below + 1}) {
+            const double weight = 1 - std::abs(j - k);
+            by_column ? take(i, k, weight) : take(k, i, weight);
+        }
     }
 }
 

@@ -28,7 +28,7 @@ class EdgeSides {
     /// Of samples (distance from the edge, px; inverse depth relative to the edge point's, minus 1).
     struct Sums {
         double count = 0, s = 0, q = 0, ss = 0, sq = 0, qq = 0;
-        void add(double distance, double value);
+        void add(double distance, double value, double weight);
         Sums operator-(const Sums& other) const;
     };
     /// Where a side's line meets the edge, and the variance of that.
