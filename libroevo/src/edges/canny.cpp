@@ -1,6 +1,7 @@
 #include "roevo/edges/canny.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -9,6 +10,7 @@ namespace roevo {
 namespace {
 
 constexpr std::uint8_t kNone = 0, kEdge = 1, kWeak = 2;
+constexpr int kBlock = 64;  ///< pixels of a row that are looked at together
 
 /// Magnitudes one step before and after (x, y) along the gradient, interpolated between the two neighbours
 /// that the gradient line passes, and that step in pixels.
@@ -49,6 +51,12 @@ inline bool isRidge(const float* magnitude, std::ptrdiff_t stride, int gx, int g
     return (here > before) & (here >= after);
 }
 
+bool anyAbove(const float* values, int count, float limit) {
+    int found = 0;
+    for (int i = 0; i < count; ++i) found |= values[i] >= limit ? 1 : 0;
+    return found != 0;
+}
+
 }  // namespace
 
 void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
@@ -67,15 +75,26 @@ void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
         const auto* gx = gradient.gx.ptr<std::int16_t>(y);
         const auto* gy = gradient.gy.ptr<std::int16_t>(y);
         auto* mask = out.mask.ptr<std::uint8_t>(y);
-        for (int x = kBorder; x < width - kBorder; ++x) {
-            const float m = magnitude[x];
-            if (m < low_f) continue;
-            if (!isRidge(magnitude + x, stride, gx[x], gy[x])) continue;
-            if (m >= high_f) {
-                mask[x] = kEdge;
-                stack.push_back(y * width + x);
-            } else {
-                mask[x] = kWeak;
+        for (int first = kBorder; first < width - kBorder; first += kBlock) {
+            const int end = std::min(first + kBlock, width - kBorder);
+            if (!anyAbove(magnitude + first, end - first, low_f)) continue;
+            // Collected without branches: where an image has edges, nobody can predict them
+            std::array<int, kBlock> at;
+            std::size_t candidates = 0, ridges = 0;
+            for (int x = first; x < end; ++x) {
+                at[candidates] = x;
+                candidates += magnitude[x] >= low_f ? 1 : 0;
+            }
+            for (std::size_t i = 0; i < candidates; ++i) {
+                const int x = at[i];
+                at[ridges] = x;
+                ridges += isRidge(magnitude + x, stride, gx[x], gy[x]) ? 1 : 0;
+            }
+            for (std::size_t i = 0; i < ridges; ++i) {
+                const int x = at[i];
+                const bool strong = magnitude[x] >= high_f;
+                mask[x] = strong ? kEdge : kWeak;
+                if (strong) stack.push_back(y * width + x);
             }
         }
     }
