@@ -134,6 +134,7 @@ EdgePoints3D liftPixels(const std::vector<cv::Point>& pixels, const Gradient& gr
         out.y.push_back(static_cast<float>(p.y()));
         out.z.push_back(static_cast<float>(p.z()));
         out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
+        out.correction.push_back(0);
         out.occluding.push_back(found.occluding ? 1 : 0);
     }
     out.image.finishEdge();

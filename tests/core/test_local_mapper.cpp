@@ -156,8 +156,8 @@ TEST_F(Mapper, ThoseThatMoveWithARefusedKeyframeAreNotRefusedWithIt) {
     wrong.parent_information = child.parent_information = Matrix6d::Identity() / (0.001 * 0.001);
     EXPECT_NE(mapper.insert(wrong).reason, "");
     const MapUpdate update = mapper.insert(child);
-    EXPECT_NE(update.reason.find("keyframe 3 left"), std::string::npos) << update.reason;
-    EXPECT_EQ(update.reason.find("keyframe 4 left"), std::string::npos) << update.reason;
+    EXPECT_NE(update.reason.find("keyframe 3 ("), std::string::npos) << update.reason;
+    EXPECT_EQ(update.reason.find("keyframe 4 ("), std::string::npos) << update.reason;
     EXPECT_LT(errorOf(mapper, 4, 4), 2e-3);
     EXPECT_NEAR(errorOf(mapper, 3, 3), 0.014, 1e-3);
 }

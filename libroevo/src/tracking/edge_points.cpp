@@ -31,10 +31,10 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
     const auto jump = static_cast<float>(edge_options.depth_jump);
 
     EdgeSides sides;
-    std::vector<float> edge_z;  // of the points of one edge
+    std::vector<float> edge_z, patch_z;  // of the points of one edge, with its sides and without
     std::vector<std::uint8_t> edge_occluding;
     std::vector<std::size_t> piece;  // indices into `edges` of the run being built
-    std::vector<float> piece_z;
+    std::vector<float> piece_z, piece_correction;
     std::vector<std::uint8_t> piece_occluding;
     const auto flush = [&] {
         if (piece.size() >= kMinPiece) {
@@ -50,12 +50,14 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
                 out.y.push_back(static_cast<float>(p.y()));
                 out.z.push_back(static_cast<float>(p.z()));
                 out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
+                out.correction.push_back(piece_correction[k]);
                 out.occluding.push_back(piece_occluding[k]);
             }
             out.image.finishEdge();
         }
         piece.clear();
         piece_z.clear();
+        piece_correction.clear();
         piece_occluding.clear();
     };
     for (int e = 0; e < edges.numEdges(); ++e) {
@@ -71,6 +73,7 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
             edge_z.push_back(found.depth);
             edge_occluding.push_back(found.occluding ? 1 : 0);
         }
+        patch_z = edge_z;
         if (edge_options.two_sided_depth)
             sides.correct(edges, first, end, depth, camera, edge_options, edge_z);
         for (std::size_t i = first; i < end; ++i) {
@@ -83,6 +86,7 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
             }
             piece.push_back(i);
             piece_z.push_back(z);
+            piece_correction.push_back(z - patch_z[i - first]);
             piece_occluding.push_back(edge_occluding[i - first]);
         }
         flush();

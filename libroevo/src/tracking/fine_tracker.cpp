@@ -84,7 +84,8 @@ void FineTracker::depthResiduals(const Keyframe& keyframe, const FineFrame& fram
         if (measured <= 0) continue;
         const float z2 = measured * measured, reference2 = keyframe.edges.z[i] * keyframe.edges.z[i];
         const float variance = noise2 * (z2 * z2 + reference2 * reference2) + kLeastVariance;
-        const float residual = z_[i] - measured;
+        // What the sides of the edge add in the keyframe they would add here, too
+        const float residual = z_[i] - keyframe.edges.correction[i] - measured;
         const float squared = residual * residual / variance;
         if (squared > chi2) continue;
         depth_residual_[k] = residual;

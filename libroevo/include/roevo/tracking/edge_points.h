@@ -16,6 +16,7 @@ namespace roevo {
 struct EdgePoints3D {
     OrganizedEdges image;                 ///< 2-D side; points without depth are gone
     std::vector<float> x, y, z;           ///< camera frame, m; padded to a multiple of the kernels' lanes
+    std::vector<float> correction;        ///< m that EdgeSides added to the depth of the patch
     std::vector<float> weight;            ///< w_s(depth), Eq. (20)
     std::vector<std::uint8_t> occluding;  ///< 1 where the point borders a background behind it
 
