@@ -72,6 +72,32 @@ TEST_F(OdometryProgram, TheSummaryTellsTheReadoutTime) {
     EXPECT_NEAR(summary()["camera"]["readout_time_s"], 0.002, 1e-9);
 }
 
+TEST_F(OdometryProgram, TheSummaryCountsKindsOfReasonsOfMapping) {
+    // No two observations agree so well: every edge is rejected, and keyframes stay as they were
+    ASSERT_EQ(runFrames(slidingRecording(40),
+                        {"--set", "mapping.max_spread=0.01", "--set", "keyframe.max_translation=0.02"})
+                  .exit_code,
+              0);
+    int given = 0, of_one_frame = 0;
+    for (const auto& row : rows()) {
+        const std::string& reasons = row.at(19);
+        int count = reasons.empty() ? 0 : 1;
+        for (std::size_t at = reasons.find("; "); at != std::string::npos; at = reasons.find("; ", at + 1))
+            ++count;
+        given += count;
+        of_one_frame = std::max(of_one_frame, count);
+    }
+    ASSERT_GE(of_one_frame, 2);
+    int counted = 0;
+    const nlohmann::json summarised = summary();
+    for (const auto& [kind, count] : summarised["mapping"]["reasons"].items()) {
+        EXPECT_EQ(kind.rfind("left as it was, ", 0), 0U) << kind;
+        EXPECT_EQ(kind.find_first_of("0123456789:;"), std::string::npos) << kind;
+        counted += count.get<int>();
+    }
+    EXPECT_EQ(counted, given);
+}
+
 TEST_F(OdometryProgram, FirstAndSkipChooseFrames) {
     ASSERT_EQ(runFrames(slidingRecording(12), {"--skip", "3", "--first", "4", "--quiet"}).exit_code, 0);
     ASSERT_EQ(rows().size(), 4u);
