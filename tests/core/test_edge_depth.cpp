@@ -45,7 +45,7 @@ TEST(EdgeDepth, SlantedPlaneIsExactBetweenPixels) {
     }
 }
 
-TEST(EdgeDepth, NeverLeavesTheRangeOfItsSamples) {
+TEST(EdgeDepth, NeverLeavesTheRangeOfItsSamplesByMoreThanThat) {
     std::mt19937 random(52);
     std::uniform_real_distribution<float> value(1.0F, 1.04F), place(3, 76);
     cv::Mat depth(80, 100, CV_32FC1);
@@ -54,8 +54,23 @@ TEST(EdgeDepth, NeverLeavesTheRangeOfItsSamples) {
     }
     for (int i = 0; i < 500; ++i) {
         const float z = at(depth, place(random), place(random)).depth;
-        EXPECT_GE(z, 1.0F);
-        EXPECT_LE(z, 1.04F);
+        EXPECT_GE(z, 0.96F);
+        EXPECT_LE(z, 1.08F);
+    }
+}
+
+TEST(EdgeDepth, TheFarEdgeOfWhatRecedesIsWhereItEndsNotAtItsLastSample) {
+    // A wall that recedes to the right ends between columns 49 and 50, in front of another one
+    cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(4.0F));
+    const auto receding = [](float u) { return 1 / (0.5F - 2e-3F * (u - 50)); };
+    for (int v = 0; v < 80; ++v) {
+        for (int u = 0; u < 50; ++u) depth.at<float>(v, u) = receding(static_cast<float>(u));
+    }
+    for (const float u : {49.0F, 49.3F, 49.5F, 49.8F, 50.0F}) {
+        const EdgeDepth found = at(depth, u, 40.2F);
+        EXPECT_TRUE(found.occluding);
+        EXPECT_NEAR(found.depth, receding(u), 1e-4F) << u;
+        EXPECT_GT(found.depth, receding(48)) << "it is a plane, not a mean";
     }
 }
 

@@ -13,7 +13,7 @@ struct EdgeDepth {
 
 /// An occluding edge belongs to the foreground: sorts the valid depths of the patch around (u, v), cuts at
 /// the first relative jump and evaluates the plane through the near ones (inverse depth is linear in the
-/// image) at (u, v), never beyond their own range.
+/// image) at (u, v), never farther beyond their range than that is long.
 /// @param depth  CV_32FC1, m, 0 where unknown
 /// @param u, v   sub-pixel position in `depth`, px
 EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOptions& edges,
