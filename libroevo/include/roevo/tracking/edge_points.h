@@ -28,8 +28,8 @@ struct EdgePoints3D {
 double depthWeight(double depth, const SensorOptions& sensor);
 
 /// Looks up the foreground depth of every edge point (`depth` is the raw image of the possibly distorted
-/// `camera`, the edges are in ideal pixels), corrects it by the edge's two sides (EdgeSides), splits edges at depth jumps and drops pieces of fewer than
-/// five points.
+/// `camera`, the edges are in ideal pixels), corrects it by the edge's two sides (EdgeSides), splits edges at
+/// depth jumps and drops pieces of fewer than five points.
 /// @param rows  motion of the camera over the image rows; points are moved to where they are at the reference
 /// row's time
 EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const PinholeCamera& camera,
