@@ -45,7 +45,7 @@ TEST(EdgeDepth, SlantedPlaneIsExactBetweenPixels) {
     }
 }
 
-TEST(EdgeDepth, NeverLeavesTheRangeOfItsSamplesByMoreThanThat) {
+TEST(EdgeDepth, NeverLeavesTheRangeOfItsSamples) {
     std::mt19937 random(52);
     std::uniform_real_distribution<float> value(1.0F, 1.04F), place(3, 76);
     cv::Mat depth(80, 100, CV_32FC1);
@@ -54,9 +54,33 @@ TEST(EdgeDepth, NeverLeavesTheRangeOfItsSamplesByMoreThanThat) {
     }
     for (int i = 0; i < 500; ++i) {
         const float z = at(depth, place(random), place(random)).depth;
-        EXPECT_GE(z, 0.96F);
-        EXPECT_LE(z, 1.08F);
+        EXPECT_GE(z, 1.0F);
+        EXPECT_LE(z, 1.04F);
     }
+}
+
+TEST(EdgeDepth, BesideItsSamplesItGoesNoFartherThanTheirRangeIsLong) {
+    std::mt19937 random(54);
+    std::uniform_real_distribution<float> value(1.0F, 1.02F), place(50, 51.4F);
+    cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(0));
+    int outside = 0;
+    for (int repeat = 0; repeat < 300; ++repeat) {
+        float nearest = 9, farthest = 0;
+        const float u = place(random);
+        const int seen = static_cast<int>(std::lround(u)) - 2;  // the first column of the patch
+        for (int v = 38; v <= 42; ++v) {
+            for (int x = 0; x < 50; ++x) depth.at<float>(v, x) = value(random);
+            for (int x = seen; x < 50; ++x) {
+                nearest = std::min(nearest, depth.at<float>(v, x));
+                farthest = std::max(farthest, depth.at<float>(v, x));
+            }
+        }
+        const float z = at(depth, u, 40).depth, range = farthest - nearest;
+        EXPECT_GE(z, nearest - range);
+        EXPECT_LE(z, farthest + range);
+        outside += z < nearest || z > farthest ? 1 : 0;
+    }
+    EXPECT_GT(outside, 10) << "else nothing was tried";
 }
 
 TEST(EdgeDepth, TheFarEdgeOfWhatRecedesIsWhereItEndsNotAtItsLastSample) {

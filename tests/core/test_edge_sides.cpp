@@ -5,6 +5,7 @@
 #include <functional>
 #include <random>
 
+#include "roevo/camera/pinhole_camera.h"
 #include "roevo/edges/edge_depth.h"
 #include "roevo/edges/edge_sides.h"
 #include "roevo/types.h"
@@ -47,16 +48,27 @@ class EdgeSidesTest : public testing::Test {
         }
     }
 
-    std::vector<float> patches() const {
-        std::vector<float> z;
+    /// Where the lens puts the edge's points.
+    std::vector<Eigen::Vector2d> pixels(const PinholeCamera& lens = kCamera) const {
+        std::vector<Eigen::Vector2d> seen;
         for (std::size_t i = 0; i < edges_.size(); ++i)
-            z.push_back(
-                foregroundDepth(depth_, edges_.x[i], edges_.y[i], EdgeOptions(), SensorOptions()).depth);
+            seen.push_back(lens.distortPixel({edges_.x[i], edges_.y[i]}));
+        return seen;
+    }
+    std::vector<float> patches(const PinholeCamera& lens = kCamera) const {
+        std::vector<float> z;
+        for (const Eigen::Vector2d& p : pixels(lens))
+            z.push_back(foregroundDepth(depth_, static_cast<float>(p.x()), static_cast<float>(p.y()),
+                                        EdgeOptions(), SensorOptions())
+                            .depth);
         return z;
+    }
+    void correct(std::vector<float>& z, const PinholeCamera& lens = kCamera) {
+        sides_.correct(edges_, 0, pixels(lens), depth_, static_cast<float>(EdgeOptions().depth_jump), z);
     }
     std::vector<float> corrected() {
         std::vector<float> z = patches();
-        sides_.correct(edges_, 0, edges_.size(), depth_, kCamera, EdgeOptions(), z);
+        correct(z);
         return z;
     }
     /// Root mean square, relative, of a step's or a bend's depth along the edge.
@@ -142,7 +154,7 @@ TEST_F(EdgeSidesTest, WithoutTheOtherSideOrWithoutDepthNothingIsChanged) {
     drawDepth(frameOnWall);
     std::vector<float> z = patches();
     z[10] = z[11] = 0;
-    sides_.correct(edges_, 0, edges_.size(), depth_, kCamera, EdgeOptions(), z);
+    correct(z);
     EXPECT_EQ(z[10], 0);
     EXPECT_EQ(z[11], 0);
     EXPECT_NEAR(z[12], frameOnWall(0, static_cast<double>(edges_.y[12])), 1e-3);
@@ -188,14 +200,8 @@ TEST_F(EdgeSidesTest, FollowsALensThatDistorts) {
         for (int u = 0; u < kCamera.width; ++u)
             depth_.at<float>(v, u) = static_cast<float>(frameOnWall(u - seen, v));
     }
-    std::vector<float> z;
-    for (std::size_t i = 0; i < edges_.size(); ++i) {
-        const Eigen::Vector2d p = lens.distortPixel({edges_.x[i], edges_.y[i]});
-        z.push_back(foregroundDepth(depth_, static_cast<float>(p.x()), static_cast<float>(p.y()),
-                                    EdgeOptions(), SensorOptions())
-                        .depth);
-    }
-    sides_.correct(edges_, 0, edges_.size(), depth_, lens, EdgeOptions(), z);
+    std::vector<float> z = patches(lens);
+    correct(z, lens);
     for (std::size_t i = 0; i < z.size(); ++i) {
         const double v = lens.distortPixel({edges_.x[i], edges_.y[i]}).y();
         EXPECT_NEAR(z[i] / frameOnWall(0, v), 1, 1e-3) << i;

@@ -165,10 +165,11 @@ TEST_F(RoevoOdometryTest, TheSemiDenseMapIsTheSurfaceInTheRobotsWorld) {
         const Eigen::Vector3d seen = T_optical_world * Eigen::Vector3d(x, y, z);
         Eigen::Vector2d pixel = camera.project(seen);
         if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
-        // Positions are kept in steps of 0.3 mm, 0.1 px here: half way between two pixels it may be either
+        // Positions are kept in steps of 0.3 mm, half of which is 0.05 px here: half way between two pixels
+        // it may be either
         double off = 1;
-        for (const double du : {-0.1, 0.1}) {
-            for (const double dv : {-0.1, 0.1}) {
+        for (const double du : {-0.05, 0.05}) {
+            for (const double dv : {-0.05, 0.05}) {
                 const auto u = static_cast<int>(std::lround(pixel.x() + du));
                 const auto v = static_cast<int>(std::lround(pixel.y() + dv));
                 off = std::min(off, std::abs(static_cast<double>(frame.depth.at<float>(v, u)) - seen.z()));

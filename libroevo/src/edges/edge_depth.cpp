@@ -9,11 +9,6 @@ namespace {
 
 constexpr int kMaxRadius = 5;
 constexpr int kMinForeground = 3;  ///< fewer near pixels are speckle
-/// Shares of the near samples' range that the plane may reach beyond it. The edge is up to a pixel past the
-/// last of them, and sometimes only two columns of them are in the patch. Kept within their range, the far
-/// end of whatever recedes came out too near, and a camera that moves forward moved too little.
-constexpr float kBeyond = 1;
-
 struct Sample {
     float z, dx, dy;
 };
@@ -89,9 +84,12 @@ EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOpti
         result.occluding = end < count;
     }
     const float inverse = planeAtOrigin(samples.data() + begin, end - begin);
-    const float beyond = kBeyond * (farthest - nearest);
-    result.depth = std::clamp(inverse > 0 ? 1 / inverse : farthest, std::max(nearest - beyond, near_limit),
-                              farthest + beyond);
+    // The edge is up to a pixel past the last near sample, and sometimes only two columns of them are in the
+    // patch. Kept within their range, the far end of whatever recedes came out too near, and a camera that
+    // moves forward moved too little.
+    const float range = farthest - nearest;
+    result.depth = std::clamp(inverse > 0 ? 1 / inverse : farthest, std::max(nearest - range, near_limit),
+                              std::min(farthest + range, far_limit));
     return result;
 }
 

@@ -36,19 +36,13 @@ EdgeSides::Sums EdgeSides::Sums::operator-(const Sums& other) const {
     return {count - other.count, s - other.s, q - other.q, ss - other.ss, sq - other.sq, qq - other.qq};
 }
 
-void EdgeSides::sample(const OrganizedEdges& edges, std::size_t point, float z, const cv::Mat& depth,
-                       const PinholeCamera& camera, const EdgeOptions& options, Sums& plus,
-                       Sums& minus) const {
-    Eigen::Vector2d pixel(edges.x[point], edges.y[point]);
-    if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
-    const Eigen::Vector2d normal(edges.normal_x[point], edges.normal_y[point]);
-    const auto jump = static_cast<float>(options.depth_jump);
+void EdgeSides::sample(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, float z,
+                       const cv::Mat& depth, float jump, Sums& plus, Sums& minus) {
     const auto take = [&](int x, int y, double weight) {
         if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) return;
         const double distance = normal.dot(Eigen::Vector2d(x, y) - pixel);
         if (std::abs(distance) < kClear) return;
         const float there = depth.at<float>(y, x);
-        // Beyond a jump is what the edge does not belong to
         if (!(there > 0) || std::abs(there - z) > jump * z) return;
         (distance > 0 ? plus : minus).add(std::abs(distance), static_cast<double>(z / there) - 1, weight);
     };
@@ -91,24 +85,26 @@ double EdgeSides::correction(const Meeting& plus, const Meeting& minus) {
     return step_belief * nearer + (1 - step_belief) * bend_belief * bend;
 }
 
-void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first, std::size_t end, const cv::Mat& depth,
-                        const PinholeCamera& camera, const EdgeOptions& options, std::vector<float>& z) {
-    const std::size_t count = end - first;
+void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first,
+                        const std::vector<Eigen::Vector2d>& pixels, const cv::Mat& depth, float jump,
+                        std::vector<float>& z) {
+    const std::size_t count = pixels.size();
     plus_.assign(count + 1, Sums());
     minus_.assign(count + 1, Sums());
     for (std::size_t k = 0; k < count; ++k) {
         plus_[k + 1] = plus_[k];
         minus_[k + 1] = minus_[k];
-        if (z[k] > 0) sample(edges, first + k, z[k], depth, camera, options, plus_[k + 1], minus_[k + 1]);
+        const Eigen::Vector2d normal(edges.normal_x[first + k], edges.normal_y[first + k]);
+        if (z[k] > 0) sample(pixels[k], normal, z[k], depth, jump, plus_[k + 1], minus_[k + 1]);
     }
+    const auto most = static_cast<double>(jump);
     for (std::size_t k = 0; k < count; ++k) {
         if (!(z[k] > 0)) continue;
         // As many before as after, so that a depth that changes along the edge does not lean to one side
         const std::size_t reach = std::min({kWindow, std::max(k, kLeast), std::max(count - 1 - k, kLeast)});
         const std::size_t from = k > reach ? k - reach : 0, to = std::min(count, k + reach + 1);
         const double value =
-            std::clamp(correction(fit(plus_[to] - plus_[from]), fit(minus_[to] - minus_[from])),
-                       -options.depth_jump, options.depth_jump);
+            std::clamp(correction(fit(plus_[to] - plus_[from]), fit(minus_[to] - minus_[from])), -most, most);
         z[k] = static_cast<float>(static_cast<double>(z[k]) / (1 + value));
     }
 }

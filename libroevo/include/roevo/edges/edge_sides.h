@@ -1,11 +1,10 @@
 #pragma once
+#include <Eigen/Core>
 #include <cstddef>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-#include "roevo/camera/pinhole_camera.h"
 #include "roevo/edges/organized_edges.h"
-#include "roevo/options.h"
 
 namespace roevo {
 
@@ -17,12 +16,14 @@ namespace roevo {
 /// edge is there; where they differ by more than they err, it belongs to the nearer side.
 class EdgeSides {
   public:
-    /// @param edges       in ideal pixels, with normals
-    /// @param first, end  the edge's points
-    /// @param depth       CV_32FC1, m, 0 where unknown, of the possibly distorted `camera`
-    /// @param z           depths of the points, m, 0 where unknown (those stay); corrected in place
-    void correct(const OrganizedEdges& edges, std::size_t first, std::size_t end, const cv::Mat& depth,
-                 const PinholeCamera& camera, const EdgeOptions& options, std::vector<float>& z);
+    /// @param edges   with normals
+    /// @param first   the edge's first point
+    /// @param pixels  of the edge's points in `depth`, px; a lens that distorts hardly turns normals
+    /// @param depth   CV_32FC1, m, 0 where unknown
+    /// @param jump    relative step of depth beyond which is what the edge does not belong to
+    /// @param z       depths of the points, m, 0 where unknown (those stay); corrected in place
+    void correct(const OrganizedEdges& edges, std::size_t first, const std::vector<Eigen::Vector2d>& pixels,
+                 const cv::Mat& depth, float jump, std::vector<float>& z);
 
   private:
     /// Of samples (distance from the edge, px; inverse depth relative to the edge point's, minus 1).
@@ -36,8 +37,8 @@ class EdgeSides {
         bool known = false;
         double value = 0, variance = 0;
     };
-    void sample(const OrganizedEdges& edges, std::size_t point, float z, const cv::Mat& depth,
-                const PinholeCamera& camera, const EdgeOptions& options, Sums& plus, Sums& minus) const;
+    static void sample(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, float z,
+                       const cv::Mat& depth, float jump, Sums& plus, Sums& minus);
     static Meeting fit(const Sums& sums);
     static double correction(const Meeting& plus, const Meeting& minus);
 
