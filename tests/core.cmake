@@ -28,10 +28,10 @@ foreach(suite PoseHistory KeyframeFromMap FineTracking OdometryAccuracy Odometry
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
 add_executable(test_core_mapped_runs core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp
-               core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp)
+               core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp)
 target_link_libraries(test_core_mapped_runs PRIVATE roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse)
-  add_test(NAME ${suite} COMMAND test_core_mapped_runs --gtest_filter=${suite}.*)
+foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout)
+  add_test(NAME ${suite} COMMAND test_core_mapped_runs --gtest_filter=*${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
 roevo_test(test_core_sequences

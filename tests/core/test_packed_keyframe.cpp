@@ -43,6 +43,33 @@ TEST(QuantizedArray, EqualValuesAndOnlyOneComeBackAsTheyAre) {
     EXPECT_NO_THROW(QuantizedArray(values, 0));
 }
 
+TEST(MapKeyframe, PointsGoWhereAnotherMotionOfTheRowsPutsThemAndBack) {
+    const MapKeyframe original = someKeyframe();
+    const PinholeCamera camera = mappingCamera();
+    MapKeyframe keyframe = original;
+    RowMotion rows = keyframe.row_motion;
+    rows.velocity = {0.4, -0.1, 0.2};
+    rows.turn = {0.1, 0.5, -0.2};
+    rows.seconds_per_row = 0.02 / camera.height;
+    rows.reference_row = camera.height / 2.0;
+    setRowMotion(keyframe, rows, camera);
+    EXPECT_EQ(keyframe.row_motion, rows);
+    double furthest = 0;
+    for (std::size_t i = 0; i < keyframe.size(); ++i) {
+        const Eigen::Vector3d expected =
+            rows.toReference(original.point(i), static_cast<double>(original.image.y[i]));
+        EXPECT_LT((keyframe.point(i) - expected).norm(), 1e-5);
+        const Eigen::Vector2d pixel = camera.project(expected);
+        EXPECT_NEAR(keyframe.image.x[i], pixel.x(), 0.01);
+        EXPECT_NEAR(keyframe.image.y[i], pixel.y(), 0.01);
+        furthest = std::max(furthest, (expected - original.point(i)).norm());
+    }
+    EXPECT_GT(furthest, 0.003);
+    setRowMotion(keyframe, original.row_motion, camera);
+    for (std::size_t i = 0; i < keyframe.size(); ++i)
+        EXPECT_LT((keyframe.point(i) - original.point(i)).norm(), 0.03 * furthest) << "to first order";
+}
+
 TEST(PackedKeyframe, PointsComeBackFarBelowTheNoise) {
     const MapKeyframe original = someKeyframe();
     ASSERT_GT(original.size(), 200U);

@@ -117,6 +117,32 @@ TEST(RowMotion, PyramidLevelsSeeTheSameShift) {
     }
 }
 
+TEST(RowMotion, ExchangedForAnotherMotionAPointIsWhereThatWouldHavePutIt) {
+    std::mt19937 random(92);
+    double furthest = 0;
+    for (int i = 0; i < 500; ++i) {
+        const RowMotion one = randomMotion(random), other = randomMotion(random).at(-2e-5);
+        const Eigen::Vector3d seen(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, 1, 4));
+        const double row = uniform(random, 0, 479);
+        const Eigen::Vector3d by_one = one.toReference(seen, row), by_other = other.toReference(seen, row);
+        const double apart = (by_one - by_other).norm();
+        furthest = std::max(furthest, apart);
+        EXPECT_LT((one.exchange(by_one, row, other) - by_other).norm(), 0.03 * (apart + 0.01));
+        EXPECT_LT((one.exchange(by_one, row, one) - by_one).norm(), 1e-12);
+    }
+    EXPECT_GT(furthest, 0.03) << "else nothing was moved";
+}
+
+TEST(RowMotion, IsKnownOnceAnythingMoves) {
+    RowMotion rows;
+    rows.seconds_per_row = 1e-4;
+    rows.reference_row = 100;
+    EXPECT_FALSE(rows.known());
+    EXPECT_EQ(rows, rows.at(1e-4));
+    rows.turn.y() = 1e-9;
+    EXPECT_TRUE(rows.known());
+}
+
 TEST(RollingShutter, MotionIsTheCamerasVelocityInItsOwnFrame) {
     std::mt19937 random(96);
     for (int i = 0; i < 50; ++i) {
@@ -214,6 +240,23 @@ TEST(ReadoutEstimator, ErrorsOfOneKeyframeDoNotLeadItAstray) {
         }
     }
     EXPECT_LT(largest_error, 0.2 * astray);
+}
+
+TEST(ReadoutEstimator, AFrameIsWorthWhatItAddsInProportionToWhatIsKnown) {
+    std::mt19937 random(100);
+    ReadoutEstimator estimator(1e-4, 1);
+    Evidence evidence;
+    for (int i = 0; i < 50; ++i) evidence.add(randomJacobian(random), uniform(random, -1e5, 1e5), 0);
+    const double first = estimator.worth(evidence.information, evidence.mixed, evidence.own);
+    EXPECT_GT(first, 100) << "the prior is wide";
+    evidence.giveTo(estimator);
+    // Known n times over, once more adds 1 / n (and the prior)
+    EXPECT_NEAR(estimator.worth(evidence.information, evidence.mixed, evidence.own), first / (first + 1),
+                1e-9);
+    evidence.giveTo(estimator);
+    EXPECT_NEAR(estimator.worth(evidence.information, evidence.mixed, evidence.own), first / (2 * first + 1),
+                1e-9);
+    EXPECT_EQ(estimator.worth(-Matrix6d::Identity(), evidence.mixed, evidence.own), 0);
 }
 
 TEST(ReadoutEstimator, WhatThePoseExplainsAsWellTeachesNothing) {

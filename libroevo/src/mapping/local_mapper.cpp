@@ -20,6 +20,7 @@ constexpr double kLargestJump = 0.1, kLargestTurn = 5;
 /// further from keyframe to keyframe than from frame to frame, and misleads the map more than it does
 /// tracking.
 constexpr double kMostSigmas = 4;
+constexpr double kSameReadout = 2e-4;  ///< s; smaller changes are not worth moving all points
 
 /// Whether tracking told how well it knows the motion from the parent.
 bool hasInformation(const MapKeyframe& keyframe) {
@@ -61,6 +62,24 @@ void LocalMapper::hold(int id) {
         packed->second.unpackInto(keyframe, camera_, options_.sensor);
 }
 
+void LocalMapper::bringToReadout(MapKeyframe& keyframe) const {
+    const RowMotion& rows = keyframe.row_motion;
+    if (keyframe.size() > 0 &&
+        std::abs(rows.seconds_per_row - seconds_per_row_) * camera_.height > kSameReadout)
+        roevo::setRowMotion(keyframe, rows.at(seconds_per_row_), camera_);
+}
+
+void LocalMapper::prepare(const std::vector<const MapKeyframe*>& members) {
+    for (const MapKeyframe* member : members) {
+        MapKeyframe& keyframe = keyframes_.at(member->id);
+        hold(member->id);
+        const double before = keyframe.row_motion.seconds_per_row;
+        bringToReadout(keyframe);
+        // What was packed is not what it is now
+        if (keyframe.row_motion.seconds_per_row != before) packed_.erase(member->id);
+    }
+}
+
 void LocalMapper::leaveWindow(MapKeyframe& newest) {
     compact(newest);
     const std::vector<const MapKeyframe*> held = recentOf(newest.id + 1);
@@ -77,6 +96,7 @@ std::map<int, MapKeyframe> LocalMapper::unpacked() const {
     for (auto& [id, keyframe] : all)
         if (const auto packed = packed_.find(id); keyframe.size() == 0 && packed != packed_.end())
             packed->second.unpackInto(keyframe, camera_, options_.sensor);
+    for (auto& [id, keyframe] : all) bringToReadout(keyframe);
     return all;
 }
 
@@ -176,6 +196,12 @@ void LocalMapper::setFound(int keyframe, std::vector<float> shares) {
         at->second.found = std::move(shares);
 }
 
+void LocalMapper::setRowMotion(int keyframe, const RowMotion& rows) {
+    const auto at = keyframes_.find(keyframe);
+    if (at == keyframes_.end() || at->second.size() == 0 || at->second.row_motion.known()) return;
+    roevo::setRowMotion(at->second, rows, camera_);
+}
+
 MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     const int id = inserted.id;
     if (const auto parent = keyframes_.find(inserted.parent); parent != keyframes_.end()) {
@@ -184,11 +210,12 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     if (inserted.begins_track) track_begin_ = id;
     MapKeyframe& keyframe = keyframes_.emplace(id, std::move(inserted)).first->second;
     const std::vector<const MapKeyframe*> recent = recentOf(id);
+    prepare(recent);
     graph_.insert(keyframe, recent, camera_, options_.fine.final_radius);
     std::vector<const MapKeyframe*> reused;
     if (options_.mapping.reuse_keyframes) {
         reused = nearbyOf(keyframe, recent.size());
-        for (const MapKeyframe* old : reused) hold(old->id);
+        prepare(reused);
         graph_.insert(keyframe, reused, camera_, options_.fine.final_radius);
     }
 

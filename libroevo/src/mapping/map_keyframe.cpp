@@ -9,6 +9,7 @@ namespace roevo {
 namespace {
 
 constexpr int kSlopeSpan = 4;         ///< points to each side: depth is noisy
+constexpr double kNearest = 0.05;     ///< m; a velocity that brings points nearer is none
 constexpr float kLeastSpread = 1.0f;  ///< px^2 times points^2; less and a slope cannot be told
 
 /// Arrays that grow by doubling would waste half of their memory.
@@ -60,6 +61,23 @@ void computeSlopes(MapKeyframe& keyframe) {
     }
 }
 
+void setRowMotion(MapKeyframe& keyframe, const RowMotion& rows, const PinholeCamera& camera) {
+    for (std::size_t i = 0; i < keyframe.size(); ++i) {
+        // Its row is not kept; where it would be seen is near enough
+        const Eigen::Vector3d p =
+            keyframe.row_motion.exchange(keyframe.point(i), static_cast<double>(keyframe.image.y[i]), rows);
+        if (!(p.z() > kNearest)) continue;
+        const Eigen::Vector2d pixel = camera.project(p);
+        keyframe.x[i] = static_cast<float>(p.x());
+        keyframe.y[i] = static_cast<float>(p.y());
+        keyframe.z[i] = static_cast<float>(p.z());
+        keyframe.image.x[i] = static_cast<float>(pixel.x());
+        keyframe.image.y[i] = static_cast<float>(pixel.y());
+    }
+    computeSlopes(keyframe);
+    keyframe.row_motion = rows;
+}
+
 void compact(MapKeyframe& keyframe) {
     for (auto* array : {&keyframe.image.gradient_x, &keyframe.image.gradient_y, &keyframe.image.strength}) {
         array->clear();
@@ -102,6 +120,7 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
         out.image.finishEdge();
     }
     computeSlopes(out);
+    out.row_motion = keyframe.row_motion;
     out.found.assign(static_cast<std::size_t>(out.image.numEdges()), -1);
     const std::size_t padded = kernels::paddedSize(out.size());
     out.x.resize(padded, 0);

@@ -35,7 +35,11 @@ struct MappingThread::Impl {
 MapResult MappingThread::Impl::run(MapJob job) {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
-    if (job.previous >= 0) mapper.setFound(job.previous, std::move(job.found));
+    if (job.previous >= 0) {
+        mapper.setFound(job.previous, std::move(job.found));
+        mapper.setRowMotion(job.previous, job.previous_rows);
+    }
+    mapper.setReadout(job.seconds_per_row);
     MapResult result;
     result.update = mapper.insert(std::move(job.keyframe));
     result.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();

@@ -1,5 +1,6 @@
 #include "keyframe_maker.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +31,28 @@ std::vector<float> ofAllPoints(const OrganizedEdges& image, const std::vector<st
     return all;
 }
 
+/// To where the edge points that they were sampled from are now.
+void movePhotometricPoints(Keyframe& keyframe) {
+    PhotometricPoints& points = keyframe.photometric;
+    for (std::size_t k = 0; k < points.source.size(); ++k) {
+        const auto i = static_cast<std::size_t>(points.source[k]);
+        points.x[k] = keyframe.edges.x[i];
+        points.y[k] = keyframe.edges.y[i];
+        points.z[k] = keyframe.edges.z[i];
+    }
+}
+
 }  // namespace
+
+void keepForKeyframe(const RgbdFrame& frame, const RowMotion& still, FrameData& data) {
+    data.images.timestamp = frame.timestamp;
+    frame.grey.copyTo(data.images.grey);
+    frame.depth.copyTo(data.images.depth);
+    frame.colour.copyTo(data.images.colour);
+    data.row_motion = still;
+    data.covariance.setZero();
+    data.may_be_keyframe = false;
+}
 
 bool keyframeIsDue(const Keyframe& keyframe, const FrameResult& result, const KeyframeOptions& options) {
     const Pose T_keyframe_current = keyframe.T_world_camera.inverse() * result.T_world_camera;
@@ -79,6 +101,34 @@ std::vector<float> foundShares(const Keyframe& keyframe) {
     return shares;
 }
 
+RowMotion firstMotion(const Keyframe& keyframe, const Pose& T_next_keyframe, double next_timestamp) {
+    constexpr double kLongest = 0.15;  // s
+    const double dt = next_timestamp - keyframe.timestamp;
+    RowMotion rows = keyframe.row_motion;
+    if (!(dt > 0 && dt <= kLongest)) return rows;
+    const Pose T_keyframe_next = T_next_keyframe.inverse();
+    const Eigen::AngleAxisd turn(T_keyframe_next.linear());
+    rows.turn = turn.angle() / dt * turn.axis();
+    rows.velocity = T_keyframe_next.translation() / dt;
+    return rows;
+}
+
+void setRowMotion(Keyframe& keyframe, const RowMotion& rows) {
+    constexpr double kNearest = 0.05;  // m; a velocity that brings points nearer is none
+    if (rows == keyframe.row_motion) return;
+    EdgePoints3D& edges = keyframe.edges;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const Eigen::Vector3d p = keyframe.row_motion.exchange(
+            Eigen::Vector3d(edges.x[i], edges.y[i], edges.z[i]), static_cast<double>(edges.image.y[i]), rows);
+        if (!(p.z() > kNearest)) continue;
+        edges.x[i] = static_cast<float>(p.x());
+        edges.y[i] = static_cast<float>(p.y());
+        edges.z[i] = static_cast<float>(p.z());
+    }
+    keyframe.row_motion = rows;
+    movePhotometricPoints(keyframe);
+}
+
 void takeFromMap(Keyframe& keyframe, const MapUpdate& update) {
     EdgePoints3D& edges = keyframe.edges;
     const std::vector<float> ratio = ofAllPoints(edges.image, update.source, update.depth_ratio);
@@ -89,14 +139,10 @@ void takeFromMap(Keyframe& keyframe, const MapUpdate& update) {
         edges.z[i] *= ratio[i];
         edges.weight[i] *= weight[i];
     }
+    movePhotometricPoints(keyframe);
     PhotometricPoints& points = keyframe.photometric;
-    for (std::size_t k = 0; k < points.source.size(); ++k) {
-        const auto i = static_cast<std::size_t>(points.source[k]);
-        points.x[k] = edges.x[i];
-        points.y[k] = edges.y[i];
-        points.z[k] = edges.z[i];
-        points.weight[k] *= weight[i];
-    }
+    for (std::size_t k = 0; k < points.source.size(); ++k)
+        points.weight[k] *= weight[static_cast<std::size_t>(points.source[k])];
 }
 
 EdgeMap mapEdgesOf(const Keyframe& kf, const RgbdFrame& frame, const PinholeCamera& camera) {

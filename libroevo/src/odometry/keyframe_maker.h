@@ -11,6 +11,9 @@
 
 namespace roevo {
 
+/// Copies what a keyframe would need of a frame that was not tracked yet.
+void keepForKeyframe(const RgbdFrame& frame, const RowMotion& still, FrameData& data);
+
 /// Whether the frame sees so much less than the keyframe, or from so far away, that it had better become one.
 bool keyframeIsDue(const Keyframe& keyframe, const FrameResult& result, const KeyframeOptions& options);
 
@@ -18,6 +21,13 @@ bool keyframeIsDue(const Keyframe& keyframe, const FrameResult& result, const Ke
 /// `keyframe` is not to be used).
 std::string makeKeyframe(const FrameData& data, int id, const PinholeCamera& camera,
                          const OdometryOptions& options, const OdometryStages& stages, Keyframe& keyframe);
+
+/// Brings the keyframe's points to where they are with another motion of its rows.
+void setRowMotion(Keyframe& keyframe, const RowMotion& rows);
+
+/// How the rows of a keyframe moved that is the first of its track: that shows only in the next frame, and
+/// taken for still it would teach that there is no read-out time. Still where the next frame is too late.
+RowMotion firstMotion(const Keyframe& keyframe, const Pose& T_next_keyframe, double next_timestamp);
 
 /// Share of the frames that looked for each edge of the keyframe and found it; negative where too few did.
 std::vector<float> foundShares(const Keyframe& keyframe);

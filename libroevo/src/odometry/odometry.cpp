@@ -66,7 +66,6 @@ struct Odometry::Impl {
     void applyMapUpdate(const MapUpdate& update, FrameResult& result);
     PoseHistory finalPoses() const;
     void renewKeyframe(FrameResult& result);
-    void keepForKeyframe(const RgbdFrame& frame);
     void process(const RgbdFrame& frame, FrameResult& result);
     bool trackFrame(const RgbdFrame& frame, FrameResult& result);
     bool trackFrom(const std::vector<Pose>& guesses, const PosePrior& prior, const RgbdFrame& frame,
@@ -96,7 +95,9 @@ std::string Odometry::Impl::startKeyframe(const FrameData& data) {
         if (last) {
             job.previous = last->id;
             job.found = foundShares(*last);
+            job.previous_rows = last->row_motion;
         }
+        job.seconds_per_row = motion.secondsPerRow();
         map->submit(std::move(job), frame_index);
         return {};
     }
@@ -155,6 +156,7 @@ void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_curre
 }
 
 bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
+    setRowMotion(*keyframe, keyframe->row_motion.at(motion.secondsPerRow()));
     const Pose& T_world_keyframe = keyframe->T_world_camera;
     const Pose T_last_keyframe = T_world_camera.inverse() * T_world_keyframe;
     const Pose T_predicted_keyframe = motion.predict(frame.timestamp).inverse() * T_world_keyframe;
@@ -178,7 +180,9 @@ bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
 bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior& prior,
                                const RgbdFrame& frame, FrameResult& result) {
     const Pose T_world_keyframe = keyframe->T_world_camera;
-    const RollingShutter shutter = motion.shutter(frame.timestamp, T_world_keyframe);
+    RollingShutter shutter = motion.shutter(frame.timestamp, T_world_keyframe);
+    // Two images in a row are sheared nearly alike: better both for still than one of them
+    if (!keyframe->row_motion.known()) shutter.seconds_per_row = 0;
 
     const Stopwatch coarse_watch(stages.clock);
     const CoarseResult aligned = coarse.track(*keyframe, now.pyramid, ideal, shutter, guesses, brightness);
@@ -218,11 +222,14 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
         covariance = refined.covariance;
     }
     now.row_motion = shutter.motion(T_current_keyframe);
-    if (options.mode != Mode::kCoarse && shutter.since_previous > 0) {
-        fine.addReadoutEvidence(*keyframe, T_current_keyframe, now.row_motion, view, motion.readout());
-    }
     if (map) fine.countHits(*keyframe, ideal);
     result.matched_ratio = fine.matches().matchedRatio();
+    if (!keyframe->row_motion.known()) {
+        setRowMotion(*keyframe, firstMotion(*keyframe, T_current_keyframe, frame.timestamp));
+    } else if (options.mode != Mode::kCoarse && options.sensor.estimate_readout &&
+               shutter.since_previous > 0) {
+        fine.addReadoutEvidence(*keyframe, T_current_keyframe, shutter, view, motion.readout());
+    }
     result.T_world_camera = T_world_keyframe * T_current_keyframe.inverse();
     orthonormalise(result.T_world_camera);
     setCovariance(covariance, T_current_keyframe, result);
@@ -239,7 +246,7 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
     applyMapUpdates(result);
     const Stopwatch edge_watch(stages.clock);
     std::swap(now, before);
-    keepForKeyframe(frame);
+    keepForKeyframe(frame, motion.stillRows(), now);
     const cv::Mat& grey = undistorter.apply(now.images.grey, now.undistorted);
     extractor.extract(grey, now.edges);
     grid.build(now.edges, ideal.width, ideal.height);
@@ -276,16 +283,6 @@ void Odometry::Impl::process(const RgbdFrame& frame, FrameResult& result) {
     }
     last_timestamp = frame.timestamp;
     ++frame_index;
-}
-
-void Odometry::Impl::keepForKeyframe(const RgbdFrame& frame) {
-    now.images.timestamp = frame.timestamp;
-    frame.grey.copyTo(now.images.grey);
-    frame.depth.copyTo(now.images.depth);
-    frame.colour.copyTo(now.images.colour);
-    now.row_motion = motion.stillRows();
-    now.covariance.setZero();
-    now.may_be_keyframe = false;
 }
 
 void Odometry::Impl::renewKeyframe(FrameResult& result) {

@@ -12,13 +12,6 @@
 namespace roevo {
 namespace {
 
-/// How much less the evidence of one frame counts for the read-out time: its velocity is only known from two
-/// poses.
-constexpr double kReadoutCaution = 50;
-/// Points were associated where the present read-out time puts them, so that residuals show only a part of
-/// what it lacks; the gain makes up for about as much as was measured. The fixed point, no residual left,
-/// does not depend on it.
-constexpr double kReadoutGain = 2.5;
 constexpr double kOverRelaxation = 1.6;
 /// Once the search radius is the final one, points keep what they were associated with until the image has
 /// moved so far since, px: what they would be associated with instead lies on the same edge next to it.
@@ -28,18 +21,23 @@ constexpr double kFar = 1e9;    ///< px; further than any motion
 
 }  // namespace
 
-void FineTracker::project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera,
+void FineTracker::project(const std::vector<float>& x, const std::vector<float>& y,
+                          const std::vector<float>& z, const Pose& pose, const PinholeCamera& camera,
                           const RowMotion& rows) {
-    const EdgePoints3D& edges = keyframe.edges;
-    const std::size_t padded = edges.x.size();
+    const std::size_t padded = x.size();
     for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
-    kernels::best().project(makeProjection(pose, camera, rows), edges.x.data(), edges.y.data(),
-                            edges.z.data(), padded, {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+    kernels::best().project(makeProjection(pose, camera, rows), x.data(), y.data(), z.data(), padded,
+                            {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
 }
 
 void FineTracker::associate(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_current_keyframe,
                             const RowMotion& rows, double radius) {
-    project(keyframe, T_current_keyframe, *frame.camera, rows);
+    project(keyframe.edges.x, keyframe.edges.y, keyframe.edges.z, T_current_keyframe, *frame.camera, rows);
+    associateProjected(keyframe, frame, T_current_keyframe, radius);
+}
+
+void FineTracker::associateProjected(const Keyframe& keyframe, const FineFrame& frame,
+                                     const Pose& T_current_keyframe, double radius) {
     associator_.associate(keyframe.edges.image, u_.data(), v_.data(), imageRotation(T_current_keyframe),
                           edge_options_.tangent_span, *frame.edges, *frame.grid, frame.camera->width,
                           frame.camera->height, radius, matches_);
@@ -126,46 +124,6 @@ void FineTracker::accumulate(const PinholeCamera& camera, const OrganizedEdges& 
     system.add(rows_.sum());
 }
 
-void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe,
-                                     const RowMotion& rows, const FineFrame& frame,
-                                     ReadoutEstimator& estimator) const {
-    // Residuals as they would be with no read-out time: r0 = r - J_current s_current - J_keyframe s_keyframe
-    Matrix6d hessian = Matrix6d::Identity() * 1e-6;
-    Vector6d mixed = Vector6d::Zero(), gradient = Vector6d::Zero();
-    double own = 0, own_gradient = 0;
-    for (std::size_t k = 0; k < matches_.size(); ++k) {
-        if (weight_[k] <= 0) continue;
-        const auto i = static_cast<std::size_t>(matches_.reference[k]);
-        const auto p = static_cast<std::size_t>(matches_.current[k]);
-        const double a = frame.camera->fx / static_cast<double>(z_[i]),
-                     b = frame.camera->fy / static_cast<double>(z_[i]);
-        const Eigen::Vector3d point(x_[i], y_[i], z_[i]);
-        const Eigen::Vector2d normal(frame.edges->normal_x[p], frame.edges->normal_y[p]);
-        const Eigen::Vector3d by_point(
-            a * normal.x(), b * normal.y(),
-            -(a * normal.x() * point.x() + b * normal.y() * point.y()) / point.z());
-        const Eigen::Vector3d in_keyframe(keyframe.edges.x[i], keyframe.edges.y[i], keyframe.edges.z[i]);
-        const double by_current =
-            by_point.dot(rows.pointVelocity(point)) * (static_cast<double>(v_[i]) - rows.reference_row);
-        const double by_keyframe =
-            -by_point.dot(T_current_keyframe.linear() * keyframe.row_motion.pointVelocity(in_keyframe)) *
-            (static_cast<double>(keyframe.edges.image.y[i]) - rows.reference_row);
-        const double residual = kReadoutGain * static_cast<double>(residual_[k]) -
-                                by_current * rows.seconds_per_row -
-                                by_keyframe * keyframe.row_motion.seconds_per_row;
-        const double by_readout = by_current + by_keyframe;
-        Vector6d by_pose;
-        by_pose << by_point, point.cross(by_point);
-        const double weight = static_cast<double>(weight_[k]) / kReadoutCaution;
-        hessian += weight * by_pose * by_pose.transpose();
-        mixed += weight * by_readout * by_pose;
-        gradient += weight * residual * by_pose;
-        own += weight * by_readout * by_readout;
-        own_gradient += weight * by_readout * residual;
-    }
-    estimator.add(hessian, mixed, own, gradient, own_gradient);
-}
-
 void FineTracker::countHits(Keyframe& keyframe, const PinholeCamera& camera) const {
     keyframe.trials.resize(keyframe.edges.size(), 0);
     keyframe.hits.resize(keyframe.edges.size(), 0);
@@ -216,7 +174,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
             associate(keyframe, frame, pose, row_motion, radius);
             moved_px = share < 1 ? kFar : 0;
         } else {
-            project(keyframe, pose, camera, row_motion);
+            project(keyframe.edges.x, keyframe.edges.y, keyframe.edges.z, pose, camera, row_motion);
         }
         if (static_cast<int>(matches_.size()) < options_.min_inliers) break;
         geometricResiduals(current);

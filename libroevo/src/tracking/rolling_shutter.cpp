@@ -42,6 +42,12 @@ void ReadoutEstimator::add(const Matrix6d& pose_information, const Vector6d& mix
     vector_ = memory_ * vector_ - gradient;
 }
 
+double ReadoutEstimator::worth(const Matrix6d& pose_information, const Vector6d& mixed, double own) const {
+    const Eigen::LDLT<Matrix6d> factor(pose_information);
+    if (factor.info() != Eigen::Success || !factor.isPositive()) return 0;
+    return (own - mixed.dot(factor.solve(mixed))) / (prior_ + information_);
+}
+
 double ReadoutEstimator::sigma() const {
     return 1 / std::sqrt(prior_ + information_);
 }

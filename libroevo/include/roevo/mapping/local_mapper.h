@@ -38,6 +38,11 @@ class LocalMapper {
     /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
     void setFound(int keyframe, std::vector<float> shares);
 
+    /// How a keyframe's rows moved, where that was not known when it was inserted; before the next insert().
+    void setRowMotion(int keyframe, const RowMotion& rows);
+    /// Read-out time that all keyframes are brought to as they take part.
+    void setReadout(double seconds_per_row) { seconds_per_row_ = seconds_per_row; }
+
     /// All of them at their present poses; points only of the newest, which the next window begins with.
     const std::map<int, MapKeyframe>& keyframes() const { return keyframes_; }
 
@@ -49,6 +54,8 @@ class LocalMapper {
   private:
     std::vector<const MapKeyframe*> recentOf(int id) const;
     void hold(int id);
+    void bringToReadout(MapKeyframe& keyframe) const;
+    void prepare(const std::vector<const MapKeyframe*>& members);
     void leaveWindow(MapKeyframe& newest);
     std::map<int, MapKeyframe> unpacked() const;
     std::vector<const MapKeyframe*> nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const;
@@ -68,7 +75,8 @@ class LocalMapper {
     PseudoEdgeJudge judge_;
     std::map<int, MapKeyframe> keyframes_;
     std::map<int, PackedKeyframe> packed_;  ///< the points of those that have left the window once
-    int track_begin_ = 0;                   ///< first keyframe of the present track
+    double seconds_per_row_ = 0;
+    int track_begin_ = 0;                               ///< first keyframe of the present track
     std::map<int, std::vector<EdgeVerdict>> verdicts_;  ///< of each keyframe's edges
     std::vector<WindowKeyframe> window_;
     std::vector<RelativePrior> priors_;

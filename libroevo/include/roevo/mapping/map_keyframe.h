@@ -29,6 +29,7 @@ struct MapKeyframe {
     std::vector<Rgb> colours;          ///< of each point
     std::vector<float> found;  ///< of each edge: share of the frames after it that found it; < 0: not known
     double median_depth = 0;   ///< m
+    RowMotion row_motion;      ///< that the points were moved with
 
     std::size_t size() const { return image.size(); }
     Eigen::Vector3d point(std::size_t i) const {
@@ -38,6 +39,9 @@ struct MapKeyframe {
 
 /// Fills slope: a line through the depths of the points up to 4 places before and after.
 void computeSlopes(MapKeyframe& keyframe);
+
+/// Moves the points to where they are with another motion of the rows.
+void setRowMotion(MapKeyframe& keyframe, const RowMotion& rows, const PinholeCamera& camera);
 
 /// Drops what only a new keyframe needs: image gradients and the points' indices in the tracker's keyframe.
 void compact(MapKeyframe& keyframe);

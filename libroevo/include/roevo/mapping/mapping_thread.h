@@ -9,8 +9,10 @@ namespace roevo {
 /// A keyframe on its way into the map.
 struct MapJob {
     MapKeyframe keyframe;
-    int previous = -1;         ///< keyframe that was tracked before, -1: none
-    std::vector<float> found;  ///< MapKeyframe::found of `previous`
+    int previous = -1;           ///< keyframe that was tracked before, -1: none
+    std::vector<float> found;    ///< MapKeyframe::found of `previous`
+    RowMotion previous_rows;     ///< of `previous`, as known by now
+    double seconds_per_row = 0;  ///< read-out time, as known by now
 };
 
 struct MapResult {

@@ -53,9 +53,12 @@ class FineTracker {
     void associate(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_current_keyframe,
                    const RowMotion& rows, double radius);
 
-    /// Adds the last frame's inliers to what is known of the read-out time.
-    void addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe, const RowMotion& rows,
-                            const FineFrame& frame, ReadoutEstimator& estimator) const;
+    /// Adds the last frame's inliers to what is known of the read-out time, where they add enough. The frame
+    /// is then registered some more, with the read-out time free: what points are associated with follows
+    /// the read-out time that is assumed, and tells only a part of what it lacks. Changes matches().
+    void addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe,
+                            const RollingShutter& shutter, const FineFrame& frame,
+                            ReadoutEstimator& estimator);
 
     /// Counts which of the keyframe's points the last frame found.
     void countHits(Keyframe& keyframe, const PinholeCamera& camera) const;
@@ -68,8 +71,19 @@ class FineTracker {
                      const Pose& T_likely, const RollingShutter& shutter);
 
   private:
-    void project(const Keyframe& keyframe, const Pose& pose, const PinholeCamera& camera,
-                 const RowMotion& rows);
+    /// Normal equations of one frame's residuals in its pose and the read-out time.
+    struct ReadoutEquations {
+        Matrix6d hessian = Matrix6d::Identity() * 1e-6;
+        Vector6d mixed = Vector6d::Zero(), gradient = Vector6d::Zero();
+        double own = 0, own_gradient = 0;
+    };
+    /// Of residuals and points where they are now, with keyframe and frame at the read-out time of `rows`.
+    ReadoutEquations readoutEquations(const Keyframe& keyframe, const Pose& T_current_keyframe,
+                                      const RowMotion& rows, const FineFrame& frame) const;
+    void project(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z,
+                 const Pose& pose, const PinholeCamera& camera, const RowMotion& rows);
+    void associateProjected(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_current_keyframe,
+                            double radius);
     void geometricResiduals(const OrganizedEdges& current);
     void depthResiduals(const Keyframe& keyframe, const FineFrame& frame);
     void weigh(const Keyframe& keyframe);
@@ -82,7 +96,8 @@ class FineTracker {
     EdgeAssociator associator_;
     PhotometricResiduals photometric_;
     EdgeMatches matches_;
-    std::vector<float> x_, y_, z_, u_, v_;                                  // of all keyframe points
+    std::vector<float> x_, y_, z_, u_, v_;            // of all keyframe points
+    std::vector<float> moved_x_, moved_y_, moved_z_;  // keyframe points at another read-out time
     std::vector<float> residual_, weight_, depth_residual_, depth_weight_;  // of the matches
     std::vector<float> current_depth_, scratch_;
     InformationRows rows_;

@@ -14,6 +14,12 @@ struct RowMotion {
     double seconds_per_row = 0;
     double reference_row = 0;  ///< row at whose time the pose holds, px
 
+    bool operator==(const RowMotion& other) const {
+        return velocity == other.velocity && turn == other.turn && seconds_per_row == other.seconds_per_row &&
+               reference_row == other.reference_row;
+    }
+    /// Whether anything is known of the motion.
+    bool known() const { return !velocity.isZero(0) || !turn.isZero(0); }
     /// The same for a pyramid level, whose rows are 2^level as tall.
     RowMotion atPyramidLevel(int level) const;
     /// Velocity of a static point in the camera frame, m/s.
@@ -23,6 +29,14 @@ struct RowMotion {
     /// Where a point of the camera frame, seen on `row`, is at the time of the reference row.
     Eigen::Vector3d toReference(const Eigen::Vector3d& point, double row) const {
         return point - (row - reference_row) * seconds_per_row * pointVelocity(point);
+    }
+    /// What another motion's toReference() would give, of a point that this one's gave (to first order).
+    Eigen::Vector3d exchange(const Eigen::Vector3d& point, double row, const RowMotion& other) const {
+        return other.toReference(point, row) + (row - reference_row) * seconds_per_row * pointVelocity(point);
+    }
+    /// The same motion with another read-out time.
+    RowMotion at(double other_seconds_per_row) const {
+        return {velocity, turn, other_seconds_per_row, reference_row};
     }
 };
 
@@ -61,6 +75,8 @@ class ReadoutEstimator {
              const Vector6d& pose_gradient, double own_gradient);
     double secondsPerRow() const { return vector_ / (prior_ + information_); }
     double sigma() const;
+    /// What a frame would add to what is known, in proportion to it.
+    double worth(const Matrix6d& pose_information, const Vector6d& mixed, double own) const;
 
   private:
     double prior_, memory_, information_ = 0, vector_ = 0;

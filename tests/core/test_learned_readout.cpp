@@ -1,0 +1,65 @@
+// The read-out time of a rolling shutter is learned from the images, and soon enough to be of use.
+#include <gtest/gtest.h>
+
+#include "core/support/simulated.h"
+
+namespace roevo {
+namespace {
+
+constexpr int kFrames = 40;
+constexpr double kReadout = 0.02;  // s
+
+simulator::SimulationOptions rolling(double readout, const std::string& scene) {
+    simulator::SimulationOptions options;
+    options.scene = scene;
+    options.useKinectNoise();
+    options.rolling_shutter = readout;
+    return options;
+}
+
+struct Learned {
+    double readout = 0;  // s
+    double ate = 0;      // m
+};
+
+Learned learn(const testing::Sequence& sequence, const OdometryOptions& options) {
+    Odometry odometry(sequence.camera, options, sequence.start());
+    Learned learned;
+    for (const RgbdFrame& frame : sequence.frames) odometry.processFrame(frame);
+    learned.readout = odometry.readoutTime();
+    learned.ate = evaluate(sequence.truth, odometry.trajectory()).ate.translation.rmse;
+    return learned;
+}
+
+class LearnedReadout : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(LearnedReadout, IsNearlyRightAfterFortyFramesAndHelps) {
+    const testing::Sequence sequence = testing::simulate(rolling(kReadout, GetParam()), kFrames);
+    for (const Mode mode : {Mode::kTracking, Mode::kBundleAdjustment}) {
+        OdometryOptions options;
+        options.mode = mode;
+        const Learned learned = learn(sequence, options);
+        // Of a track's first frame no motion is known. Taken for still, it taught 6 ms at most, ever.
+        EXPECT_NEAR(learned.readout, kReadout, 0.005);
+        options.sensor.estimate_readout = false;
+        const Learned global = learn(sequence, options);
+        options.sensor.readout_time = kReadout;
+        const Learned known = learn(sequence, options);
+        EXPECT_LT(learned.ate, 0.8 * global.ate);
+        EXPECT_LT(learned.ate, known.ate + 0.0003);
+        EXPECT_LT(known.ate, 0.75 * global.ate);
+        RecordProperty("mm", std::to_string(1000 * learned.ate) + " of " + std::to_string(1000 * global.ate) +
+                                 ", known " + std::to_string(1000 * known.ate));
+    }
+}
+
+TEST_P(LearnedReadout, IsNoneWhereAllRowsAreReadAtOnce) {
+    const testing::Sequence sequence = testing::simulate(rolling(0, GetParam()), kFrames);
+    EXPECT_NEAR(learn(sequence, OdometryOptions()).readout, 0, 0.002);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, LearnedReadout, ::testing::Values("livingroom", "corridor"),
+                         [](const auto& scene) { return scene.param; });
+
+}  // namespace
+}  // namespace roevo
