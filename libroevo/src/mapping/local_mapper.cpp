@@ -62,21 +62,20 @@ void LocalMapper::hold(int id) {
         packed->second.unpackInto(keyframe, camera_, options_.sensor);
 }
 
-void LocalMapper::bringToReadout(MapKeyframe& keyframe) const {
+/// Whether the points were moved.
+bool LocalMapper::bringToReadout(MapKeyframe& keyframe) const {
     const RowMotion& rows = keyframe.row_motion;
-    if (keyframe.size() > 0 &&
-        std::abs(rows.seconds_per_row - seconds_per_row_) * camera_.height > kSameReadout)
-        roevo::setRowMotion(keyframe, rows.at(seconds_per_row_), camera_);
+    const double change = std::abs(rows.seconds_per_row - seconds_per_row_) * camera_.height;
+    if (keyframe.size() == 0 || change <= kSameReadout) return false;
+    roevo::setRowMotion(keyframe, rows.at(seconds_per_row_), camera_);
+    return true;
 }
 
 void LocalMapper::prepare(const std::vector<const MapKeyframe*>& members) {
     for (const MapKeyframe* member : members) {
-        MapKeyframe& keyframe = keyframes_.at(member->id);
         hold(member->id);
-        const double before = keyframe.row_motion.seconds_per_row;
-        bringToReadout(keyframe);
         // What was packed is not what it is now
-        if (keyframe.row_motion.seconds_per_row != before) packed_.erase(member->id);
+        if (bringToReadout(keyframes_.at(member->id))) packed_.erase(member->id);
     }
 }
 

@@ -9,7 +9,6 @@ namespace roevo {
 namespace {
 
 constexpr int kSlopeSpan = 4;         ///< points to each side: depth is noisy
-constexpr double kNearest = 0.05;     ///< m; a velocity that brings points nearer is none
 constexpr float kLeastSpread = 1.0f;  ///< px^2 times points^2; less and a slope cannot be told
 
 /// Arrays that grow by doubling would waste half of their memory.
@@ -62,15 +61,11 @@ void computeSlopes(MapKeyframe& keyframe) {
 }
 
 void setRowMotion(MapKeyframe& keyframe, const RowMotion& rows, const PinholeCamera& camera) {
+    // The row of a point is not kept; where it would be seen is near enough
+    exchangeMotion(keyframe.row_motion, rows, keyframe.image.y, keyframe.size(), keyframe.x, keyframe.y,
+                   keyframe.z);
     for (std::size_t i = 0; i < keyframe.size(); ++i) {
-        // Its row is not kept; where it would be seen is near enough
-        const Eigen::Vector3d p =
-            keyframe.row_motion.exchange(keyframe.point(i), static_cast<double>(keyframe.image.y[i]), rows);
-        if (!(p.z() > kNearest)) continue;
-        const Eigen::Vector2d pixel = camera.project(p);
-        keyframe.x[i] = static_cast<float>(p.x());
-        keyframe.y[i] = static_cast<float>(p.y());
-        keyframe.z[i] = static_cast<float>(p.z());
+        const Eigen::Vector2d pixel = camera.project(keyframe.point(i));
         keyframe.image.x[i] = static_cast<float>(pixel.x());
         keyframe.image.y[i] = static_cast<float>(pixel.y());
     }

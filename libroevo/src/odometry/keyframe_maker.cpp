@@ -114,17 +114,9 @@ RowMotion firstMotion(const Keyframe& keyframe, const Pose& T_next_keyframe, dou
 }
 
 void setRowMotion(Keyframe& keyframe, const RowMotion& rows) {
-    constexpr double kNearest = 0.05;  // m; a velocity that brings points nearer is none
     if (rows == keyframe.row_motion) return;
     EdgePoints3D& edges = keyframe.edges;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        const Eigen::Vector3d p = keyframe.row_motion.exchange(
-            Eigen::Vector3d(edges.x[i], edges.y[i], edges.z[i]), static_cast<double>(edges.image.y[i]), rows);
-        if (!(p.z() > kNearest)) continue;
-        edges.x[i] = static_cast<float>(p.x());
-        edges.y[i] = static_cast<float>(p.y());
-        edges.z[i] = static_cast<float>(p.z());
-    }
+    exchangeMotion(keyframe.row_motion, rows, edges.image.y, edges.size(), edges.x, edges.y, edges.z);
     keyframe.row_motion = rows;
     movePhotometricPoints(keyframe);
 }

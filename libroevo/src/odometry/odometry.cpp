@@ -156,7 +156,6 @@ void Odometry::Impl::setCovariance(const Matrix6d& relative, const Pose& T_curre
 }
 
 bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
-    setRowMotion(*keyframe, keyframe->row_motion.at(motion.secondsPerRow()));
     const Pose& T_world_keyframe = keyframe->T_world_camera;
     const Pose T_last_keyframe = T_world_camera.inverse() * T_world_keyframe;
     const Pose T_predicted_keyframe = motion.predict(frame.timestamp).inverse() * T_world_keyframe;
@@ -180,6 +179,7 @@ bool Odometry::Impl::trackFrame(const RgbdFrame& frame, FrameResult& result) {
 bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior& prior,
                                const RgbdFrame& frame, FrameResult& result) {
     const Pose T_world_keyframe = keyframe->T_world_camera;
+    setRowMotion(*keyframe, keyframe->row_motion.at(motion.secondsPerRow()));
     RollingShutter shutter = motion.shutter(frame.timestamp, T_world_keyframe);
     // Two images in a row are sheared nearly alike: better both for still than one of them
     if (!keyframe->row_motion.known()) shutter.seconds_per_row = 0;

@@ -1,5 +1,4 @@
 #include <Eigen/Cholesky>
-#include <cmath>
 
 #include "roevo/tracking/fine_tracker.h"
 #include "roevo/tracking/se3.h"
@@ -13,7 +12,6 @@ constexpr double kCaution = 100;
 /// Share of what is known that a frame must add to be worth its time.
 constexpr double kLeastWorth = 0.01;
 constexpr int kIterations = 5;
-constexpr double kNearest = 0.05;        ///< m; a read-out time that brings points nearer is none
 constexpr double kOverRelaxation = 1.6;  ///< as in tracking: associations follow
 constexpr double kFreedom = 0.005;       ///< s, one sigma, of the read-out time in these iterations
 
@@ -67,21 +65,14 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
         moved_x_ = edges.x;
         moved_y_ = edges.y;
         moved_z_ = edges.z;
-        const RowMotion rows = keyframe.row_motion.at(now.seconds_per_row);
-        for (std::size_t i = 0; i < edges.size(); ++i) {
-            const Eigen::Vector3d p =
-                keyframe.row_motion.exchange(Eigen::Vector3d(edges.x[i], edges.y[i], edges.z[i]),
-                                             static_cast<double>(edges.image.y[i]), rows);
-            if (!(p.z() > kNearest)) continue;
-            moved_x_[i] = static_cast<float>(p.x());
-            moved_y_[i] = static_cast<float>(p.y());
-            moved_z_[i] = static_cast<float>(p.z());
-        }
-        project(moved_x_, moved_y_, moved_z_, pose, *frame.camera, now.motion(pose));
+        exchangeMotion(keyframe.row_motion, keyframe.row_motion.at(now.seconds_per_row), edges.image.y,
+                       edges.size(), moved_x_, moved_y_, moved_z_);
+        const RowMotion rows = now.motion(pose);
+        project(moved_x_, moved_y_, moved_z_, pose, *frame.camera, rows);
         associateProjected(keyframe, frame, pose, options_.final_radius);
         geometricResiduals(*frame.edges);
         weigh(keyframe);
-        return readoutEquations(keyframe, pose, now.motion(pose), frame);
+        return readoutEquations(keyframe, pose, rows, frame);
     };
     ReadoutEquations sums = readoutEquations(keyframe, pose, now.motion(pose), frame);
     if (estimator.worth(sums.hessian, sums.mixed, sums.own) < kLeastWorth) return;

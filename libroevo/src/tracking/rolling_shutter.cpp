@@ -11,6 +11,19 @@ RowMotion RowMotion::atPyramidLevel(int level) const {
     return {velocity, turn, seconds_per_row * scale, (reference_row + 0.5) / scale - 0.5};
 }
 
+void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
+                    std::size_t count, std::vector<float>& x, std::vector<float>& y, std::vector<float>& z) {
+    constexpr double kNearest = 0.05;  // m
+    for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Vector3d p =
+            from.exchange(Eigen::Vector3d(x[i], y[i], z[i]), static_cast<double>(rows[i]), to);
+        if (!(p.z() > kNearest)) continue;
+        x[i] = static_cast<float>(p.x());
+        y[i] = static_cast<float>(p.y());
+        z[i] = static_cast<float>(p.z());
+    }
+}
+
 RowMotion RollingShutter::motion(const Pose& T_current_keyframe) const {
     RowMotion rows;
     rows.reference_row = reference_row;

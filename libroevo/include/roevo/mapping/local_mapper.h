@@ -54,7 +54,7 @@ class LocalMapper {
   private:
     std::vector<const MapKeyframe*> recentOf(int id) const;
     void hold(int id);
-    void bringToReadout(MapKeyframe& keyframe) const;
+    bool bringToReadout(MapKeyframe& keyframe) const;
     void prepare(const std::vector<const MapKeyframe*>& members);
     void leaveWindow(MapKeyframe& newest);
     std::map<int, MapKeyframe> unpacked() const;
@@ -75,8 +75,8 @@ class LocalMapper {
     PseudoEdgeJudge judge_;
     std::map<int, MapKeyframe> keyframes_;
     std::map<int, PackedKeyframe> packed_;  ///< the points of those that have left the window once
-    double seconds_per_row_ = 0;
-    int track_begin_ = 0;                               ///< first keyframe of the present track
+    double seconds_per_row_ = 0;            ///< see setReadout()
+    int track_begin_ = 0;                   ///< first keyframe of the present track
     std::map<int, std::vector<EdgeVerdict>> verdicts_;  ///< of each keyframe's edges
     std::vector<WindowKeyframe> window_;
     std::vector<RelativePrior> priors_;

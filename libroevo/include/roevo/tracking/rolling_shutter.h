@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
+#include <vector>
 
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/tracking/kernels.h"
@@ -39,6 +41,11 @@ struct RowMotion {
         return {velocity, turn, other_seconds_per_row, reference_row};
     }
 };
+
+/// Moves the first `count` points, which `from` brought to the reference row, to where `to` would have
+/// brought them. A motion that would bring a point to the camera is none: such a point stays.
+void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
+                    std::size_t count, std::vector<float>& x, std::vector<float>& y, std::vector<float>& z);
 
 /// Images whose rows are read one after the other while the camera moves. The motion follows from the pose
 /// itself and the previous frame's.
