@@ -81,6 +81,14 @@ class EdgeSidesTest : public testing::Test {
         return std::sqrt(sum / static_cast<double>(z.size()));
     }
 
+    double meanErrorOf(const std::vector<float>& z,
+                       const std::function<double(double, double)>& depthAt) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < z.size(); ++i)
+            sum += static_cast<double>(z[i]) / depthAt(0, static_cast<double>(edges_.y[i])) - 1;
+        return sum / static_cast<double>(z.size());
+    }
+
     Eigen::Vector2d normal_{1, 0};
     OrganizedEdges edges_;
     cv::Mat depth_;
@@ -165,6 +173,45 @@ TEST_F(EdgeSidesTest, WhatLiesBeyondAJumpIsNotASide) {
     drawEdge(0);
     drawDepth(table);
     for (const float z : corrected()) EXPECT_EQ(z, 1.5F);
+}
+
+/// A surface that recedes to its border, well in front of a wall.
+double receding(double distance, double) {
+    return distance <= 0 ? 1 / (0.45 - 2.5e-3 * distance) : 4.0;
+}
+
+TEST_F(EdgeSidesTest, ABorderThatTheSensorSmearsIsFoundByTheSurfaceInside) {
+    // Too near all along, which nothing that averages over points or frames would take away
+    double before = 0, after = 0;
+    constexpr int kRepeats = 40;
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+        drawEdge(19.0 * repeat);
+        std::normal_distribution<double> smear(0, 0.8);  // px
+        // A pixel shows what is seen next to it, where that is another surface
+        drawDepth(
+            [&](double distance, double v) {
+                const double other = distance + smear(random_);
+                return receding((other > 0) == (distance > 0) ? distance : other, v);
+            },
+            4e-3);
+        before += meanErrorOf(patches(), receding) / kRepeats;
+        after += meanErrorOf(corrected(), receding) / kRepeats;
+    }
+    EXPECT_LT(before, -1e-3) << "the smear is what makes patches too near";
+    EXPECT_LT(std::abs(after), 0.6 * std::abs(before)) << before;
+}
+
+TEST_F(EdgeSidesTest, ANarrowFaceAtABorderIsNotMistakenForTheOneBehindIt) {
+    // The side of a door's jamb, five pixels wide, recedes to its border; then comes its front
+    const auto jamb = [](double distance, double) {
+        if (distance > 0) return 4.0;
+        return 1 / (0.4 - 6e-3 * std::max(distance, -5.0));
+    };
+    for (const double degrees : {0.0, 30.0, 90.0, 217.0}) {
+        drawEdge(degrees);
+        drawDepth(jamb);
+        EXPECT_LT(errorOf(corrected(), jamb), 2e-3) << degrees;
+    }
 }
 
 TEST_F(EdgeSidesTest, StaysFiniteOnWhateverTheDepthImageHolds) {

@@ -6,8 +6,12 @@
 namespace roevo {
 namespace {
 
-constexpr int kReach = 4;                 ///< px to each side
+constexpr double kReach = 4;              ///< px to each side
+constexpr double kFurther = 8;            ///< px, where the other side is background
 constexpr double kClear = 0.6;            ///< px; nearer samples may show either side
+constexpr double kMostlyBehind = 0.5;     ///< share of a side's samples that makes it background
+constexpr double kMinSeen = 6;            ///< samples that can tell
+constexpr double kAgree = 2;              ///< sigmas of the shorter line
 constexpr std::size_t kWindow = 20;       ///< points before and after that help
 constexpr std::size_t kLeast = 4;         ///< of them at an end of the edge
 constexpr double kMinSamples = 12;        ///< of a side
@@ -19,6 +23,31 @@ constexpr double kDoubt = 2;
 /// How much of an estimate to believe.
 double belief(double value, double variance) {
     return value * value / (value * value + kDoubt * variance);
+}
+
+/// Calls take(signed distance from the edge, depth, weight) for the pixels with depth within `reach` along
+/// the normal, but not for those next to the edge. Column by column (or row by row), between the two pixels
+/// that the normal passes: where edges run along rows or columns, the nearest one would be off to the same
+/// side all along.
+template <typename Take>
+void visit(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, double reach, const cv::Mat& depth,
+           const Take& take) {
+    const bool by_column = std::abs(normal.x()) >= std::abs(normal.y());
+    const int main = by_column ? 0 : 1, other = 1 - main;
+    const double slope = normal[other] / normal[main];
+    const int steps = static_cast<int>(std::lround(reach * std::abs(normal[main])));
+    const int centre = static_cast<int>(std::lround(pixel[main]));
+    for (int i = centre - steps; i <= centre + steps; ++i) {
+        const double j = pixel[other] + (i - pixel[main]) * slope;
+        const int below = static_cast<int>(std::floor(j));
+        for (const int k : {below, below + 1}) {
+            const int x = by_column ? i : k, y = by_column ? k : i;
+            if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
+            const double distance = normal.dot(Eigen::Vector2d(x, y) - pixel);
+            const float there = depth.at<float>(y, x);
+            if (std::abs(distance) >= kClear && there > 0) take(distance, there, 1 - std::abs(j - k));
+        }
+    }
 }
 
 }  // namespace
@@ -36,31 +65,33 @@ EdgeSides::Sums EdgeSides::Sums::operator-(const Sums& other) const {
     return {count - other.count, s - other.s, q - other.q, ss - other.ss, sq - other.sq, qq - other.qq};
 }
 
+EdgeSides::Side EdgeSides::Side::operator-(const Side& other) const {
+    return {close - other.close, wide - other.wide, seen - other.seen, behind - other.behind};
+}
+
+bool EdgeSides::Side::isBackground(double least) const {
+    return seen >= least && behind > kMostlyBehind * seen;
+}
+
 void EdgeSides::sample(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, float z,
-                       const cv::Mat& depth, float jump, Sums& plus, Sums& minus) {
-    const auto take = [&](int x, int y, double weight) {
-        if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) return;
-        const double distance = normal.dot(Eigen::Vector2d(x, y) - pixel);
-        if (std::abs(distance) < kClear) return;
-        const float there = depth.at<float>(y, x);
-        if (!(there > 0) || std::abs(there - z) > jump * z) return;
-        (distance > 0 ? plus : minus).add(std::abs(distance), static_cast<double>(z / there) - 1, weight);
-    };
-    // Column by column (or row by row), between the two pixels that the normal passes: where edges run along
-    // rows or columns, the nearest one would be off to the same side all along
-    const bool by_column = std::abs(normal.x()) >= std::abs(normal.y());
-    const int main = by_column ? 0 : 1, other = 1 - main;
-    const double slope = normal[other] / normal[main];
-    const int reach = static_cast<int>(std::lround(kReach * std::abs(normal[main])));
-    const int centre = static_cast<int>(std::lround(pixel[main]));
-    for (int i = centre - reach; i <= centre + reach; ++i) {
-        const double j = pixel[other] + (i - pixel[main]) * slope;
-        const int below = static_cast<int>(std::floor(j));
-        for (const int k : {below, below + 1}) {
-            const double weight = 1 - std::abs(j - k);
-            by_column ? take(i, k, weight) : take(k, i, weight);
-        }
-    }
+                       const cv::Mat& depth, float jump, Strip& sums) {
+    const Strip before = sums;
+    visit(pixel, normal, kReach, depth, [&](double distance, float there, double weight) {
+        Side& side = distance > 0 ? sums.plus : sums.minus;
+        side.seen += weight;
+        if (there - z > jump * z) side.behind += weight;
+        if (std::abs(there - z) > jump * z) return;
+        side.close.add(std::abs(distance), static_cast<double>(z / there) - 1, weight);
+    });
+    const Strip own = sums - before;
+    const bool plus = own.minus.isBackground(1), minus = own.plus.isBackground(1);
+    if (plus == minus) return;
+    visit(pixel, normal, kFurther, depth, [&](double distance, float there, double weight) {
+        const double away = plus ? distance : -distance;
+        // A surface that recedes leaves the jump further out
+        if (away < 0 || std::abs(there - z) > (1 + static_cast<float>(away / kReach)) * jump * z) return;
+        (plus ? sums.plus : sums.minus).wide.add(away, static_cast<double>(z / there) - 1, weight);
+    });
 }
 
 EdgeSides::Meeting EdgeSides::fit(const Sums& sums) {
@@ -85,17 +116,30 @@ double EdgeSides::correction(const Meeting& plus, const Meeting& minus) {
     return step_belief * nearer + (1 - step_belief) * bend_belief * bend;
 }
 
+double EdgeSides::correction(const Side& only) {
+    const Meeting close = fit(only.close), wide = fit(only.wide);
+    if (!close.known) return 0;
+    const double apart = wide.value - close.value;
+    const bool agree = wide.known && apart * apart <= kAgree * kAgree * close.variance;
+    const Meeting& best = agree ? wide : close;
+    return best.value * belief(best.value, best.variance);
+}
+
+double EdgeSides::correction(const Strip& strip) {
+    const bool plus = strip.minus.isBackground(kMinSeen), minus = strip.plus.isBackground(kMinSeen);
+    if (plus != minus) return correction(plus ? strip.plus : strip.minus);
+    return correction(fit(strip.plus.close), fit(strip.minus.close));
+}
+
 void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first,
                         const std::vector<Eigen::Vector2d>& pixels, const cv::Mat& depth, float jump,
                         std::vector<float>& z) {
     const std::size_t count = pixels.size();
-    plus_.assign(count + 1, Sums());
-    minus_.assign(count + 1, Sums());
+    strips_.assign(count + 1, Strip());
     for (std::size_t k = 0; k < count; ++k) {
-        plus_[k + 1] = plus_[k];
-        minus_[k + 1] = minus_[k];
+        strips_[k + 1] = strips_[k];
         const Eigen::Vector2d normal(edges.normal_x[first + k], edges.normal_y[first + k]);
-        if (z[k] > 0) sample(pixels[k], normal, z[k], depth, jump, plus_[k + 1], minus_[k + 1]);
+        if (z[k] > 0) sample(pixels[k], normal, z[k], depth, jump, strips_[k + 1]);
     }
     const auto most = static_cast<double>(jump);
     for (std::size_t k = 0; k < count; ++k) {
@@ -103,8 +147,7 @@ void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first,
         // As many before as after, so that a depth that changes along the edge does not lean to one side
         const std::size_t reach = std::min({kWindow, std::max(k, kLeast), std::max(count - 1 - k, kLeast)});
         const std::size_t from = k > reach ? k - reach : 0, to = std::min(count, k + reach + 1);
-        const double value =
-            std::clamp(correction(fit(plus_[to] - plus_[from]), fit(minus_[to] - minus_[from])), -most, most);
+        const double value = std::clamp(correction(strips_[to] - strips_[from]), -most, most);
         z[k] = static_cast<float>(static_cast<double>(z[k]) / (1 + value));
     }
 }
