@@ -155,6 +155,10 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
         {"sensor", "readout_time", "s",
          "from the first to the last row of a rolling shutter (0: global shutter)", -0.1, 0.1,
          &s.readout_time},
+        {"sensor", "blur_time", "s",
+         "one sigma of when an edge was seen (exposure, stamps): edges that move across themselves count "
+         "less",
+         0, 0.1, &s.blur_time},
         {"sensor", "reference_row", "", "row whose time the stamp means, as a share of the height", 0, 1,
          &s.reference_row},
         {"edges", "blur_sigma", "px", "Gaussian blur before the Sobel filter (0: none)", 0, 5, &e.blur_sigma},

@@ -21,6 +21,7 @@ struct SensorOptions {
     double readout_sigma = 0.01;    ///< how far from 0 the learned read-out time may well be, s, one sigma
     double readout_memory = 0.995;  ///< share of what was learned that is kept from frame to frame
     double readout_time = 0;     ///< time from the first to the last row of a rolling shutter, s (0: global)
+    double blur_time = 0.005;    ///< one sigma of when an edge was seen (exposure, stamps), s; 0: sharp
     double reference_row = 0.5;  ///< row whose time the stamp means, as a share of the height
 };
 
@@ -83,7 +84,7 @@ struct LossOptions {
 
 /// Local mapping, in mode ba (except where said).
 struct MappingOptions {
-    int window = 10;               ///< newest keyframes that are refined together
+    int window = 20;               ///< newest keyframes that are refined together
     int max_points = 2500;         ///< edge points kept of a keyframe
     int max_iterations = 6;        ///< of the bundle adjustment, per keyframe
     bool joint_refinement = true;  ///< poses move together; else each is registered alone, as in the paper

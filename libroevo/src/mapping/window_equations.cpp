@@ -29,6 +29,9 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     points_.clear();
     begin_.assign(1, 0);
     sights_.clear();
+    blurs_.clear();
+    for (const WindowKeyframe& view : window)
+        blurs_.emplace_back(view.keyframe->row_motion, camera_, sensor_.blur_time);
     for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
         if (edges.verdicts[edge] != EdgeVerdict::kTrue) continue;
         const IndexRange own = edges.pointsOf(edge);
@@ -43,7 +46,10 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
                 const auto ny = static_cast<double>(keyframe.image.normal_y[i]);
                 const double x = static_cast<double>(keyframe.image.x[i]) - camera_.cx;
                 const double y = static_cast<double>(keyframe.image.y[i]) - camera_.cy;
-                const auto trust = static_cast<double>(keyframe.weight[i]);
+                const float blur = blurs_[static_cast<std::size_t>(slot)].variance(
+                    keyframe.x[i], keyframe.y[i], keyframe.z[i], keyframe.image.normal_x[i],
+                    keyframe.image.normal_y[i]);
+                const auto trust = static_cast<double>(keyframe.weight[i] / (1 + blur));
                 const auto depth = static_cast<double>(keyframe.z[i]);
                 const double sigma = sensor_.depth_noise * depth * depth;
                 sights_.push_back({camera_.fx * nx, camera_.fy * ny, nx * x + ny * y, -camera_.fx * ny,

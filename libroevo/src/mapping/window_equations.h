@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "roevo/mapping/bundle_adjustment.h"
+#include "roevo/tracking/motion_blur.h"
 
 namespace roevo {
 
@@ -81,6 +82,7 @@ class WindowEquations {
     std::vector<std::int32_t> points_, begin_;  ///< points that take part; first sight of each
     std::vector<Sight> sights_;
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+    std::vector<MotionBlur> blurs_;  ///< of each slot
     std::vector<Residual> residuals_;
     std::vector<double> scales_;  ///< of each keyframe, px
     std::vector<float> scratch_;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "roevo/edges/edge_depth.h"
+#include "roevo/tracking/motion_blur.h"
 #include "roevo/tracking/robust.h"
 #include "roevo/tracking/se3.h"
 
@@ -43,8 +44,14 @@ void FineTracker::associateProjected(const Keyframe& keyframe, const FineFrame& 
                           frame.camera->height, radius, matches_);
 }
 
-void FineTracker::geometricResiduals(const OrganizedEdges& current) {
+void FineTracker::geometricResiduals(const Keyframe& keyframe, const FineFrame& frame,
+                                     const RowMotion& rows) {
+    const OrganizedEdges& current = *frame.edges;
+    const EdgePoints3D& edges = keyframe.edges;
+    const MotionBlur now(rows, *frame.camera, sensor_.blur_time),
+        then(keyframe.row_motion, *frame.camera, sensor_.blur_time);
     residual_.resize(matches_.size());
+    sharpness_.resize(matches_.size());
     scratch_.clear();
     for (std::size_t k = 0; k < matches_.size(); ++k) {
         const auto i = static_cast<std::size_t>(matches_.reference[k]);
@@ -53,7 +60,11 @@ void FineTracker::geometricResiduals(const OrganizedEdges& current) {
         // about the associated point rather than its predecessor: unbiased where the edge is curved
         residual_[k] =
             current.normal_x[p] * (u_[i] - current.x[p]) + current.normal_y[p] * (v_[i] - current.y[p]);
-        scratch_.push_back(std::abs(residual_[k]));
+        const float blur = now.variance(x_[i], y_[i], z_[i], current.normal_x[p], current.normal_y[p]) +
+                           then.variance(edges.x[i], edges.y[i], edges.z[i], edges.image.normal_x[i],
+                                         edges.image.normal_y[i]);
+        sharpness_[k] = 1 / (1 + blur);
+        scratch_.push_back(std::abs(residual_[k]) * std::sqrt(sharpness_[k]));
     }
     if (!scratch_.empty()) scale_ = robustScale(scratch_);
 }
@@ -98,11 +109,12 @@ void FineTracker::weigh(const Keyframe& keyframe) {
     const auto inverse = static_cast<float>(1 / (scale_ * scale_));
     const auto chi2 = static_cast<float>(options_.chi2);
     for (std::size_t k = 0; k < matches_.size(); ++k) {
-        const float squared = residual_[k] * residual_[k] * inverse;
+        const float information = sharpness_[k] * inverse;
+        const float squared = residual_[k] * residual_[k] * information;
         if (squared > chi2) continue;
         ++inliers_;
         weight_[k] = studentWeight(
-            keyframe.edges.weight[static_cast<std::size_t>(matches_.reference[k])] * inverse, squared);
+            keyframe.edges.weight[static_cast<std::size_t>(matches_.reference[k])] * information, squared);
     }
 }
 
@@ -177,7 +189,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
             project(keyframe.edges.x, keyframe.edges.y, keyframe.edges.z, pose, camera, row_motion);
         }
         if (static_cast<int>(matches_.size()) < options_.min_inliers) break;
-        geometricResiduals(current);
+        geometricResiduals(keyframe, frame, row_motion);
         depthResiduals(keyframe, frame);
         weigh(keyframe);
         system = PoseSystem();
@@ -217,7 +229,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const FineFrame& frame, 
 FineResult FineTracker::assess(const Keyframe& keyframe, const FineFrame& frame,
                                const Pose& T_current_keyframe, const RowMotion& rows) {
     associate(keyframe, frame, T_current_keyframe, rows, options_.final_radius);
-    geometricResiduals(*frame.edges);
+    geometricResiduals(keyframe, frame, rows);
     weigh(keyframe);
     FineResult result;
     result.T_current_keyframe = T_current_keyframe;

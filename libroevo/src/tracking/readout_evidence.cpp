@@ -70,7 +70,7 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
         const RowMotion rows = now.motion(pose);
         project(moved_x_, moved_y_, moved_z_, pose, *frame.camera, rows);
         associateProjected(keyframe, frame, pose, options_.final_radius);
-        geometricResiduals(*frame.edges);
+        geometricResiduals(keyframe, frame, rows);
         weigh(keyframe);
         return readoutEquations(keyframe, pose, rows, frame);
     };

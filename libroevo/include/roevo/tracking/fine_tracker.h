@@ -27,9 +27,9 @@ struct FineFrame {
 struct FineResult {
     bool converged = false;
     Pose T_current_keyframe = Pose::Identity();
-    int inliers = 0;                         ///< associated points that passed the chi-square test
-    double scale = 0;                        ///< robust spread of the point-to-tangent residual, px
-    double matched_ratio = 0;                ///< see EdgeMatches
+    int inliers = 0;           ///< associated points that passed the chi-square test
+    double scale = 0;          ///< robust spread of the point-to-tangent residual, px, of edges at rest
+    double matched_ratio = 0;  ///< see EdgeMatches
     Matrix6d covariance = Matrix6d::Zero();  ///< of the left perturbation (t, phi) of T_current_keyframe
 };
 
@@ -84,7 +84,7 @@ class FineTracker {
                  const Pose& pose, const PinholeCamera& camera, const RowMotion& rows);
     void associateProjected(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_current_keyframe,
                             double radius);
-    void geometricResiduals(const OrganizedEdges& current);
+    void geometricResiduals(const Keyframe& keyframe, const FineFrame& frame, const RowMotion& rows);
     void depthResiduals(const Keyframe& keyframe, const FineFrame& frame);
     void weigh(const Keyframe& keyframe);
     float currentDepth(std::size_t point, const FineFrame& frame);
@@ -98,7 +98,8 @@ class FineTracker {
     EdgeMatches matches_;
     std::vector<float> x_, y_, z_, u_, v_;            // of all keyframe points
     std::vector<float> moved_x_, moved_y_, moved_z_;  // keyframe points at another read-out time
-    std::vector<float> residual_, weight_, depth_residual_, depth_weight_;  // of the matches
+    // of the matches; sharpness: information across an edge as a share of what it would be at rest
+    std::vector<float> residual_, sharpness_, weight_, depth_residual_, depth_weight_;
     std::vector<float> current_depth_, scratch_;
     InformationRows rows_;
     double scale_ = 1;
