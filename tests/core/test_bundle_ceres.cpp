@@ -30,6 +30,19 @@ struct CeresObservation {
     }
 };
 
+/// What an observation counts for, as a share of one at rest: its place across the edge is known at a time
+/// that has a sigma of blur_time, and to a third of a pixel besides.
+double sharpnessOf(const MapKeyframe& keyframe, std::size_t i, const SensorOptions& sensor) {
+    constexpr double kStep = 1e-5;  // s
+    const Eigen::Vector3d velocity = keyframe.row_motion.pointVelocity(keyframe.point(i));
+    const Eigen::Vector2d moved = mappingCamera().project(keyframe.point(i) + kStep * velocity) -
+                                  mappingCamera().project(keyframe.point(i) - kStep * velocity);
+    const double speed = (moved.x() * static_cast<double>(keyframe.image.normal_x[i]) +
+                          moved.y() * static_cast<double>(keyframe.image.normal_y[i])) /
+                         (2 * kStep);
+    return 1 / (1 + std::pow(3 * speed * sensor.blur_time, 2));
+}
+
 /// Keeps a point where it is along its edge: lines are compared, on which its place is free.
 struct CeresHold {
     Eigen::Vector3d point, direction;
@@ -74,7 +87,8 @@ std::vector<Eigen::Vector3d> solveWithCeres(const std::vector<WindowKeyframe>& w
             const auto slot = static_cast<std::size_t>(edges.observations[k].slot);
             const auto i = static_cast<std::size_t>(edges.observations[k].point);
             const MapKeyframe& keyframe = *window[slot].keyframe;
-            const double trust = std::sqrt(static_cast<double>(keyframe.weight[i]));
+            const double trust =
+                std::sqrt(static_cast<double>(keyframe.weight[i]) * sharpnessOf(keyframe, i, sensor));
             const double depth = keyframe.z[i];
             // A millimetre is the least deviation of a depth
             const double sigma = std::hypot(sensor.depth_noise * depth * depth, 1e-3);
@@ -116,6 +130,10 @@ TEST_F(BundleOracle, AgreesWithCeresOnNoisyKeyframes) {
         SetUp();
         for (auto& made : made_) {
             MapKeyframe& keyframe = made.keyframe;
+            for (int k = 0; k < 3; ++k) {
+                keyframe.row_motion.velocity[k] = uniform(random, -0.2, 0.2);
+                keyframe.row_motion.turn[k] = uniform(random, -0.3, 0.3);
+            }
             double bias = 0;
             for (std::size_t i = 0; i < keyframe.size(); ++i) {
                 // Errors of an edge go together. So small that all weights of the t-distribution are alike

@@ -155,9 +155,11 @@ TEST_F(EdgeSidesTest, NoiseMakesNoStepsOnAPlaneAndLeavesThoseThatAre) {
 
 TEST_F(EdgeSidesTest, WithoutTheOtherSideOrWithoutDepthNothingIsChanged) {
     drawEdge(0);
-    drawDepth(frameOnWall);
+    drawDepth(frameOnWall, 5e-3);
     depth_.colRange(100, 200).setTo(0);  // a depth camera's shadow beside the step
     const std::vector<float> before = patches();
+    EXPECT_EQ(corrected(), before);
+    depth_.colRange(100, 200).setTo(INFINITY);  // another way to say so
     EXPECT_EQ(corrected(), before);
     drawDepth(frameOnWall);
     std::vector<float> z = patches();

@@ -45,7 +45,8 @@ void visit(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, double r
             if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
             const double distance = normal.dot(Eigen::Vector2d(x, y) - pixel);
             const float there = depth.at<float>(y, x);
-            if (std::abs(distance) >= kClear && there > 0) take(distance, there, 1 - std::abs(j - k));
+            if (std::abs(distance) >= kClear && there > 0 && std::isfinite(there))
+                take(distance, there, 1 - std::abs(j - k));
         }
     }
 }
@@ -106,7 +107,7 @@ EdgeSides::Meeting EdgeSides::fit(const Sums& sums) {
 }
 
 double EdgeSides::correction(const Meeting& plus, const Meeting& minus) {
-    // With one side only there is nothing to tell apart, and the patch's plane is that side's
+    // Without depth on the other side, nothing tells whether this one ends here
     if (!plus.known || !minus.known) return 0;
     const double variance = plus.variance + minus.variance;
     const double bend = (plus.value * minus.variance + minus.value * plus.variance) / variance;
