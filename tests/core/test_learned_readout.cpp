@@ -39,7 +39,7 @@ TEST_P(LearnedReadout, IsNearlyRightAfterFortyFramesAndHelps) {
         OdometryOptions options;
         options.mode = mode;
         const Learned learned = learn(sequence, options);
-        // Of a track's first frame no motion is known. Taken for still, it taught 6 ms at most, ever.
+        // Of a track's first frame no motion is known. Taken for still, it teaches that there is none.
         EXPECT_NEAR(learned.readout, kReadout, 0.005);
         options.sensor.estimate_readout = false;
         const Learned global = learn(sequence, options);

@@ -72,9 +72,8 @@ kernels::Projection makeProjection(const Pose& T_current_keyframe, const Pinhole
 class ReadoutEstimator {
   public:
     /// @param sigma  of the prior about zero, seconds per row
-    /// @param memory  share of the evidence that is kept when a frame is added: frames are matched with what
-    /// was known then, so that old
-    ///                evidence leans towards old values
+    /// @param memory  share of the evidence that is kept when a frame is added: frames tracked from one
+    ///                keyframe share its errors, so that many of them teach hardly more than one
     ReadoutEstimator(double sigma, double memory) : prior_(1 / (sigma * sigma)), memory_(memory) {}
 
     /// One frame's normal equations in the pose and the read-out time, both taken from zero read-out time.
