@@ -55,7 +55,7 @@ StampedPose toPose(const std::array<double, kNumColumns>& v, const std::string& 
         fail(path, line, "the quaternion has length " + std::to_string(q.norm()) + " instead of 1");
     StampedPose pose;
     pose.timestamp = v[0];
-    pose.T_world_camera.linear() = q.normalized().toRotationMatrix();
+    pose.T_world_camera.setRotation(q.normalized().toRotationMatrix());
     pose.T_world_camera.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
     return pose;
 }

@@ -28,6 +28,12 @@ std::size_t RunReport::count(FrameStatus status) const {
 }
 
 std::string RunReport::failure() const {
+    const auto broken = std::find_if(trajectory.begin(), trajectory.end(),
+                                     [](const StampedPose& p) { return !p.T_world_camera.isFinite(); });
+    if (broken != trajectory.end())
+        return format("the pose of the frame at %.6f s is not a number, which is a fault of this program; "
+                      "please report it with the options and the recording",
+                      broken->timestamp);
     const std::size_t initialised = count(FrameStatus::kInitialised);
     if (count(FrameStatus::kOk) > 0 || (initialised > 0 && frames.size() == initialised)) return {};
     std::map<std::string, std::vector<const FrameRecord*>> reasons;

@@ -36,7 +36,8 @@ struct RunReport {
 
     std::size_t count(FrameStatus status) const;
 
-    /// Empty when at least one frame was tracked (or the only frame initialised), else the commonest reason.
+    /// Empty when at least one frame was tracked (or the only frame initialised), else the commonest reason. Poses
+    /// that are not numbers are a failure, too: no result is printed then.
     std::string failure() const;
 };
 

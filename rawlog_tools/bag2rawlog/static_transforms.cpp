@@ -17,7 +17,7 @@ StaticTransforms::StaticTransforms(const BagFile& bag) {
             const Eigen::Vector3d translation(t.x, t.y, t.z);
             if (!translation.allFinite() || !(std::abs(rotation.norm() - 1) < 1e-2)) continue;
             Link link{plainFrameId(stamped.header.frame_id), Pose::Identity()};
-            link.T_parent_child.linear() = rotation.normalized().toRotationMatrix();
+            link.T_parent_child.setRotation(rotation.normalized().toRotationMatrix());
             link.T_parent_child.translation() = translation;
             parents_[plainFrameId(stamped.child_frame_id)] = link;
         }

@@ -21,13 +21,9 @@ constexpr double kClearSpread = 1;   // of the gain from pair to pair, in units 
 constexpr int kColumns = 80;         // points per row
 
 Pose mirrored(const Pose& pose) {
-    Pose out = pose;
-    out.translation().y() *= -1;
-    for (const int i : {0, 2}) {
-        out.linear()(1, i) *= -1;
-        out.linear()(i, 1) *= -1;
-    }
-    return out;
+    const Eigen::Vector3d mirror(1, -1, 1);
+    const Eigen::Matrix3d rotation = mirror.asDiagonal() * pose.linear() * mirror.asDiagonal();
+    return {Eigen::Quaterniond(rotation), mirror.cwiseProduct(pose.translation())};
 }
 
 struct PosedFrame {

@@ -66,7 +66,7 @@ Pose readPose(const std::string& file) {
         rotation.determinant() < 0)
         throw std::runtime_error(file + ": the matrix is not a rotation and a translation");
     Pose pose = Pose::Identity();
-    pose.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
+    pose.setRotation(Eigen::Quaterniond(rotation).normalized().toRotationMatrix());
     pose.translation() = matrix.topRightCorner<3, 1>();
     return pose;
 }
@@ -113,7 +113,7 @@ DepthRegistration sevenScenesRegistration() {
     rotation << 9.9996518012567637e-01, 2.6765126468950343e-03, -7.9041012313000904e-03,  //
         -2.7409311281316700e-03, 9.9996302803027592e-01, -8.1504520778013286e-03,         //
         7.8819942130445332e-03, 8.1718328771890631e-03, 9.9993554558014031e-01;
-    out.T_colour_depth.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
+    out.T_colour_depth.setRotation(Eigen::Quaterniond(rotation).normalized().toRotationMatrix());
     out.T_colour_depth.translation() << -2.5558943178152542e-02, 1.0109636268061706e-04,
         2.0318321729487039e-03;
     return out;

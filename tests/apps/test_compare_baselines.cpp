@@ -81,7 +81,7 @@ Pose stepOf(const Eigen::Vector3d& translation, const Eigen::Vector3d& rotation)
     Pose step = Pose::Identity();
     step.translation() = translation;
     if (rotation.norm() > 0)
-        step.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix();
+        step.setRotation(Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix());
     return step;
 }
 

@@ -210,7 +210,7 @@ TEST_F(RunOfAMethod, ItsFrameNumberCountsRejectedFrames) {
     expectFault({"at frame 2 (1.100000 s)", "not a number"});
 }
 
-TEST_F(RunOfAMethod, PosesThatAreNoRigidMotionAreAFailure) {
+TEST_F(RunOfAMethod, PosesThatAreNotNumbersAreAFailure) {
     struct Case {
         std::function<void(Pose&)> spoil;
         const char* word;
@@ -219,10 +219,7 @@ TEST_F(RunOfAMethod, PosesThatAreNoRigidMotionAreAFailure) {
         {[](Pose& pose) { pose.translation().z() = kNaN; }, "not a number"},
         {[](Pose& pose) { pose.translation().z() = std::numeric_limits<double>::infinity(); },
          "not a number"},
-        {[](Pose& pose) { pose.linear()(1, 2) = kNaN; }, "not a number"},
-        {[](Pose& pose) { pose.linear().col(0) *= -1; }, "determinant -1"},
-        {[](Pose& pose) { pose.linear() *= 1.001; }, "no rigid motion"},
-        {[](Pose& pose) { pose.linear()(0, 1) = 0.001; }, "no rigid motion"},
+        {[](Pose& pose) { pose.setRotation(Eigen::Quaterniond(1, kNaN, 0, 0)); }, "not a number"},
     };
     for (const Case& c : cases) {
         source = FakeSource(6);

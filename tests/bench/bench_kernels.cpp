@@ -19,7 +19,7 @@ const kernels::Table* chosenTable(benchmark::State& state) {
 
 Pose smallMotion() {
     Pose T = Pose::Identity();
-    T.linear() = Eigen::AngleAxisd(0.01, Eigen::Vector3d(0.3, 0.9, 0.1).normalized()).toRotationMatrix();
+    T.setRotation(Eigen::AngleAxisd(0.01, Eigen::Vector3d(0.3, 0.9, 0.1).normalized()).toRotationMatrix());
     T.translation() = Eigen::Vector3d(0.01, -0.004, 0.006);
     return T;
 }

@@ -30,7 +30,7 @@ class MappingBadInput : public ::testing::Test {
         if (result.status != FrameStatus::kOk) {
             EXPECT_NE(result.reason, "");
         }
-        EXPECT_TRUE(result.T_world_camera.matrix().allFinite());
+        EXPECT_TRUE(result.T_world_camera.isFinite());
         EXPECT_TRUE(result.covariance.allFinite());
         if (!result.hasPose()) return result;
         if (has_last_) {
@@ -68,7 +68,7 @@ class MappingBadInput : public ::testing::Test {
         ASSERT_EQ(live.size(), trajectory.size());
         for (std::size_t i = 0; i < trajectory.size(); ++i) {
             EXPECT_EQ(trajectory[i].timestamp, live[i].timestamp);
-            EXPECT_TRUE(trajectory[i].T_world_camera.matrix().allFinite());
+            EXPECT_TRUE(trajectory[i].T_world_camera.isFinite());
             if (i > 0) {
                 EXPECT_GT(trajectory[i].timestamp, trajectory[i - 1].timestamp);
             }
@@ -76,7 +76,7 @@ class MappingBadInput : public ::testing::Test {
         const auto keyframes = odometry_->keyframes();
         for (std::size_t k = 0; k < keyframes.size(); ++k) {
             EXPECT_EQ(keyframes[k].id, static_cast<int>(k));
-            EXPECT_TRUE(keyframes[k].T_world_camera.matrix().allFinite());
+            EXPECT_TRUE(keyframes[k].T_world_camera.isFinite());
             if (k > 0) {
                 EXPECT_GT(keyframes[k].timestamp, keyframes[k - 1].timestamp);
             }

@@ -15,7 +15,7 @@ MotionModel makeModel() {
 
 Pose poseOf(const Eigen::Vector3d& translation, double angle, const Eigen::Vector3d& axis) {
     Pose pose = Pose::Identity();
-    pose.linear() = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+    pose.setRotation(Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix());
     pose.translation() = translation;
     return pose;
 }

@@ -73,7 +73,7 @@ TEST(OdometryCovariance, ErrorsAreOfTheSizeThatItSays) {
 
 TEST(OdometryCovariance, IsTurnedWithTheWorld) {
     Pose start = Pose::Identity();
-    start.linear() = Eigen::AngleAxisd(0.9, Eigen::Vector3d(1, -1, 2).normalized()).toRotationMatrix();
+    start.setRotation(Eigen::AngleAxisd(0.9, Eigen::Vector3d(1, -1, 2).normalized()).toRotationMatrix());
     Odometry a(noisyRoom().camera, OdometryOptions()), b(noisyRoom().camera, OdometryOptions(), start);
     Matrix6d turn = Matrix6d::Zero();
     turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = start.linear();

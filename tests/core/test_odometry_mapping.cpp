@@ -296,7 +296,7 @@ TEST(OdometryMapping, WithoutWaitingTheMapTakesEffectAsSoonAsItIsReady) {
 TEST(OdometryMapping, StartPoseOnlyMovesTheTrajectory) {
     Pose start = Pose::Identity();
     start.translation() = Eigen::Vector3d(30, -20, 10);
-    start.linear() = Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, 1, 0.3).normalized()).toRotationMatrix();
+    start.setRotation(Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, 1, 0.3).normalized()).toRotationMatrix());
     Sequence moved = path(), origin = path();
     for (std::size_t i = 0; i < moved.truth.size(); ++i) {
         origin.truth[i].T_world_camera = path().start().inverse() * path().truth[i].T_world_camera;

@@ -201,7 +201,7 @@ TEST(Photometric, SamplingSpreadsOverTheEdgesAndKeepsItsLimit) {
 
 TEST(Photometric, ImageDirectionsTurnWithTheCamera) {
     Pose roll = Pose::Identity();
-    roll.linear() = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    roll.setRotation(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()).toRotationMatrix());
     const Eigen::Vector2f turn = imageRotation(roll);
     EXPECT_NEAR(turn.x(), std::cos(0.3), 1e-6);
     EXPECT_NEAR(turn.y(), std::sin(0.3), 1e-6);

@@ -151,8 +151,7 @@ TEST(RollingShutter, MotionIsTheCamerasVelocityInItsOwnFrame) {
         const Eigen::Vector3d velocity(0.3, -0.2, 0.5), turn(0.4, 0.2, -0.6);  // in the camera's frame
         const double dt = 0.04;
         Pose T_previous_current = Pose::Identity();
-        T_previous_current.linear() =
-            Eigen::AngleAxisd(turn.norm() * dt, turn.normalized()).toRotationMatrix();
+        T_previous_current.setRotation(Eigen::AngleAxisd(turn.norm() * dt, turn.normalized()).toRotationMatrix());
         T_previous_current.translation() = T_previous_current.linear() * velocity * dt;
         const Pose T_world_current = T_world_previous * T_previous_current;
         RollingShutter shutter;

@@ -20,7 +20,7 @@ Pose randomPose(std::mt19937& rng) {
     std::uniform_real_distribution<double> number(-1, 1);
     Pose pose = Pose::Identity();
     const Eigen::Vector3d axis(number(rng), number(rng), number(rng));
-    pose.linear() = Eigen::AngleAxisd(1.2 * number(rng), axis.normalized()).toRotationMatrix();
+    pose.setRotation(Eigen::AngleAxisd(1.2 * number(rng), axis.normalized()).toRotationMatrix());
     pose.translation() << 3 * number(rng), 3 * number(rng), 3 * number(rng);
     return pose;
 }
@@ -77,7 +77,7 @@ TEST(PoseConversions, CovarianceFollowsTheNumericJacobian) {
             Pose pose = T_world_camera;
             pose.translation() += d.head<3>();
             if (axis >= 3)
-                pose.linear() = Eigen::AngleAxisd(by, d.tail<3>() / by).toRotationMatrix() * pose.linear();
+                pose.setRotation(Eigen::AngleAxisd(by, d.tail<3>() / by).toRotationMatrix() * pose.linear());
             const auto p = toMrpt(pose * T_camera_body);
             Vector6d out;
             out << p.x(), p.y(), p.z(), p.yaw(), p.pitch(), p.roll();

@@ -231,7 +231,7 @@ TEST(SensorOnRobot, TheRobotTurnsOnTheSpot) {
     std::vector<StampedPose> camera;
     for (int i = 0; i <= 10; i++) {
         Pose T_start_robot = Pose::Identity();
-        T_start_robot.linear() = Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        T_start_robot.setRotation(Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix());
         camera.push_back({0.1 * i, T_robot_camera.inverse() * T_start_robot * T_robot_camera});
     }
     EXPECT_GT(camera.back().T_world_camera.translation().norm(), 0.2) << "the camera swings";

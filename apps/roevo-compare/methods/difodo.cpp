@@ -109,7 +109,7 @@ class Difodo : public RegistrationMethod {
         const mrpt::poses::CPose3D T_before_now = flow_.solve(expected.dt);
         found.stage_ms[1] = watch.milliseconds();
         const Pose step = sensorFromOptical().inverse() * toEigen(T_before_now) * sensorFromOptical();
-        if (!flow_.determined() || !step.matrix().allFinite()) {
+        if (!flow_.determined() || !step.isFinite()) {
             found.reason = "the depth does not determine the motion";
             flow_.forgetVelocity();  // it may not be finite
         } else if (step.translation().norm() > kLongestStep || rotationAngle(step) > kLargestTurn) {

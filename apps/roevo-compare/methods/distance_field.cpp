@@ -135,10 +135,9 @@ FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const FineFrame
     result.inliers = inliers_;
     result.scale = scale_;
     result.matched_ratio = visible_ > 0 ? static_cast<double>(near_.size()) / visible_ : 0;
-    result.converged = inliers_ >= options_.min_inliers && pose.matrix().allFinite();
+    result.converged = inliers_ >= options_.min_inliers && pose.isFinite();
     result.T_current_keyframe = result.converged ? pose : T_start;
     if (result.converged) {
-        orthonormalise(result.T_current_keyframe);
         result.covariance = kCorrelatedPoints * system.hessian.inverse();
     }
     times_.registration += millisecondsSince(begin);

@@ -12,13 +12,6 @@ namespace {
 /// shorter time is mostly an error of the stamps.
 constexpr double kShortestGap = 0.005, kLongestGap = 0.5;
 
-/// The nearest rotation, so that rounding does not build up in a chain of poses.
-Pose normalised(const Pose& pose) {
-    Pose out = pose;
-    out.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
-    return out;
-}
-
 }  // namespace
 
 RegistrationMethod::RegistrationMethod(const PinholeCamera& camera, const OdometryOptions& options)
@@ -64,7 +57,7 @@ MethodFrame RegistrationMethod::processFrame(const RgbdFrame& frame) {
     }
     out.tracked = found.T_reference_frame.has_value();
     out.T_world_camera =
-        normalised(T_world_reference_ * found.T_reference_frame.value_or(expected.T_reference_frame));
+        T_world_reference_ * found.T_reference_frame.value_or(expected.T_reference_frame);
     if (out.tracked) {
         velocity_known_ = gap >= kShortestGap && gap <= kLongestGap;
         if (velocity_known_)

@@ -114,7 +114,7 @@ std::optional<std::size_t> findRun(const SequenceComparison& sequence, const std
 
 bool allFinite(const std::vector<StampedPose>& trajectory) {
     return std::all_of(trajectory.begin(), trajectory.end(), [](const StampedPose& pose) {
-        return std::isfinite(pose.timestamp) && pose.T_world_camera.matrix().allFinite();
+        return std::isfinite(pose.timestamp) && pose.T_world_camera.isFinite();
     });
 }
 

@@ -7,12 +7,11 @@
 namespace roevo {
 
 Pose toEigen(const mrpt::poses::CPose3D& pose) {
-    Pose out = Pose::Identity();
     const auto& R = pose.getRotationMatrix();
+    Eigen::Matrix3d rotation;
     for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) out.linear()(r, c) = R(r, c);
-    out.translation() << pose.x(), pose.y(), pose.z();
-    return out;
+        for (int c = 0; c < 3; c++) rotation(r, c) = R(r, c);
+    return {Eigen::Quaterniond(rotation), Eigen::Vector3d(pose.x(), pose.y(), pose.z())};
 }
 
 mrpt::poses::CPose3D toMrpt(const Pose& pose) {
@@ -24,9 +23,9 @@ mrpt::poses::CPose3D toMrpt(const Pose& pose) {
 }
 
 Pose sensorFromOptical() {
-    Pose T_sensor_optical = Pose::Identity();
-    T_sensor_optical.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-    return T_sensor_optical;
+    Eigen::Matrix3d axes;
+    axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    return {Eigen::Quaterniond(axes), Eigen::Vector3d::Zero()};
 }
 
 mrpt::poses::CPose3D sensorPoseFromOptical(const Pose& T_world_optical) {

@@ -93,7 +93,6 @@ double BundleAdjuster::move(std::vector<WindowKeyframe>& window, const Eigen::Ve
         T_origin_camera.translation() -= equations_->origin();
         window[s].T_world_camera = poseIncrement(xi) * T_origin_camera;
         window[s].T_world_camera.translation() += equations_->origin();
-        orthonormalise(window[s].T_world_camera);
         const double moved = (window[s].T_world_camera.translation() - before.translation()).norm() /
                                  std::max(0.1, window[s].keyframe->median_depth) +
                              xi.tail<3>().norm();

@@ -124,7 +124,6 @@ void Odometry::Impl::applyMapUpdate(const MapUpdate& update, FrameResult& result
     const Eigen::Vector3d position = T_world_camera.translation();
     keyframe->T_world_camera = T_world_keyframe;
     T_world_camera = correction * T_world_camera;
-    orthonormalise(T_world_camera);
     now.T_world_camera = correction * now.T_world_camera;
     motion.moveWorld(correction);
     result.map_turn += rotationAngle(correction);
@@ -231,7 +230,6 @@ bool Odometry::Impl::trackFrom(const std::vector<Pose>& guesses, const PosePrior
         fine.addReadoutEvidence(*keyframe, T_current_keyframe, shutter, view, motion.readout());
     }
     result.T_world_camera = T_world_keyframe * T_current_keyframe.inverse();
-    orthonormalise(result.T_world_camera);
     setCovariance(covariance, T_current_keyframe, result);
     brightness = aligned.brightness;
     now.T_world_camera = result.T_world_camera;
@@ -341,7 +339,7 @@ Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, 
                    const OdometryStages& stages) {
     if (const auto fault = camera.check(); !fault.empty()) throw std::invalid_argument(fault);
     if (const auto fault = checkOptions(options); !fault.empty()) throw std::invalid_argument(fault);
-    if (!T_world_start.matrix().allFinite()) throw std::invalid_argument("the start pose is not finite");
+    if (!T_world_start.isFinite()) throw std::invalid_argument("the start pose is not finite");
     impl_ = std::make_unique<Impl>(camera, options, T_world_start, stages);
 }
 Odometry::~Odometry() = default;

@@ -96,8 +96,7 @@ CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& 
         }
     }
     if (best_cost < 0) return best;
-    best.converged = best.num_visible >= options_.min_points && best.T_current_keyframe.matrix().allFinite();
-    orthonormalise(best.T_current_keyframe);
+    best.converged = best.num_visible >= options_.min_points && best.T_current_keyframe.isFinite();
     return best;
 }
 

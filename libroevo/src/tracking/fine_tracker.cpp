@@ -239,8 +239,7 @@ FineResult FineTracker::assess(const Keyframe& keyframe, const FineFrame& frame,
     result.matched_ratio = matches_.matchedRatio();
     result.converged = result.inliers >= options_.min_inliers &&
                        result.matched_ratio >= options_.min_matched_ratio &&
-                       T_current_keyframe.matrix().allFinite();
-    if (result.converged) orthonormalise(result.T_current_keyframe);
+                       T_current_keyframe.isFinite();
     return result;
 }
 

@@ -8,7 +8,7 @@ Pose poseIncrement(const Vector6d& xi) {
     Pose increment = Pose::Identity();
     const Eigen::Vector3d phi = xi.tail<3>();
     const double angle = phi.norm();
-    if (angle > 1e-12) increment.linear() = Eigen::AngleAxisd(angle, phi / angle).toRotationMatrix();
+    if (angle > 1e-12) increment.setRotation(Eigen::AngleAxisd(angle, phi / angle));
     increment.translation() = xi.head<3>();
     return increment;
 }
@@ -20,7 +20,7 @@ double rotationAngle(const Pose& pose) {
 Pose interpolate(const Pose& a, const Pose& b, double share) {
     const Eigen::AngleAxisd turn(Eigen::Matrix3d(a.linear().transpose() * b.linear()));
     Pose between = Pose::Identity();
-    between.linear() = a.linear() * Eigen::AngleAxisd(share * turn.angle(), turn.axis()).toRotationMatrix();
+    between.setRotation(a.rotation() * Eigen::AngleAxisd(share * turn.angle(), turn.axis()));
     between.translation() = a.translation() + share * (b.translation() - a.translation());
     return between;
 }
@@ -29,10 +29,6 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
     Eigen::Matrix3d m;
     m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
     return m;
-}
-
-void orthonormalise(Pose& pose) {
-    pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
 }
 
 }  // namespace roevo

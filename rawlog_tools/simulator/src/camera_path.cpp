@@ -101,12 +101,10 @@ Pose CameraPath::pose(double seconds) const {
         along = kReturnPeriod / (2 * kPi) * (1 - std::cos(2 * kPi * seconds / kReturnPeriod));
     }
     const Waypoint point = at(parameterAt(along), 0);
-    Pose T_world_camera = Pose::Identity();
     const Eigen::Vector3d forward = (point.target - point.position).normalized();
     const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
-    T_world_camera.linear().col(0) = right;
-    T_world_camera.linear().col(1) = forward.cross(right);
-    T_world_camera.linear().col(2) = forward;
+    Eigen::Matrix3d axes;
+    axes << right, forward.cross(right), forward;
 
     constexpr double kShift = 0.004, kTilt = 0.35 * kPi / 180;
     Eigen::Vector3d shift, tilt;
@@ -114,9 +112,7 @@ Pose CameraPath::pose(double seconds) const {
         shift[i] = kShift * tremor(seconds, seed_, i);
         tilt[i] = kTilt * tremor(seconds, seed_, 3 + i);
     }
-    T_world_camera.translation() = point.position + shift;
-    T_world_camera.linear() *= Eigen::AngleAxisd(tilt.norm(), tilt.normalized()).toRotationMatrix();
-    return T_world_camera;
+    return {Eigen::Quaterniond(axes) * Eigen::AngleAxisd(tilt.norm(), tilt.normalized()), point.position + shift};
 }
 
 }  // namespace roevo::simulator

@@ -73,7 +73,7 @@ inline bool sameBytes(const std::vector<StampedPose>& a, const std::vector<Stamp
     return a.size() == b.size() &&
            std::equal(a.begin(), a.end(), b.begin(), [](const auto& p, const auto& q) {
                return p.timestamp == q.timestamp &&
-                      std::memcmp(p.T_world_camera.data(), q.T_world_camera.data(), 16 * sizeof(double)) == 0;
+                      p.T_world_camera.matrix() == q.T_world_camera.matrix();
            });
 }
 

@@ -17,7 +17,4 @@ Pose interpolate(const Pose& a, const Pose& b, double share);
 /// Matrix of the cross product.
 Eigen::Matrix3d skew(const Eigen::Vector3d& v);
 
-/// Restores an exactly orthonormal rotation after many products.
-void orthonormalise(Pose& pose);
-
 }  // namespace roevo
