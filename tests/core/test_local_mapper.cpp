@@ -68,7 +68,10 @@ TEST_F(Mapper, TheSameKeyframesGiveTheSameBits) {
             const MapUpdate update = mapper.insert(
                 k == 0 ? keyframeAt(0, 0) : tracked(k, k, k - 1, randomPose(random, 0.003, 0.004)));
             for (const auto& [id, pose] : update.poses)
-                numbers.insert(numbers.end(), pose.data(), pose.data() + 16);
+                {
+                const Eigen::Matrix4d matrix = pose.matrix();
+                numbers.insert(numbers.end(), matrix.data(), matrix.data() + 16);
+            }
             numbers.insert(numbers.end(), update.depth_ratio.begin(), update.depth_ratio.end());
         }
         for (const MapEdge& edge : mapper.fusedMap()) {
@@ -119,8 +122,9 @@ TEST_F(Mapper, AKeyframeThatJumpsTooFarIsLeftWithAReason) {
     }
 }
 
-TEST_F(Mapper, AKeyframeThatContradictsTrackingIsLeftWithAReason) {
-    // 14 mm off what tracking said: within four of its sigmas a correction, beyond them something moved
+TEST_F(Mapper, AKeyframeGoesWhereTheEdgesSayHoweverSureTrackingWas) {
+    // 14 mm off what tracking said. Its sigmas know nothing of errors that all points share, so they weigh in the
+    // window and forbid nothing: a rule that did so kept the map of whole recordings from mending their drift.
     Pose error = Pose::Identity();
     error.translation().z() = 0.014;
     for (const double sigma : {0.01, 0.001}) {
@@ -128,32 +132,20 @@ TEST_F(Mapper, AKeyframeThatContradictsTrackingIsLeftWithAReason) {
         for (int k = 0; k < 4; ++k) mapper.insert(keyframeAt(k, k));
         MapKeyframe keyframe = tracked(4, 4, 3, error);
         keyframe.parent_information = Matrix6d::Identity() / (sigma * sigma);
-        const MapUpdate update = mapper.insert(keyframe);
-        const Pose T_tracked = mapper.keyframes().at(3).T_world_camera * keyframe.T_parent_camera;
-        if (sigma > 0.005) {
-            EXPECT_EQ(update.reason, "");
-            EXPECT_LT(errorOf(mapper, 4, 4), 1e-3);
-            continue;
-        }
-        EXPECT_NE(update.reason.find("left as it was, bundle adjustment contradicts tracking: keyframe 4 ("),
-                  std::string::npos)
-            << update.reason;
-        // It goes along with the keyframe that it was tracked from
-        EXPECT_EQ(mapper.keyframes().at(4).T_world_camera.matrix(), T_tracked.matrix());
-        for (const auto& [id, pose] : update.poses)
-            EXPECT_EQ(pose.matrix(), mapper.keyframes().at(id).T_world_camera.matrix()) << id;
+        EXPECT_EQ(mapper.insert(keyframe).reason, "");
+        EXPECT_LT(errorOf(mapper, 4, 4), 1e-3) << sigma;
     }
 }
 
 TEST_F(Mapper, ThoseThatMoveWithARefusedKeyframeAreNotRefusedWithIt) {
-    // Keyframe 3 was tracked 14 mm off, and sure of it; keyframe 4 well, relative to 3, so that it is as far
-    // off
+    // Keyframe 3 was tracked 14 mm off, which is too far for its depth; keyframe 4 well, relative to 3, so that it
+    // is as far off
     Pose error = Pose::Identity();
     error.translation().z() = 0.014;
     LocalMapper mapper(mappingCamera(), options_);
     for (int k = 0; k < 3; ++k) mapper.insert(keyframeAt(k, k));
     MapKeyframe wrong = tracked(3, 3, 2, error), child = tracked(4, 4, 3, Pose::Identity());
-    wrong.parent_information = child.parent_information = Matrix6d::Identity() / (0.001 * 0.001);
+    wrong.median_depth = 0.1;
     EXPECT_NE(mapper.insert(wrong).reason, "");
     const MapUpdate update = mapper.insert(child);
     EXPECT_NE(update.reason.find("keyframe 3 ("), std::string::npos) << update.reason;

@@ -16,10 +16,6 @@ constexpr double kReusedScale = 0.5;  ///< px of spread that drift may cause at 
 constexpr double kNearDistance = 0.4, kNearDegrees = 30, kAboutAsNear = 0.5;
 /// A keyframe that bundle adjustment moves by more (share of its depth; degrees) went astray.
 constexpr double kLargestJump = 0.1, kLargestTurn = 5;
-/// So did one that is so far from where it was tracked, relative to its parent: what moves in the scene moves
-/// further from keyframe to keyframe than from frame to frame, and misleads the map more than it does
-/// tracking.
-constexpr double kMostSigmas = 4;
 constexpr double kSameReadout = 2e-4;  ///< s; smaller changes are not worth moving all points
 
 /// Whether tracking told how well it knows the motion from the parent.
@@ -138,19 +134,6 @@ void LocalMapper::buildWindow(int newest, const std::vector<const MapKeyframe*>&
     }
 }
 
-double LocalMapper::sigmasFromTracked(const WindowKeyframe& view) const {
-    const MapKeyframe& keyframe = *view.keyframe;
-    const auto parent = std::find_if(window_.begin(), window_.end(), [&](const WindowKeyframe& other) {
-        return other.keyframe->id == keyframe.parent;
-    });
-    if (parent == window_.end() || !hasInformation(keyframe)) return 0;
-    const Pose change = (parent->T_world_camera * keyframe.T_parent_camera).inverse() * view.T_world_camera;
-    const Matrix6d covariance = keyframe.parent_information.inverse();
-    const double sigma_translation = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-    const double sigma_rotation = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
-    return std::max(change.translation().norm() / sigma_translation, rotationAngle(change) / sigma_rotation);
-}
-
 bool LocalMapper::acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const {
     const MapKeyframe& keyframe = *view.keyframe;
     const Pose jump = keyframe.T_world_camera.inverse() * view.T_world_camera;
@@ -163,12 +146,10 @@ bool LocalMapper::acceptable(const WindowKeyframe& view, int inliers, std::strin
         return false;
     };
     if (inliers < options_.fine.min_inliers) return refuse("too few observations fit the map", "%d", inliers);
-    if (!view.T_world_camera.matrix().allFinite() ||
+    if (!view.T_world_camera.isFinite() ||
         moved > kLargestJump * std::max(0.1, keyframe.median_depth) || degrees > kLargestTurn) {
         return refuse("bundle adjustment moved it too far", "%.0f mm, %.1f deg", 1000 * moved, degrees);
     }
-    if (const double sigmas = sigmasFromTracked(view); !(sigmas <= kMostSigmas))
-        return refuse("bundle adjustment contradicts tracking", "%.1f sigmas", sigmas);
     return true;
 }
 

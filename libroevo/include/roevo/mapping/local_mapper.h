@@ -61,7 +61,6 @@ class LocalMapper {
     std::vector<const MapKeyframe*> nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const;
     void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
     void takePoses(MapUpdate& update);
-    double sigmasFromTracked(const WindowKeyframe& view) const;
     bool acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const;
     void addPriors();
     void keepVerdicts();
