@@ -12,10 +12,10 @@
 
 #include "core_contention.h"
 #include "evaluation/error_statistics.h"
-#include "support/atomic_file.h"
-#include "support/memory_peak.h"
-#include "support/program.h"
-#include "support/text.h"
+#include "programs/atomic_file.h"
+#include "programs/memory_peak.h"
+#include "programs/program.h"
+#include "programs/text.h"
 
 namespace roevo {
 namespace {

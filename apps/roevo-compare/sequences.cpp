@@ -10,9 +10,9 @@
 #include <stdexcept>
 
 #include "evaluation/trajectory_io.h"
-#include "recording/frame_source.h"
-#include "support/interrupt.h"
-#include "support/program.h"
+#include "programs/interrupt.h"
+#include "programs/program.h"
+#include "recordings/frame_source.h"
 
 namespace roevo {
 namespace {

@@ -9,13 +9,13 @@
 
 #include "evaluation/scale_check.h"
 #include "evaluation/trajectory_io.h"
-#include "recording/frame_source.h"
+#include "programs/atomic_file.h"
+#include "programs/output_folder.h"
+#include "programs/progress.h"
+#include "recordings/frame_source.h"
 #include "roevo_mrpt/config_file.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/scene_builder.h"
-#include "support/atomic_file.h"
-#include "support/output_folder.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "programs/program.h"
 #include "study_source.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {

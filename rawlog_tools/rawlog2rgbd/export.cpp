@@ -10,16 +10,16 @@
 #include <set>
 #include <stdexcept>
 
-#include "datasets/depth_times.h"
+#include "programs/ahead.h"
+#include "programs/interrupt.h"
+#include "programs/progress.h"
 #include "rawlog2rgbd/scan_reader.h"
 #include "rawlog2rgbd/tum_writer.h"
+#include "recordings/depth_times.h"
 #include "roevo_mrpt/image_conversions.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_writer.h"
 #include "roevo_mrpt/time_conversions.h"
-#include "support/ahead.h"
-#include "support/interrupt.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {

@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
-#include "datasets/depth_times.h"
+#include "recordings/depth_times.h"
 #include "roevo_mrpt/file_copy.h"
 
 namespace fs = std::filesystem;

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "support/atomic_file.h"
-#include "support/program.h"
+#include "programs/atomic_file.h"
+#include "programs/program.h"
 #include "support/run_program.h"
 
 namespace roevo {
