@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "recordings/association.h"
+#include "recordings/association_report.h"
 #include "recordings/sensor_data.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/camera/rgbd_frame.h"

@@ -6,7 +6,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "recordings/association.h"
+#include "evaluation/association.h"
 #include "recordings/text_list.h"
 #include "roevo_mrpt/time_conversions.h"
 

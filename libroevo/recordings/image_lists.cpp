@@ -7,21 +7,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "evaluation/association.h"
 #include "recordings/text_list.h"
 #include "roevo_mrpt/time_conversions.h"
 
 namespace fs = std::filesystem;
 
 namespace roevo {
-namespace {
-
-std::vector<double> stamps(const std::vector<ListEntry>& list) {
-    std::vector<double> out;
-    for (const ListEntry& entry : list) out.push_back(entry.timestamp);
-    return out;
-}
-
-}  // namespace
 
 void matchLists(const std::string& folder_name, const std::string& colour_list, const std::string& depth_list,
                 double max_difference, DatasetDescription& out) {
@@ -30,7 +22,7 @@ void matchLists(const std::string& folder_name, const std::string& colour_list, 
     const auto depths = readStampedList((folder / depth_list).string(), out.association);
     for (const auto& [list, name] : {std::pair(&colours, &colour_list), {&depths, &depth_list}})
         if (list->empty()) throw std::runtime_error((folder / *name).string() + " lists no images");
-    const auto colour = stamps(colours), depth = stamps(depths);
+    const auto colour = stampsOf(colours), depth = stampsOf(depths);
     for (const StampMatch& match : associateStamps(colour, depth, max_difference)) {
         const ListEntry &c = colours[match.first], &d = depths[match.second];
         out.frames.push_back(

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "recordings/association.h"
+#include "recordings/association_report.h"
 
 namespace roevo {
 

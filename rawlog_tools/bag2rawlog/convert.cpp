@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bag2rawlog/ros_image.h"
+#include "evaluation/association.h"
 #include "programs/interrupt.h"
 #include "programs/progress.h"
 #include "roevo_mrpt/rawlog_writer.h"

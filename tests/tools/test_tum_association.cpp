@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "recordings/association.h"
+#include "evaluation/association.h"
 
 namespace roevo {
 namespace {
