@@ -67,14 +67,11 @@ class FrameClock {
 // Feeds every frame to the odometry; the report gets one record for each.
 void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& settings, RunReport& report) {
     Progress progress("tracking", expectedFrames(source, settings), !settings.quiet);
-    bool scale_checked = false;
+    DepthScaleCheck depth_scale;
     FrameClock clock;
     for (SourceFrame frame; source.next(frame);) {
-        if (frame.fault.empty() && !scale_checked) {
-            if (const std::string fault = depthScaleFault(frame.frame); !fault.empty())
-                throw std::runtime_error(settings.input + ": " + fault);
-            scale_checked = true;
-        }
+        if (const std::string fault = depth_scale.faultOf(frame); !fault.empty())
+            throw std::runtime_error(settings.input + ": " + fault);
         if (settings.realtime && frame.fault.empty() && !clock.await(frame.timestamp)) {
             frame.fault = "dropped: the one before was not done in time";
             ++report.dropped;

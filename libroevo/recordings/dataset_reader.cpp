@@ -3,15 +3,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
 
+#include "recordings/depth_scale.h"
 #include "recordings/eth3d.h"
 #include "recordings/icl.h"
 #include "recordings/plain.h"
@@ -26,10 +25,7 @@ namespace fs = std::filesystem;
 namespace roevo {
 namespace {
 
-constexpr double kMinMedianDepth = 0.1,
-                 kMaxMedianDepth = 20;               // m: beyond these the scale is wrong, not the room
-constexpr double kLikelyNear = 0.4, kLikelyFar = 8;  // m: what most recordings are within
-constexpr std::size_t kMostEmpty = 30;               // images without any depth before that is said
+constexpr std::size_t kMostEmpty = 30;  // images without any depth before that is said
 
 struct Format {
     const char* name;
@@ -46,35 +42,6 @@ const Format kFormats[] = {
     {"tum", &isTumFolder, &loadTum, "rgb.txt and depth.txt, or associations.txt"},
     {"plain", &isPlainFolder, &loadPlain, "camera.txt, rgb/ or color/, and depth/ with the same file names"},
 };
-
-/// Median of the known depths, in PNG units; 0 when there are none.
-double medianDepth(const cv::Mat& depth, std::uint16_t invalid) {
-    std::vector<std::uint16_t> values;
-    for (int v = 0; v < depth.rows; v++)
-        std::copy_if(depth.ptr<std::uint16_t>(v), depth.ptr<std::uint16_t>(v) + depth.cols,
-                     std::back_inserter(values), [=](std::uint16_t d) { return d != 0 && d != invalid; });
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// What scales in use among sensors would make of this median, where that is plausible; nearest to 2 m first.
-std::string likelyScales(double median_units) {
-    std::string text;
-    std::vector<double> known{1, 100, 256, 1000, 5000, 10000};
-    const auto off = [&](double scale) { return std::abs(std::log(median_units / scale / 2)); };
-    std::sort(known.begin(), known.end(), [&](double a, double b) { return off(a) < off(b); });
-    for (const double scale : known) {
-        const double median = median_units / scale;
-        if (median < kLikelyNear || median > kLikelyFar) continue;
-        char one[80];
-        std::snprintf(one, sizeof one, "%s %g would give %.3g m", text.empty() ? "depth_scale" : ",", scale,
-                      median);
-        text += one;
-    }
-    return text;
-}
 
 /// With the rights that opening a file has (access() looks at the real user's).
 bool isPermitted(const std::string& path, int rights) {
@@ -152,11 +119,11 @@ void DatasetReader::checkDepthScale() {
             continue;
         }
         const double median = median_units / depthScale();
-        if (median >= kMinMedianDepth && median <= kMaxMedianDepth) return;
+        if (isPlausibleMedianDepth(median)) return;
         char text[160];
         std::snprintf(text, sizeof text, "median depth %.3g m with depth_scale %g makes no sense", median,
                       depthScale());
-        const std::string likely = likelyScales(median_units);
+        const std::string likely = likelyDepthScales(median_units);
         throw std::runtime_error(entry(i).depth + ": " + text + (likely.empty() ? "" : "; " + likely) +
                                  ": put the sensor's own into camera.txt");
     }

@@ -2,10 +2,7 @@
 
 #include <mrpt/obs/CObservation3DRangeScan.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 #include <vector>
@@ -13,6 +10,7 @@
 #include "evaluation/trajectory_io.h"
 #include "programs/program.h"
 #include "recordings/dataset_reader.h"
+#include "recordings/depth_scale.h"
 #include "recordings/sensor_files.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
@@ -155,32 +153,10 @@ GroundTruth groundTruthFor(const std::string& path, const FrameSource& source) {
     return {readTumTrajectory(path), path, {}, true};
 }
 
-std::string depthScaleFault(const RgbdFrame& frame) {
-    constexpr double kLow = 0.1, kHigh = 20;  // m, plausible medians
-    constexpr double kTypical = 2;            // m
-    constexpr double kFactors[] = {0.0002, 0.001, 0.01, 0.1, 0.2, 5, 10, 100, 1000, 5000};
-
-    std::vector<float> depths;
-    for (int y = 0; y < frame.depth.rows; ++y) {
-        const float* row = frame.depth.ptr<float>(y);
-        std::copy_if(row, row + frame.depth.cols, std::back_inserter(depths), [](float d) { return d > 0; });
-    }
-    if (depths.empty()) return {};
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    const double median = *middle;
-    if (median >= kLow && median <= kHigh) return {};
-
-    const auto distance = [&](double factor) { return std::abs(std::log(median * factor / kTypical)); };
-    const double factor = *std::min_element(std::begin(kFactors), std::end(kFactors),
-                                            [&](double a, double b) { return distance(a) < distance(b); });
-    char text[256];
-    std::snprintf(
-        text, sizeof text,
-        "the depth scale makes no sense: the median depth of the first frame is %.4g m (0.1 to 20 m is "
-        "plausible); depths are likely to be %g times too %s, which would make it %.3g m",
-        median, factor > 1 ? factor : 1 / factor, factor > 1 ? "small" : "large", median * factor);
-    return text;
+std::string DepthScaleCheck::faultOf(const SourceFrame& frame) {
+    if (done_ || !frame.fault.empty()) return {};
+    done_ = true;
+    return depthScaleFault(frame.frame);
 }
 
 }  // namespace roevo

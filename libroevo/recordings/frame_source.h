@@ -60,8 +60,16 @@ void skipFrames(FrameSource& source, std::size_t count, const std::string& input
 /// @throws std::runtime_error in one line
 GroundTruth groundTruthFor(const std::string& path, const FrameSource& source);
 
-/// Empty when the depth of a frame is of a plausible scale (or there is none), else one line that says by
-/// which factor it is likely to be wrong.
-std::string depthScaleFault(const RgbdFrame& frame);
+/// Looks at the depth of the first frame that could be decoded, and of no other.
+class DepthScaleCheck {
+  public:
+    /// What depthScaleFault() says of the frame if it is that one; else empty.
+    std::string faultOf(const SourceFrame& frame);
+
+    bool isDone() const { return done_; }  ///< such a frame was there
+
+  private:
+    bool done_ = false;
+};
 
 }  // namespace roevo
