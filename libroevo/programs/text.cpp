@@ -105,6 +105,12 @@ std::string exactNumber(std::optional<double> value) {
     return {text, std::to_chars(text, text + sizeof text, *value).ptr};
 }
 
+std::string stampText(double timestamp) {
+    char text[400];
+    std::snprintf(text, sizeof text, "%.6f", timestamp);
+    return text;
+}
+
 std::size_t countCharacters(const std::string& text) {
     return static_cast<std::size_t>(std::count_if(
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));

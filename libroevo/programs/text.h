@@ -23,6 +23,9 @@ std::string shownNumber(std::optional<double> value, int decimals);
 /// The shortest digits that give the same number again, and nothing when there is none or it is not finite.
 std::string exactNumber(std::optional<double> value);
 
+/// A time stamp in seconds, with microseconds, as the lists of TUM's layout have it.
+std::string stampText(double timestamp);
+
 /// Number of characters of a text in UTF-8.
 std::size_t countCharacters(const std::string& text);
 

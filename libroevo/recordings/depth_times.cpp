@@ -1,12 +1,12 @@
 #include "recordings/depth_times.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
 
 #include "evaluation/association.h"
+#include "programs/text.h"
 #include "recordings/text_list.h"
 #include "roevo_mrpt/time_conversions.h"
 
@@ -26,9 +26,7 @@ std::string depthTimesText(const DatasetReader& dataset, const std::vector<std::
     for (const std::size_t i : frames) {
         const DatasetEntry& entry = dataset.entry(i);
         differ = differ || entry.timestamp != entry.depth_timestamp;
-        char line[100];
-        std::snprintf(line, sizeof line, "%.6f %.6f\n", entry.timestamp, entry.depth_timestamp);
-        text += line;
+        text += stampText(entry.timestamp) + " " + stampText(entry.depth_timestamp) + "\n";
     }
     return differ ? text : "";
 }

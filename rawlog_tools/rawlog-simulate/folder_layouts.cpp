@@ -4,17 +4,12 @@
 
 #include "folder_recording.h"
 #include "layout.h"
+#include "programs/text.h"
 
 namespace roevo {
 namespace {
 
 using simulator::SimulatedFrame;
-
-std::string stampText(double timestamp) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.6f", timestamp);
-    return text;
-}
 
 std::string cameraText(const PinholeCamera& camera) {
     char text[512];

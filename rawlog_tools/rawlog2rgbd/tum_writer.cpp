@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "programs/text.h"
 #include "recordings/depth_times.h"
 #include "roevo_mrpt/file_copy.h"
 
@@ -13,12 +14,6 @@ namespace fs = std::filesystem;
 
 namespace roevo {
 namespace {
-
-std::string stampText(double timestamp) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.6f", timestamp);
-    return text;
-}
 
 /// Numbers after a blank each, with all their digits.
 std::string numbersText(std::initializer_list<double> numbers) {

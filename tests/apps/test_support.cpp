@@ -8,6 +8,7 @@
 
 #include "programs/atomic_file.h"
 #include "programs/program.h"
+#include "programs/text.h"
 #include "support/run_program.h"
 
 namespace roevo {
@@ -103,6 +104,12 @@ TEST(Program, OutlivesItsTerminalUnderNohup) {
     const auto before = std::signal(SIGHUP, SIG_IGN);
     EXPECT_EQ(exitCodeAfter(SIGHUP, folder / "a.txt"), 0);
     std::signal(SIGHUP, before);
+}
+
+TEST(Text, StampsHaveMicroseconds) {
+    EXPECT_EQ(stampText(0), "0.000000");
+    EXPECT_EQ(stampText(1305031102.1753039), "1305031102.175304");
+    EXPECT_EQ(stampText(-0.5), "-0.500000");
 }
 
 }  // namespace
