@@ -105,6 +105,11 @@ std::string exactNumber(std::optional<double> value) {
     return {text, std::to_chars(text, text + sizeof text, *value).ptr};
 }
 
+std::string plainNumber(double value) {
+    char text[64];
+    return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general).ptr};
+}
+
 std::string stampText(double timestamp) {
     char text[400];
     std::snprintf(text, sizeof text, "%.6f", timestamp);

@@ -23,6 +23,9 @@ std::string shownNumber(std::optional<double> value, int decimals);
 /// The shortest digits that give the same number again, and nothing when there is none or it is not finite.
 std::string exactNumber(std::optional<double> value);
 
+/// The same digits, written as "%g" does: 0.0001 and 100000, where exactNumber() says 1e-04 and 1e+05.
+std::string plainNumber(double value);
+
 /// A time stamp in seconds, with microseconds, as the lists of TUM's layout have it.
 std::string stampText(double timestamp);
 

@@ -26,26 +26,16 @@ std::string numbersText(std::initializer_list<double> numbers) {
     return all;
 }
 
-/// The shortest text that reads back as the same number.
-std::string shortest(double number) {
-    char text[64];
-    for (int digits = 6; digits <= 17; digits++) {
-        std::snprintf(text, sizeof text, "%.*g", digits, number);
-        if (std::stod(text) == number) break;
-    }
-    return text;
-}
-
 std::string cameraText(const TumCamera& description) {
     const PinholeCamera& camera = description.camera;
     std::string text =
         "width: " + std::to_string(camera.width) + "\nheight: " + std::to_string(camera.height) + "\n";
     const std::pair<const char*, double> values[] = {
         {"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx}, {"cy", camera.cy}};
-    for (const auto& [key, value] : values) text += std::string(key) + ": " + shortest(value) + "\n";
+    for (const auto& [key, value] : values) text += std::string(key) + ": " + plainNumber(value) + "\n";
     text += "distortion_k1_k2_p1_p2_k3:";
-    for (const double term : camera.distortion) text += " " + shortest(term);
-    text += "\ndepth_scale: " + shortest(description.depth_scale) + "   # PNG value / depth_scale = metres\n";
+    for (const double term : camera.distortion) text += " " + plainNumber(term);
+    text += "\ndepth_scale: " + plainNumber(description.depth_scale) + "   # PNG value / depth_scale = metres\n";
     for (const std::string& note : description.notes) text += note + "\n";
     return text;
 }

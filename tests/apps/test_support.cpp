@@ -2,9 +2,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <random>
 #include <stdexcept>
+#include <utility>
 
 #include "programs/atomic_file.h"
 #include "programs/program.h"
@@ -104,6 +107,24 @@ TEST(Program, OutlivesItsTerminalUnderNohup) {
     const auto before = std::signal(SIGHUP, SIG_IGN);
     EXPECT_EQ(exitCodeAfter(SIGHUP, folder / "a.txt"), 0);
     std::signal(SIGHUP, before);
+}
+
+TEST(Text, PlainNumbersHaveTheFewestDigitsThatReadBack) {
+    const std::pair<double, const char*> cases[] = {{0, "0"},
+                                                    {5000, "5000"},
+                                                    {100000, "100000"},
+                                                    {517.3, "517.3"},
+                                                    {-0.0001, "-0.0001"},
+                                                    {0.00001, "1e-05"},
+                                                    {-0.9531, "-0.9531"},
+                                                    {1.0 / 3, "0.3333333333333333"}};
+    for (const auto& [number, text] : cases) EXPECT_EQ(plainNumber(number), text);
+    std::mt19937 rng(3);
+    std::uniform_real_distribution<double> exponent(-12, 6);
+    for (int i = 0; i < 1000; ++i) {
+        const double number = std::pow(10, exponent(rng));
+        EXPECT_EQ(std::stod(plainNumber(number)), number);
+    }
 }
 
 TEST(Text, StampsHaveMicroseconds) {
