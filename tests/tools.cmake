@@ -1,6 +1,6 @@
 roevo_test(test_tools
-  SOURCES tools/test_tum.cpp tools/test_tum_association.cpp tools/test_depth_scale.cpp
-  LIBS roevo_datasets roevo_recordings roevo_evaluation)
+  SOURCES tools/test_tum.cpp tools/test_tum_association.cpp tools/test_depth_scale.cpp tools/test_camera_file.cpp
+  LIBS roevo_datasets roevo_recordings roevo_evaluation roevo_programs)
 target_include_directories(test_tools PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 add_dependencies(test_tools rgbd2rawlog)
 roevo_test(test_rawlog_tools

@@ -110,6 +110,12 @@ std::string plainNumber(double value) {
     return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general).ptr};
 }
 
+std::string allDigits(double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return text;
+}
+
 std::string stampText(double timestamp) {
     char text[400];
     std::snprintf(text, sizeof text, "%.6f", timestamp);

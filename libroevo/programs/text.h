@@ -26,6 +26,9 @@ std::string exactNumber(std::optional<double> value);
 /// The same digits, written as "%g" does: 0.0001 and 100000, where exactNumber() says 1e-04 and 1e+05.
 std::string plainNumber(double value);
 
+/// All 17 digits that a double may need, as "%.17g" writes them.
+std::string allDigits(double value);
+
 /// A time stamp in seconds, with microseconds, as the lists of TUM's layout have it.
 std::string stampText(double timestamp);
 

@@ -7,13 +7,15 @@
 #include <map>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
+#include <utility>
 
 #include "programs/byte_order_mark.h"
 #include "recordings/text_list.h"
 
 namespace roevo {
 namespace {
+
+constexpr char kDistortion[] = "distortion_k1_k2_p1_p2_k3";
 
 struct Value {
     std::string where;
@@ -73,7 +75,6 @@ CameraDescription readCameraFile(const std::string& file) {
     out.depth_scale = number("depth_scale");
     if (!missing.empty()) throw std::runtime_error("no intrinsics: " + file + " lacks " + missing);
 
-    const char* const kDistortion = "distortion_k1_k2_p1_p2_k3";
     if (const auto found = values.find(kDistortion); found != values.end()) {
         const auto terms = numbers(found->second, kDistortion, camera.distortion.size());
         std::copy(terms.begin(), terms.end(), camera.distortion.begin());
@@ -87,6 +88,20 @@ CameraDescription readCameraFile(const std::string& file) {
     if (!(out.depth_scale > 0)) throw std::runtime_error(file + ": depth_scale must be above 0");
     out.source = "camera.txt";
     return out;
+}
+
+std::string cameraFileText(const PinholeCamera& camera, double depth_scale,
+                           const std::vector<std::string>& notes, std::string (*number)(double)) {
+    std::string text =
+        "width: " + std::to_string(camera.width) + "\nheight: " + std::to_string(camera.height) + "\n";
+    const std::pair<const char*, double> values[] = {
+        {"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx}, {"cy", camera.cy}};
+    for (const auto& [key, value] : values) text += std::string(key) + ": " + number(value) + "\n";
+    text += std::string(kDistortion) + ":";
+    for (const double term : camera.distortion) text += " " + number(term);
+    text += "\ndepth_scale: " + number(depth_scale) + "   # PNG value / depth_scale = metres\n";
+    for (const std::string& note : notes) text += note + "\n";
+    return text;
 }
 
 void setCamera(const CameraDescription& camera, DatasetDescription& out) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "recordings/dataset_reader.h"
 #include "roevo/camera/pinhole_camera.h"
@@ -20,6 +21,12 @@ struct CameraDescription {
 /// are notes.
 /// @throws std::runtime_error naming file, line and what is wrong or missing.
 CameraDescription readCameraFile(const std::string& file);
+
+/// What such a file says of a camera, for readCameraFile() to read the same numbers.
+/// @param notes   lines for people, "key: value"
+/// @param number  writes a number with all the digits that it needs
+std::string cameraFileText(const PinholeCamera& camera, double depth_scale,
+                           const std::vector<std::string>& notes, std::string (*number)(double));
 
 /// The published camera of a TUM RGB-D sequence if `text` (a folder name or a list's header) names freiburg1,
 /// 2 or 3.
