@@ -33,7 +33,7 @@ add_executable(rawlog-simulate
   rawlog-simulate/layout.cpp
   rawlog-simulate/main.cpp
   rawlog-simulate/recording.cpp)
-target_link_libraries(rawlog-simulate PRIVATE roevo_simulator roevo_datasets roevo_evaluation roevo_mrpt roevo_support
+target_link_libraries(rawlog-simulate PRIVATE roevo_simulator roevo_datasets roevo_evaluation roevo_mrpt roevo_programs
                       opencv_imgcodecs roevo_build_flags)
 target_include_directories(rawlog-simulate SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 install(TARGETS rawlog-simulate)

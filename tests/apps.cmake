@@ -5,7 +5,7 @@ target_link_libraries(roevo_test_support PUBLIC opencv_core opencv_imgproc openc
 roevo_test(test_evaluation
   SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_support.cpp apps/test_ahead.cpp
           apps/test_run_report.cpp ${PROJECT_SOURCE_DIR}/apps/roevo-odometry/run_report.cpp
-  LIBS roevo_evaluation roevo_support roevo_test_support)
+  LIBS roevo_evaluation roevo_programs roevo_test_support)
 
 target_include_directories(test_evaluation PRIVATE ${PROJECT_SOURCE_DIR}/apps)
 
@@ -41,7 +41,7 @@ roevo_test(test_compare
   SOURCES apps/test_method_run.cpp apps/test_kept_run.cpp apps/test_process.cpp apps/test_run_queue.cpp
           apps/test_compare_benchmark.cpp apps/test_compare_program.cpp apps/test_compare_resume.cpp
           apps/test_compare_terminal.cpp apps/test_compare_ba_first.cpp
-  LIBS roevo_compare roevo_support roevo_test_support nlohmann_json::nlohmann_json)
+  LIBS roevo_compare roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog rawlog-simulate)
 
 # One ctest entry per method, since its cases share rendered frames.
@@ -58,7 +58,7 @@ target_include_directories(test_compare_baselines PRIVATE ${CMAKE_CURRENT_SOURCE
 
 roevo_test(test_compare_report
   SOURCES apps/test_compare_tables.cpp apps/test_compare_report.cpp apps/test_compare_numpy.cpp
-  LIBS roevo_report roevo_evaluation roevo_support roevo_test_support nlohmann_json::nlohmann_json)
+  LIBS roevo_report roevo_evaluation roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_compare_report roevo-compare roevo-odometry roevo-render)
 
 roevo_test(test_study

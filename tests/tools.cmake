@@ -1,18 +1,18 @@
 roevo_test(test_tools
-  SOURCES tools/test_tum.cpp tools/test_tum_association.cpp
-  LIBS roevo_datasets)
+  SOURCES tools/test_tum.cpp tools/test_tum_association.cpp tools/test_depth_scale.cpp tools/test_camera_file.cpp
+  LIBS roevo_datasets roevo_recordings roevo_evaluation roevo_programs)
 target_include_directories(test_tools PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 add_dependencies(test_tools rgbd2rawlog)
 roevo_test(test_rawlog_tools
   SOURCES tools/test_rgbd2rawlog.cpp tools/test_rgbd2rawlog_options.cpp tools/test_verify.cpp tools/test_rawlog2rgbd.cpp
           tools/test_rawlog2rgbd_errors.cpp tools/test_mrpt_apps.cpp tools/test_permissions.cpp tools/test_full_disk.cpp tools/test_depth_times.cpp tools/test_round_trip.cpp
-  LIBS roevo_rgbd2rawlog roevo_datasets roevo_evaluation)
+  LIBS roevo_rgbd2rawlog roevo_datasets roevo_mrpt roevo_evaluation)
 target_include_directories(test_rawlog_tools PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_include_directories(test_rawlog_tools SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 add_dependencies(test_rawlog_tools rgbd2rawlog rawlog2rgbd rawlog-simulate)
 include(${CMAKE_CURRENT_LIST_DIR}/simulator.cmake OPTIONAL)
 if(TARGET bag2rawlog)
-  roevo_test(test_bag SOURCES tools/test_bag.cpp tools/test_bag_errors.cpp LIBS roevo_datasets roevo_rosbag)
+  roevo_test(test_bag SOURCES tools/test_bag.cpp tools/test_bag_errors.cpp LIBS roevo_datasets roevo_mrpt roevo_rosbag)
   target_include_directories(test_bag PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_include_directories(test_bag SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
   add_dependencies(test_bag bag2rawlog)

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "support/program.h"
+#include "programs/program.h"
 
 namespace roevo {
 namespace {

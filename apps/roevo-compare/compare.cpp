@@ -12,10 +12,10 @@
 
 #include "comparison_notes.h"
 #include "machine_info.h"
+#include "programs/interrupt.h"
+#include "programs/output_folder.h"
 #include "roevo_mrpt/config_file.h"
 #include "runs.h"
-#include "support/interrupt.h"
-#include "support/output_folder.h"
 
 namespace roevo {
 namespace {

@@ -10,8 +10,8 @@
 #include <iterator>
 #include <opencv2/core/version.hpp>
 
-#include "support/process.h"
-#include "support/program.h"
+#include "programs/process.h"
+#include "programs/program.h"
 
 namespace roevo {
 namespace {

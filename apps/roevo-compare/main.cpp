@@ -8,9 +8,9 @@
 #include "benchmark_list.h"
 #include "compare.h"
 #include "machine_info.h"
-#include "recording/option_arguments.h"
+#include "programs/option_arguments.h"
+#include "programs/program.h"
 #include "run_child.h"
-#include "support/program.h"
 #include "terminal_table.h"
 
 namespace roevo {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "evaluation/trajectory_io.h"
-#include "support/atomic_file.h"
-#include "support/program.h"
+#include "programs/atomic_file.h"
+#include "programs/program.h"
 
 namespace roevo {
 namespace {

@@ -5,9 +5,9 @@ add_library(roevo_compare STATIC
   terminal_table.cpp)
 target_include_directories(roevo_compare PUBLIC ${PROJECT_SOURCE_DIR}/apps)
 target_compile_definitions(roevo_compare PRIVATE ROEVO_BUILD_TYPE="${CMAKE_BUILD_TYPE}")
-target_link_libraries(roevo_compare PUBLIC roevo_methods roevo_report roevo_recording roevo_evaluation
-                      PRIVATE roevo_mrpt roevo_support nlohmann_json::nlohmann_json roevo_build_flags)
+target_link_libraries(roevo_compare PUBLIC roevo_methods roevo_report roevo_recordings roevo_evaluation
+                      PRIVATE roevo_mrpt roevo_programs nlohmann_json::nlohmann_json roevo_build_flags)
 
 add_executable(roevo-compare main.cpp)
-target_link_libraries(roevo-compare PRIVATE roevo_compare roevo_support roevo_build_flags)
+target_link_libraries(roevo-compare PRIVATE roevo_compare roevo_option_arguments roevo_programs roevo_build_flags)
 install(TARGETS roevo-compare)

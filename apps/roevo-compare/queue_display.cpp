@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "support/progress.h"
+#include "programs/progress.h"
 
 namespace roevo {
 namespace {

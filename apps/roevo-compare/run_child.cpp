@@ -4,10 +4,10 @@
 #include <new>
 #include <opencv2/core/utility.hpp>
 
-#include "recording/frame_source.h"
+#include "programs/program.h"
+#include "recordings/frame_source.h"
 #include "run_method.h"
 #include "run_progress.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {

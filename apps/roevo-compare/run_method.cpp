@@ -12,10 +12,10 @@
 
 #include "core_contention.h"
 #include "evaluation/error_statistics.h"
-#include "support/atomic_file.h"
-#include "support/memory_peak.h"
-#include "support/program.h"
-#include "support/text.h"
+#include "programs/atomic_file.h"
+#include "programs/memory_peak.h"
+#include "programs/program.h"
+#include "programs/text.h"
 
 namespace roevo {
 namespace {
@@ -30,12 +30,6 @@ struct FrameRow {
     double ms_decode = 0, ms_total = 0;
     MethodFrame result;
 };
-
-std::string stampText(double timestamp) {
-    char text[48];
-    std::snprintf(text, sizeof text, "%.6f s", timestamp);
-    return text;
-}
 
 // Runs a piece of the method; what it throws is told with where it happened.
 template <class Work>
@@ -84,7 +78,7 @@ bool Runner::next(SourceFrame& frame) {
 
 void Runner::process(const SourceFrame& frame, FrameRow& row) {
     const std::string where =
-        "at frame " + std::to_string(rows.size() + 1) + " (" + stampText(frame.timestamp) + ")";
+        "at frame " + std::to_string(rows.size() + 1) + " (" + stampText(frame.timestamp) + " s)";
     const auto start = std::chrono::steady_clock::now();
     row.result = guarded(where, [&] { return method_.processFrame(frame.frame); });
     row.ms_total =
@@ -132,7 +126,7 @@ std::vector<StampedPose> Runner::trajectory() const {
             if (row.result.T_world_camera) poses.push_back({row.timestamp, *row.result.T_world_camera});
     }
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        const std::string where = "in the final trajectory at " + stampText(poses[i].timestamp) + ": ";
+        const std::string where = "in the final trajectory at " + stampText(poses[i].timestamp) + " s: ";
         if (const std::string fault = poseFault(poses[i].T_world_camera); !fault.empty())
             throw std::runtime_error(where + fault);
         if (i > 0 && !(poses[i].timestamp > poses[i - 1].timestamp))

@@ -5,7 +5,7 @@
 
 #include "method.h"
 #include "method_run.h"
-#include "recording/frame_source.h"
+#include "recordings/frame_source.h"
 
 namespace roevo {
 

@@ -11,9 +11,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "programs/interrupt.h"
+#include "programs/program.h"
 #include "run_progress.h"
-#include "support/interrupt.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "method.h"
 #include "method_run.h"
-#include "support/process.h"
+#include "programs/process.h"
 
 namespace roevo {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "machine_info.h"
-#include "support/text.h"
+#include "programs/text.h"
 
 namespace roevo {
 namespace {

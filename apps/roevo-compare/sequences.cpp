@@ -10,9 +10,9 @@
 #include <stdexcept>
 
 #include "evaluation/trajectory_io.h"
-#include "recording/frame_source.h"
-#include "support/interrupt.h"
-#include "support/program.h"
+#include "programs/interrupt.h"
+#include "programs/program.h"
+#include "recordings/frame_source.h"
 
 namespace roevo {
 namespace {
@@ -37,8 +37,10 @@ std::string faultOf(FrameSource& source, const SequenceInput& sequence) {
     skipFrames(source, sequence.skip, sequence.input);
     std::size_t count = 0;
     std::string first_fault;
+    DepthScaleCheck depth_scale;
     for (SourceFrame frame; (sequence.first == 0 || count < sequence.first) && source.next(frame); ++count) {
-        if (frame.fault.empty()) return depthScaleFault(frame.frame);
+        const std::string fault = depth_scale.faultOf(frame);
+        if (depth_scale.isDone()) return fault;
         if (first_fault.empty()) first_fault = frame.fault;
         InterruptGuard::check();
     }

@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <set>
 
+#include "programs/text.h"
 #include "report/metrics.h"
 #include "report/remarks.h"
 #include "report/results.h"
-#include "support/text.h"
 
 namespace roevo {
 namespace {

@@ -5,8 +5,8 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/to_json.h"
 #include "evaluation/trajectory_io.h"
-#include "support/atomic_file.h"
-#include "support/program.h"
+#include "programs/atomic_file.h"
+#include "programs/program.h"
 
 namespace roevo {
 namespace {

@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <opencv2/core/utility.hpp>
 
-#include "recording/option_arguments.h"
+#include "programs/atomic_file.h"
+#include "programs/option_arguments.h"
+#include "programs/program.h"
 #include "roevo_mrpt/config_file.h"
 #include "run.h"
-#include "support/atomic_file.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {

@@ -9,13 +9,13 @@
 
 #include "evaluation/scale_check.h"
 #include "evaluation/trajectory_io.h"
-#include "recording/frame_source.h"
+#include "programs/atomic_file.h"
+#include "programs/output_folder.h"
+#include "programs/progress.h"
+#include "recordings/frame_source.h"
 #include "roevo_mrpt/config_file.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/scene_builder.h"
-#include "support/atomic_file.h"
-#include "support/output_folder.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {
@@ -67,14 +67,11 @@ class FrameClock {
 // Feeds every frame to the odometry; the report gets one record for each.
 void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& settings, RunReport& report) {
     Progress progress("tracking", expectedFrames(source, settings), !settings.quiet);
-    bool scale_checked = false;
+    DepthScaleCheck depth_scale;
     FrameClock clock;
     for (SourceFrame frame; source.next(frame);) {
-        if (frame.fault.empty() && !scale_checked) {
-            if (const std::string fault = depthScaleFault(frame.frame); !fault.empty())
-                throw std::runtime_error(settings.input + ": " + fault);
-            scale_checked = true;
-        }
+        if (const std::string fault = depth_scale.faultOf(frame); !fault.empty())
+            throw std::runtime_error(settings.input + ": " + fault);
         if (settings.realtime && frame.fault.empty() && !clock.await(frame.timestamp)) {
             frame.fault = "dropped: the one before was not done in time";
             ++report.dropped;

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <map>
 
-#include "support/text.h"
+#include "programs/text.h"
 
 namespace roevo {
 namespace {

@@ -10,9 +10,9 @@
 #include <opencv2/core/version.hpp>
 
 #include "evaluation/to_json.h"
+#include "programs/memory_peak.h"
+#include "programs/program.h"
 #include "run_report.h"
-#include "support/memory_peak.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "evaluation/trajectory_io.h"
 #include "offscreen.h"
+#include "programs/atomic_file.h"
+#include "programs/program.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "scene_content.h"
-#include "support/atomic_file.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "ablation_pieces.h"
 #include "bar_chart.h"
+#include "programs/progress.h"
 #include "roevo-compare/report/results.h"
 #include "roevo/odometry.h"
 #include "study.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "support/gnuplot.h"
+#include "programs/gnuplot.h"
 
 namespace roevo {
 namespace {

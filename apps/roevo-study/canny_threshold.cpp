@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "programs/gnuplot.h"
+#include "programs/progress.h"
 #include "study.h"
-#include "support/gnuplot.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {

@@ -4,10 +4,10 @@
 #include <limits>
 
 #include "bar_chart.h"
+#include "programs/gnuplot.h"
+#include "programs/progress.h"
 #include "roevo/tracking/edge_points.h"
 #include "study.h"
-#include "support/gnuplot.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "efficiency_registration.h"
 #include "evaluation/error_statistics.h"
-#include "support/gnuplot.h"
+#include "programs/gnuplot.h"
 
 namespace roevo {
 namespace {

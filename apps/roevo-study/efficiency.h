@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "programs/progress.h"
 #include "study.h"
-#include "support/progress.h"
 
 namespace roevo {
 

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
+#include "programs/atomic_file.h"
+#include "programs/program.h"
 #include "roevo-compare/machine_info.h"
 #include "roevo-compare/report/protocol.h"
-#include "support/atomic_file.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "programs/program.h"
 #include "study_source.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {
@@ -34,17 +34,15 @@ std::string shortName(const std::string& path, const std::vector<StudyInput>& ot
 
 // Reads so far that it is known to be worth a study.
 void checkFrames(FrameSource& source, const std::string& path) {
-    bool good = false;
+    DepthScaleCheck depth_scale;
     SourceFrame frame;
-    for (std::size_t count = 0; count < kFewestFrames || !good; ++count) {
+    for (std::size_t count = 0; count < kFewestFrames || !depth_scale.isDone(); ++count) {
         if (!source.next(frame))
             throw std::runtime_error(count < kFewestFrames
                                          ? path + ": only " + counted(count, "frame") +
                                                "; a study needs at least " + std::to_string(kFewestFrames)
                                          : path + ": no frame can be read; the last one: " + frame.fault);
-        if (!frame.fault.empty() || good) continue;
-        good = true;
-        if (const std::string fault = depthScaleFault(frame.frame); !fault.empty())
+        if (const std::string fault = depth_scale.faultOf(frame); !fault.empty())
             throw std::runtime_error(path + ": " + fault);
     }
 }

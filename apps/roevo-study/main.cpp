@@ -6,11 +6,11 @@
 
 #include "index.h"
 #include "inputs.h"
-#include "recording/option_arguments.h"
+#include "programs/option_arguments.h"
+#include "programs/output_folder.h"
+#include "programs/program.h"
 #include "roevo-compare/machine_info.h"
 #include "study.h"
-#include "support/output_folder.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {

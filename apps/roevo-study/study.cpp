@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "programs/atomic_file.h"
+#include "programs/gnuplot.h"
+#include "programs/program.h"
 #include "roevo/odometry.h"
-#include "support/atomic_file.h"
-#include "support/gnuplot.h"
-#include "support/program.h"
 
 namespace roevo {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "evaluation/evaluate.h"
-#include "recording/frame_source.h"
+#include "recordings/frame_source.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/options.h"
 #include "roevo/types.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "recording/forwarding_source.h"
+#include "recordings/forwarding_source.h"
 
 namespace roevo {
 namespace {

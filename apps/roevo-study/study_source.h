@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "recording/frame_source.h"
+#include "recordings/frame_source.h"
 #include "study.h"
 
 namespace roevo {

@@ -8,9 +8,10 @@
 #include <stdexcept>
 
 #include "bag2rawlog/ros_image.h"
+#include "evaluation/association.h"
+#include "programs/interrupt.h"
+#include "programs/progress.h"
 #include "roevo_mrpt/rawlog_writer.h"
-#include "support/interrupt.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "bag2rawlog/bag_file.h"
 #include "bag2rawlog/topic_choice.h"
-#include "datasets/association.h"
+#include "recordings/association_report.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/types.h"
 

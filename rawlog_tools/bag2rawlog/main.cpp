@@ -5,9 +5,9 @@
 
 #include "bag2rawlog/convert.h"
 #include "bag2rawlog/ros_home.h"
-#include "datasets/depth_times.h"
 #include "output_check.h"
-#include "support/program.h"
+#include "programs/program.h"
+#include "recordings/depth_times.h"
 
 namespace roevo {
 namespace {

@@ -4,29 +4,16 @@
 
 #include "folder_recording.h"
 #include "layout.h"
+#include "programs/text.h"
+#include "recordings/camera_file.h"
 
 namespace roevo {
 namespace {
 
 using simulator::SimulatedFrame;
 
-std::string stampText(double timestamp) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.6f", timestamp);
-    return text;
-}
-
 std::string cameraText(const PinholeCamera& camera) {
-    char text[512];
-    const auto& k = camera.distortion;
-    std::snprintf(
-        text, sizeof text,
-        "width: %d\nheight: %d\nfx: %.17g\nfy: %.17g\ncx: %.17g\ncy: %.17g\n"
-        "distortion_k1_k2_p1_p2_k3: %.17g %.17g %.17g %.17g %.17g\n"
-        "depth_scale: 5000   # PNG value / depth_scale = metres\ninvalid_depth: 0\nnote: simulated\n",
-        camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, k[0], k[1], k[2], k[3],
-        k[4]);
-    return text;
+    return cameraFileText(camera, 5000, {"invalid_depth: 0", "note: simulated"}, allDigits);
 }
 
 /// rgb/ and depth/ with one name per frame, and the lists that go with them.
@@ -90,10 +77,8 @@ class PlainRecording : public PairsRecording {
 class Eth3dRecording : public PairsRecording {
   public:
     Eth3dRecording(const std::string& path, const PinholeCamera& camera) : PairsRecording(path) {
-        char text[128];
-        std::snprintf(text, sizeof text, "%.17g %.17g %.17g %.17g\n", camera.fx, camera.fy, camera.cx,
-                      camera.cy);
-        writeText("calibration.txt", text);
+        writeText("calibration.txt", allDigits(camera.fx) + " " + allDigits(camera.fy) + " " +
+                                         allDigits(camera.cx) + " " + allDigits(camera.cy) + "\n");
     }
 
   private:

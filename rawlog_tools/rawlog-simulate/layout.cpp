@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "datasets/seven_scenes.h"
 #include "evaluation/trajectory_io.h"
+#include "recordings/seven_scenes.h"
 
 namespace roevo {
 namespace {

@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "layout.h"
+#include "programs/program.h"
+#include "programs/progress.h"
 #include "recording.h"
-#include "support/program.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {

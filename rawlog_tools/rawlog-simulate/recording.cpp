@@ -4,8 +4,8 @@
 
 #include "folder_recording.h"
 #include "layout.h"
+#include "programs/atomic_file.h"
 #include "roevo_mrpt/rawlog_writer.h"
-#include "support/atomic_file.h"
 
 namespace roevo {
 namespace {

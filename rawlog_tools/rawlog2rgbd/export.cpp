@@ -10,16 +10,17 @@
 #include <set>
 #include <stdexcept>
 
-#include "datasets/depth_times.h"
+#include "programs/ahead.h"
+#include "programs/interrupt.h"
+#include "programs/progress.h"
+#include "programs/text.h"
 #include "rawlog2rgbd/scan_reader.h"
 #include "rawlog2rgbd/tum_writer.h"
+#include "recordings/depth_times.h"
 #include "roevo_mrpt/image_conversions.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_writer.h"
 #include "roevo_mrpt/time_conversions.h"
-#include "support/ahead.h"
-#include "support/interrupt.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {
@@ -52,9 +53,7 @@ class Exporter {
         const double timestamp = fromMrptTime(decoded.scan->timestamp);
         const std::string fault = decoded.fault.empty() ? write(decoded, timestamp) : decoded.fault;
         if (fault.empty()) return;
-        char stamp[64];
-        std::snprintf(stamp, sizeof stamp, "frame at %.6f s: ", timestamp);
-        result_.left_out.push_back(stamp + fault);
+        result_.left_out.push_back("frame at " + stampText(timestamp) + " s: " + fault);
     }
 
     const TumCamera& camera() const { return camera_; }

@@ -2,9 +2,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "programs/memory_peak.h"
+#include "programs/program.h"
 #include "rawlog2rgbd/export.h"
-#include "support/memory_peak.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "programs/program.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/time_conversions.h"
-#include "support/program.h"
 
 namespace roevo {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/sensor_data.h"
+#include "recordings/sensor_data.h"
 #include "roevo/camera/rgbd_frame.h"
 #include "roevo_mrpt/rawlog_reader.h"
 

@@ -1,12 +1,13 @@
 #include "rawlog2rgbd/tum_writer.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
-#include "datasets/depth_times.h"
+#include "programs/text.h"
+#include "recordings/camera_file.h"
+#include "recordings/depth_times.h"
 #include "roevo_mrpt/file_copy.h"
 
 namespace fs = std::filesystem;
@@ -14,45 +15,11 @@ namespace fs = std::filesystem;
 namespace roevo {
 namespace {
 
-std::string stampText(double timestamp) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.6f", timestamp);
-    return text;
-}
-
 /// Numbers after a blank each, with all their digits.
 std::string numbersText(std::initializer_list<double> numbers) {
     std::string all;
-    for (const double number : numbers) {
-        char text[64];
-        std::snprintf(text, sizeof text, " %.17g", number);
-        all += text;
-    }
+    for (const double number : numbers) all += " " + allDigits(number);
     return all;
-}
-
-/// The shortest text that reads back as the same number.
-std::string shortest(double number) {
-    char text[64];
-    for (int digits = 6; digits <= 17; digits++) {
-        std::snprintf(text, sizeof text, "%.*g", digits, number);
-        if (std::stod(text) == number) break;
-    }
-    return text;
-}
-
-std::string cameraText(const TumCamera& description) {
-    const PinholeCamera& camera = description.camera;
-    std::string text =
-        "width: " + std::to_string(camera.width) + "\nheight: " + std::to_string(camera.height) + "\n";
-    const std::pair<const char*, double> values[] = {
-        {"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx}, {"cy", camera.cy}};
-    for (const auto& [key, value] : values) text += std::string(key) + ": " + shortest(value) + "\n";
-    text += "distortion_k1_k2_p1_p2_k3:";
-    for (const double term : camera.distortion) text += " " + shortest(term);
-    text += "\ndepth_scale: " + shortest(description.depth_scale) + "   # PNG value / depth_scale = metres\n";
-    for (const std::string& note : description.notes) text += note + "\n";
-    return text;
 }
 
 [[noreturn]] void failToWrite(const fs::path& file) {
@@ -156,7 +123,7 @@ void TumWriter::writeLists(bool own_depth_times) {
 
 void TumWriter::finish(const TumCamera& camera, const std::string& ground_truth_file, bool own_depth_times) {
     writeLists(own_depth_times);
-    write("camera.txt", cameraText(camera));
+    write("camera.txt", cameraFileText(camera.camera, camera.depth_scale, camera.notes, plainNumber));
     if (!accelerometer_.empty())
         write("accelerometer.txt", "# accelerometer data, m/s^2\n# timestamp ax ay az\n" + accelerometer_);
     if (!imu_.empty())

@@ -5,10 +5,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "programs/ahead.h"
+#include "programs/interrupt.h"
+#include "programs/progress.h"
 #include "roevo_mrpt/rawlog_writer.h"
-#include "support/ahead.h"
-#include "support/interrupt.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {

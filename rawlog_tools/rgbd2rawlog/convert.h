@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/dataset_reader.h"
+#include "recordings/dataset_reader.h"
 #include "rgbd2rawlog/selection.h"
 
 namespace roevo {

@@ -5,16 +5,16 @@
 #include <filesystem>
 #include <memory>
 
-#include "datasets/dataset_reader.h"
-#include "datasets/depth_times.h"
 #include "output_check.h"
+#include "programs/atomic_file.h"
+#include "programs/memory_peak.h"
+#include "programs/program.h"
+#include "recordings/dataset_reader.h"
+#include "recordings/depth_times.h"
 #include "rgbd2rawlog/convert.h"
 #include "rgbd2rawlog/verify.h"
 #include "roevo_mrpt/file_copy.h"
 #include "roevo_mrpt/rawlog_writer.h"
-#include "support/atomic_file.h"
-#include "support/memory_peak.h"
-#include "support/program.h"
 
 namespace roevo {
 namespace {

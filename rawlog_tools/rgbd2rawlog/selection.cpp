@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "support/program.h"
+#include "programs/program.h"
 
 namespace roevo {
 namespace {

@@ -10,12 +10,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "programs/interrupt.h"
+#include "programs/progress.h"
 #include "roevo_mrpt/image_conversions.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_mrpt/time_conversions.h"
-#include "support/interrupt.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <string>
 
-#include "datasets/dataset_reader.h"
+#include "recordings/dataset_reader.h"
 #include "rgbd2rawlog/convert.h"
 
 namespace roevo {

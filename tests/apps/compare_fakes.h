@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "recording/frame_source.h"
+#include "recordings/frame_source.h"
 #include "roevo-compare/method.h"
 
 namespace roevo::test {

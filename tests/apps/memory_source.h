@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "recording/frame_source.h"
+#include "recordings/frame_source.h"
 
 namespace roevo::test {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "support/ahead.h"
+#include "programs/ahead.h"
 
 namespace roevo {
 namespace {

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "compare_program.h"
+#include "programs/process.h"
 #include "roevo-compare/compare.h"
 #include "roevo-compare/terminal_table.h"
-#include "support/process.h"
 
 namespace roevo {
 namespace {

@@ -8,12 +8,12 @@
 #include <filesystem>
 #include <regex>
 
+#include "programs/interrupt.h"
+#include "programs/process.h"
 #include "report_fixture.h"
 #include "roevo-compare/report/line_style.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/scene_picture.h"
-#include "support/interrupt.h"
-#include "support/process.h"
 #include "support/tum_folder.h"
 
 namespace roevo {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "programs/text.h"
 #include "report_fixture.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/tables.h"
-#include "support/text.h"
 
 namespace roevo {
 namespace {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "support/gnuplot.h"
-#include "support/interrupt.h"
+#include "programs/gnuplot.h"
+#include "programs/interrupt.h"
 #include "support/run_program.h"
 
 namespace roevo {

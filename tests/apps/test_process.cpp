@@ -5,8 +5,8 @@
 #include <csignal>
 
 #include "processes.h"
-#include "support/interrupt.h"
-#include "support/process.h"
+#include "programs/interrupt.h"
+#include "programs/process.h"
 
 namespace roevo {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "compare_fakes.h"
 #include "processes.h"
+#include "programs/interrupt.h"
 #include "roevo-compare/core_contention.h"
 #include "roevo-compare/kept_run.h"
 #include "roevo-compare/run_queue.h"
-#include "support/interrupt.h"
 #include "support/run_program.h"
 
 namespace roevo {

@@ -2,12 +2,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <random>
 #include <stdexcept>
+#include <utility>
 
-#include "support/atomic_file.h"
-#include "support/program.h"
+#include "programs/atomic_file.h"
+#include "programs/program.h"
+#include "programs/text.h"
 #include "support/run_program.h"
 
 namespace roevo {
@@ -103,6 +107,30 @@ TEST(Program, OutlivesItsTerminalUnderNohup) {
     const auto before = std::signal(SIGHUP, SIG_IGN);
     EXPECT_EQ(exitCodeAfter(SIGHUP, folder / "a.txt"), 0);
     std::signal(SIGHUP, before);
+}
+
+TEST(Text, PlainNumbersHaveTheFewestDigitsThatReadBack) {
+    const std::pair<double, const char*> cases[] = {{0, "0"},
+                                                    {5000, "5000"},
+                                                    {100000, "100000"},
+                                                    {517.3, "517.3"},
+                                                    {-0.0001, "-0.0001"},
+                                                    {0.00001, "1e-05"},
+                                                    {-0.9531, "-0.9531"},
+                                                    {1.0 / 3, "0.3333333333333333"}};
+    for (const auto& [number, text] : cases) EXPECT_EQ(plainNumber(number), text);
+    std::mt19937 rng(3);
+    std::uniform_real_distribution<double> exponent(-12, 6);
+    for (int i = 0; i < 1000; ++i) {
+        const double number = std::pow(10, exponent(rng));
+        EXPECT_EQ(std::stod(plainNumber(number)), number);
+    }
+}
+
+TEST(Text, StampsHaveMicroseconds) {
+    EXPECT_EQ(stampText(0), "0.000000");
+    EXPECT_EQ(stampText(1305031102.1753039), "1305031102.175304");
+    EXPECT_EQ(stampText(-0.5), "-0.500000");
 }
 
 }  // namespace

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "datasets/dataset_reader.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/trajectory_io.h"
+#include "recordings/dataset_reader.h"
 #include "roevo/odometry.h"
 #include "support/data_folder.h"
 

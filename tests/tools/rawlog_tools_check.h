@@ -8,9 +8,9 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "datasets/dataset_reader.h"
 #include "mrpt/synthetic_scan.h"
 #include "mrpt/test_helpers.h"
+#include "recordings/dataset_reader.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
 #include "support/data_folder.h"

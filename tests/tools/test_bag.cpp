@@ -6,7 +6,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "datasets/dataset_reader.h"
+#include "recordings/dataset_reader.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "support/data_folder.h"
 #include "tools/bag_fixture.h"

@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "datasets/dataset_reader.h"
+#include "recordings/dataset_reader.h"
 #include "roevo_mrpt/config_file.h"
 #include "support/run_program.h"
 

@@ -1,7 +1,7 @@
 // Depth images with stamps of their own, through a rawlog and back.
 #include <gtest/gtest.h>
 
-#include "datasets/depth_times.h"
+#include "recordings/depth_times.h"
 #include "tools/rawlog_tools_check.h"
 #include "tools/small_tum_folder.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "datasets/dataset_reader.h"
+#include "recordings/dataset_reader.h"
 #include "tools/small_dataset.h"
 
 namespace roevo {

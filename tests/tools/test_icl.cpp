@@ -3,9 +3,9 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "datasets/dataset_reader.h"
-#include "datasets/handedness.h"
 #include "evaluation/trajectory_io.h"
+#include "recordings/dataset_reader.h"
+#include "recordings/handedness.h"
 #include "roevo_simulator/simulator.h"
 #include "support/data_folder.h"
 #include "tools/small_dataset.h"

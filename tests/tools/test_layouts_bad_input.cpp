@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <sstream>
 
-#include "datasets/dataset_reader.h"
+#include "recordings/dataset_reader.h"
 #include "tools/small_dataset.h"
 
 namespace roevo {

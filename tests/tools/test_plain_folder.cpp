@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "datasets/dataset_reader.h"
-#include "datasets/numbered_files.h"
+#include "recordings/dataset_reader.h"
+#include "recordings/numbered_files.h"
 #include "tools/small_dataset.h"
 
 namespace roevo {

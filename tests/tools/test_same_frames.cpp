@@ -3,8 +3,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "datasets/dataset_reader.h"
 #include "evaluation/trajectory_io.h"
+#include "recordings/dataset_reader.h"
 #include "roevo_simulator/simulator.h"
 #include "tools/small_dataset.h"
 

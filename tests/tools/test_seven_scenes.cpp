@@ -4,8 +4,8 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "datasets/dataset_reader.h"
-#include "datasets/seven_scenes.h"
+#include "recordings/dataset_reader.h"
+#include "recordings/seven_scenes.h"
 #include "roevo_mrpt/image_conversions.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"

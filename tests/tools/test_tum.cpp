@@ -2,8 +2,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "datasets/camera_file.h"
-#include "datasets/dataset_reader.h"
+#include "recordings/camera_file.h"
+#include "recordings/dataset_reader.h"
 #include "tools/small_tum_folder.h"
 
 namespace roevo {

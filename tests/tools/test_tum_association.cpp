@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "datasets/association.h"
+#include "evaluation/association.h"
 
 namespace roevo {
 namespace {

@@ -2,12 +2,12 @@
 #include <functional>
 #include <utility>
 
+#include "programs/text.h"
 #include "roevo-compare/report/documents.h"
 #include "roevo-compare/report/metrics.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/remarks.h"
-#include "support/text.h"
 
 namespace roevo {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "support/text.h"
+#include "programs/text.h"
 
 namespace roevo {
 namespace {

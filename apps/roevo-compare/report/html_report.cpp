@@ -1,13 +1,13 @@
 #include <set>
 
+#include "programs/program.h"
+#include "programs/text.h"
 #include "roevo-compare/report/documents.h"
 #include "roevo-compare/report/html_parts.h"
 #include "roevo-compare/report/html_sequence.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/remarks.h"
-#include "support/program.h"
-#include "support/text.h"
 
 namespace roevo {
 namespace {

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <utility>
 
+#include "programs/gnuplot.h"
+#include "programs/text.h"
 #include "roevo-compare/report/html_parts.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/scene_picture.h"
-#include "support/gnuplot.h"
-#include "support/text.h"
 
 namespace roevo {
 namespace {

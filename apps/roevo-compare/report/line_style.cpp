@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "programs/text.h"
 #include "roevo-compare/report/ranking.h"
-#include "support/text.h"
 
 namespace roevo {
 namespace {

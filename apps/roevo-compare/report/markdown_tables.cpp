@@ -1,11 +1,11 @@
 #include <algorithm>
 
+#include "programs/text.h"
 #include "roevo-compare/report/documents.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/remarks.h"
 #include "roevo-compare/report/tables.h"
-#include "support/text.h"
 
 namespace roevo {
 namespace {

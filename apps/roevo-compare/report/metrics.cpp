@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/text.h"
+#include "programs/text.h"
 
 namespace roevo {
 namespace {

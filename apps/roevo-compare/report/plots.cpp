@@ -4,9 +4,9 @@
 #include <regex>
 #include <stdexcept>
 
-#include "support/gnuplot.h"
-#include "support/interrupt.h"
-#include "support/text.h"
+#include "programs/gnuplot.h"
+#include "programs/interrupt.h"
+#include "programs/text.h"
 
 namespace roevo {
 namespace {

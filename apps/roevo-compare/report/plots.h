@@ -36,8 +36,8 @@ Figure errorFigure(const SequenceResults& results, const Legend& legend);
 /// new ones are added, so that a stage has one colour in all plots. @throws as drawFigure()
 Figure stageFigure(const SequenceResults& results, std::vector<std::string>& stages);
 
-/// Draws with gnuplot, see support/gnuplot.h: an <svg> element whose names are its own, as wide as its place.
-/// Where gnuplot cannot draw just this, there is no drawing and the note says why.
+/// Draws with gnuplot, see programs/gnuplot.h: an <svg> element whose names are its own, as wide as its
+/// place. Where gnuplot cannot draw just this, there is no drawing and the note says why.
 /// @throws NoGnuplot; Interrupted
 Figure drawFigure(const std::string& script, int width, int height, const std::string& name,
                   const std::string& note);

@@ -5,7 +5,7 @@
 #include <exception>
 
 #include "evaluation/scale_check.h"
-#include "support/program.h"
+#include "programs/program.h"
 
 namespace roevo {
 namespace {

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "programs/interrupt.h"
+#include "programs/process.h"
+#include "programs/text.h"
 #include "roevo-compare/report/scratch_folder.h"
-#include "support/interrupt.h"
-#include "support/process.h"
-#include "support/text.h"
 
 namespace roevo {
 namespace {

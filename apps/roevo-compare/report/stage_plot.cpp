@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "evaluation/error_statistics.h"
+#include "programs/gnuplot.h"
+#include "programs/text.h"
 #include "roevo-compare/report/plots.h"
-#include "support/gnuplot.h"
-#include "support/text.h"
 
 namespace roevo {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "programs/text.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
-#include "support/text.h"
 
 namespace roevo {
 namespace {

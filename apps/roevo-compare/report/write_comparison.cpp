@@ -1,8 +1,8 @@
 #include <filesystem>
 
+#include "programs/atomic_file.h"
 #include "roevo-compare/report/comparison.h"
 #include "roevo-compare/report/documents.h"
-#include "support/atomic_file.h"
 
 namespace roevo {
 

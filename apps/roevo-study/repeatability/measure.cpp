@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "programs/progress.h"
 #include "repeatability/methods.h"
 #include "roevo/tracking/se3.h"
-#include "support/progress.h"
 
 namespace roevo {
 namespace {

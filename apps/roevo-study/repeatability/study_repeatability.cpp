@@ -4,11 +4,11 @@
 #include <limits>
 #include <map>
 
+#include "programs/gnuplot.h"
 #include "repeatability/bins.h"
 #include "repeatability/judge.h"
 #include "repeatability/measure.h"
 #include "study.h"
-#include "support/gnuplot.h"
 
 namespace roevo {
 namespace {

@@ -1,0 +1,95 @@
+#include "programs/atomic_file.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+namespace roevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Names of the temporary files alive, readable from a signal handler.
+std::array<std::atomic<const char*>, 64> temporary_files{};
+
+int registerFile(const char* path) {
+    for (std::size_t i = 0; i < temporary_files.size(); ++i) {
+        const char* expected = nullptr;
+        if (temporary_files[i].compare_exchange_strong(expected, path)) return static_cast<int>(i);
+    }
+    return -1;
+}
+
+std::string temporaryName(const std::string& path) {
+    static std::atomic<unsigned> counter{0};
+    const fs::path target(path);
+    const std::string name = "." + target.stem().string() + ".partial-" + std::to_string(getpid()) + "-" +
+                             std::to_string(counter++) + target.extension().string();
+    return (target.parent_path() / name).string();
+}
+
+[[noreturn]] void fail(const std::string& path, const std::string& what) {
+    throw std::runtime_error("cannot write " + path + ": " + what);
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), temporary_path_(temporaryName(path_)) {
+    std::error_code unreadable;
+    if (fs::is_directory(path_, unreadable)) fail(path_, "it is a directory; give a file name");
+    slot_ = registerFile(temporary_path_.c_str());
+}
+
+AtomicFile::~AtomicFile() {
+    if (slot_ >= 0) temporary_files[static_cast<std::size_t>(slot_)] = nullptr;
+    if (committed_) return;
+    stream_.close();
+    std::error_code ignored;
+    fs::remove(temporary_path_, ignored);
+}
+
+std::ostream& AtomicFile::stream() {
+    if (!stream_.is_open()) {
+        errno = 0;
+        stream_.open(temporary_path_, std::ios::binary);
+        if (!stream_) fail(path_, errno ? std::strerror(errno) : "the file cannot be created");
+    }
+    return stream_;
+}
+
+void AtomicFile::commit() {
+    if (stream_.is_open()) {
+        stream_.close();
+        if (!stream_) fail(path_, "not everything could be written; is the disk full?");
+    }
+    std::error_code error;
+    if (!fs::exists(temporary_path_, error)) fail(path_, "the file could not be created there");
+    fs::rename(temporary_path_, path_, error);
+    if (error) fail(path_, error.message());
+    committed_ = true;
+}
+
+void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& write) {
+    AtomicFile file(path);
+    write(file.temporaryPath());
+    file.commit();
+}
+
+void writeTextAtomically(const std::string& path, const std::string& text) {
+    AtomicFile file(path);
+    file.stream() << text;
+    file.commit();
+}
+
+void removeTemporaryFiles() noexcept {
+    for (auto& slot : temporary_files)
+        if (const char* path = slot.load()) unlink(path);
+}
+
+}  // namespace roevo

@@ -1,0 +1,148 @@
+#include "programs/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace roevo {
+namespace {
+
+// Length of the valid UTF-8 sequence that starts there; 0 when there is none (RFC 3629).
+std::size_t sequenceLength(const std::string& text, std::size_t i) {
+    const auto byte = [&](std::size_t k) {
+        return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u;
+    };
+    const unsigned lead = byte(i), next = byte(i + 1);
+    const std::size_t length = lead < 0x80                    ? 1
+                               : lead >= 0xC2 && lead <= 0xDF ? 2
+                               : lead >= 0xE0 && lead <= 0xEF ? 3
+                               : lead >= 0xF0 && lead <= 0xF4 ? 4
+                                                              : 0;
+    for (std::size_t k = 1; k < length; ++k)
+        if ((byte(i + k) & 0xC0) != 0x80) return 0;
+    const bool overlong = (lead == 0xE0 && next < 0xA0) || (lead == 0xF0 && next < 0x90);
+    const bool surrogate = lead == 0xED && next > 0x9F;
+    const bool noncharacter = lead == 0xEF && next == 0xBF && byte(i + 2) >= 0xBE;
+    const bool too_large = lead == 0xF4 && next > 0x8F;
+    return overlong || surrogate || noncharacter || too_large ? 0 : length;
+}
+
+std::string escape(const std::string& text, const std::string& special, const char* before) {
+    std::string escaped;
+    for (const char c : cleanText(text)) {
+        if (special.find(c) != std::string::npos) escaped += before;
+        escaped += c;
+    }
+    return escaped;
+}
+
+}  // namespace
+
+std::string cleanText(const std::string& text) {
+    std::string clean;
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = sequenceLength(text, i);
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const bool c1_control = byte == 0xC2 && length == 2 && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+        if (length == 0)
+            clean += "\xEF\xBF\xBD";
+        else if (byte < 0x20 || byte == 0x7F || c1_control)
+            clean += ' ';
+        else
+            clean.append(text, i, length);
+        i += length == 0 ? 1 : length;
+    }
+    return clean;
+}
+
+std::string csvField(const std::string& text) {
+    const std::string clean = cleanText(text);
+    if (clean.find_first_of(",\"") == std::string::npos) return clean;
+    return '"' + replaceAll(clean, "\"", "\"\"") + '"';
+}
+
+std::string markdownText(const std::string& text) {
+    return escape(text, "\\`*_[]<>&|#~!", "\\");
+}
+
+std::string htmlText(const std::string& text) {
+    std::string escaped;
+    for (const char c : cleanText(text)) {
+        switch (c) {
+            case '&':
+                escaped += "&amp;";
+                break;
+            case '<':
+                escaped += "&lt;";
+                break;
+            case '>':
+                escaped += "&gt;";
+                break;
+            case '"':
+                escaped += "&quot;";
+                break;
+            case '\'':
+                escaped += "&#39;";
+                break;
+            default:
+                escaped += c;
+        }
+    }
+    return escaped;
+}
+
+std::string shownNumber(std::optional<double> value, int decimals) {
+    if (!value || !std::isfinite(*value)) return "–";
+    char text[400];
+    std::snprintf(text, sizeof text, "%.*f", decimals, *value);
+    return text;
+}
+
+std::string exactNumber(std::optional<double> value) {
+    if (!value || !std::isfinite(*value)) return {};
+    char text[64];
+    return {text, std::to_chars(text, text + sizeof text, *value).ptr};
+}
+
+std::string plainNumber(double value) {
+    char text[64];
+    return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general).ptr};
+}
+
+std::string allDigits(double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return text;
+}
+
+std::string stampText(double timestamp) {
+    char text[400];
+    std::snprintf(text, sizeof text, "%.6f", timestamp);
+    return text;
+}
+
+std::size_t countCharacters(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string shortened(const std::string& text, std::size_t limit) {
+    if (countCharacters(text) <= limit) return text;
+    std::string start;
+    std::size_t count = 0;
+    for (const char c : text) {
+        count += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+        if (count == limit) break;
+        start += c;
+    }
+    return start + "…";
+}
+
+std::string replaceAll(std::string text, const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+        text.replace(at, from.size(), to);
+    return text;
+}
+
+}  // namespace roevo

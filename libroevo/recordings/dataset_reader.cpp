@@ -1,0 +1,224 @@
+#include "recordings/dataset_reader.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "recordings/depth_scale.h"
+#include "recordings/eth3d.h"
+#include "recordings/icl.h"
+#include "recordings/plain.h"
+#include "recordings/seven_scenes.h"
+#include "recordings/tum.h"
+#include "roevo/camera/depth_registration.h"
+#include "roevo_mrpt/image_conversions.h"
+#include "roevo_mrpt/observation_converter.h"
+
+namespace fs = std::filesystem;
+
+namespace roevo {
+namespace {
+
+constexpr std::size_t kMostEmpty = 30;  // images without any depth before that is said
+
+struct Format {
+    const char* name;
+    bool (*recognises)(const std::string& folder);
+    DatasetDescription (*load)(const std::string& folder, const DatasetOptions& options);
+    const char* needs;
+};
+
+/// The more particular layouts come first.
+const Format kFormats[] = {
+    {"7scenes", &isSevenScenesFolder, &loadSevenScenes, "frame-000000.color.png, .depth.png, .pose.txt"},
+    {"eth3d", &isEth3dFolder, &loadEth3d, "calibration.txt and associated.txt, or rgb.txt and depth.txt"},
+    {"icl", &isIclFolder, &loadIcl, "associations.txt with whole numbers for times, files named alike"},
+    {"tum", &isTumFolder, &loadTum, "rgb.txt and depth.txt, or associations.txt"},
+    {"plain", &isPlainFolder, &loadPlain, "camera.txt, rgb/ or color/, and depth/ with the same file names"},
+};
+
+/// With the rights that opening a file has (access() looks at the real user's).
+bool isPermitted(const std::string& path, int rights) {
+    return faccessat(AT_FDCWD, path.c_str(), rights, AT_EACCESS) == 0;
+}
+
+/// A folder one level down that would have been right: people often give the parent.
+std::string betterFolder(const std::string& folder) {
+    std::string better;
+    for (const auto& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
+        std::error_code unreadable;
+        const std::string path = entry.path().string();
+        if (!entry.is_directory(unreadable) || !isPermitted(path, R_OK | X_OK)) continue;
+        for (const Format& format : kFormats) {
+            try {
+                if (format.recognises(path) && (better.empty() || path < better)) better = path;
+            } catch (const std::exception&) {
+                // A guess need not say what keeps it from looking
+            }
+        }
+    }
+    return better;
+}
+
+}  // namespace
+
+DatasetReader::DatasetReader(DatasetDescription description, bool tolerate_missing)
+    : description_(std::move(description)) {
+    if (description_.registration)
+        T_colour_depth_ = colourFromDepthAsStored(description_.registration->T_colour_depth.inverse());
+    checkFiles(tolerate_missing);
+    checkDepthScale();
+}
+
+float DatasetReader::depthUnit() const {
+    return roevo::depthUnit(description_.depth_scale);
+}
+
+void DatasetReader::checkFiles(bool tolerate_missing) {
+    std::size_t missing = 0;
+    std::string first_missing;
+    for (const DatasetEntry& frame : description_.frames)
+        for (const std::string* file : {&frame.image, &frame.depth}) {
+            std::error_code fault;
+            const bool there = fs::is_regular_file(*file, fault);
+            if (there && isPermitted(*file, R_OK)) continue;
+            const bool forbidden = there || fault == std::errc::permission_denied;
+            if (missing++ == 0) first_missing = *file + (forbidden ? " (no permission to read it)" : "");
+        }
+    if (missing == 0) return;
+    const std::string text = std::to_string(missing) + " listed image(s) missing in " + description_.folder +
+                             ", first: " + first_missing;
+    if (!tolerate_missing || missing >= 2 * description_.frames.size()) throw std::runtime_error(text);
+    description_.notes.push_back("warning: " + text);
+}
+
+const PinholeCamera& DatasetReader::depthCamera() const {
+    return description_.registration ? description_.registration->depth_camera : camera();
+}
+
+void DatasetReader::checkDepthScale() {
+    std::size_t empty = 0;
+    for (std::size_t i = 0; i < size() && empty < kMostEmpty; i++) {
+        cv::Mat depth;
+        try {
+            depth = readDepthFile(entry(i).depth);
+        } catch (const std::runtime_error&) {
+            if (i + 1 < size()) continue;
+            throw;
+        }
+        checkSize(depth, depthCamera(), entry(i).depth);
+        const double median_units = medianDepth(depth, description_.invalid_depth);
+        if (median_units == 0) {
+            ++empty;
+            continue;
+        }
+        const double median = median_units / depthScale();
+        if (isPlausibleMedianDepth(median)) return;
+        char text[160];
+        std::snprintf(text, sizeof text, "median depth %.3g m with depth_scale %g makes no sense", median,
+                      depthScale());
+        const std::string likely = likelyDepthScales(median_units);
+        throw std::runtime_error(entry(i).depth + ": " + text + (likely.empty() ? "" : "; " + likely) +
+                                 ": put the sensor's own into camera.txt");
+    }
+    if (empty > 0)
+        description_.notes.push_back("warning: the first " + std::to_string(empty) +
+                                     " depth images hold no depth at all");
+}
+
+void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,
+                              const std::string& file) const {
+    if (image.cols == camera.width && image.rows == camera.height) return;
+    throw std::runtime_error(file + " is " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
+                             ", but the camera is " + std::to_string(camera.width) + "x" +
+                             std::to_string(camera.height));
+}
+
+cv::Mat DatasetReader::readDepth(std::size_t i) const {
+    cv::Mat depth = readDepthFile(entry(i).depth);
+    checkSize(depth, depthCamera(), entry(i).depth);
+    if (description_.invalid_depth != 0) depth.setTo(0, depth == description_.invalid_depth);
+    return depth;
+}
+
+cv::Mat DatasetReader::toFrameDepth(const cv::Mat& depth_u16) const {
+    const cv::Mat depth = depthToMetres(depth_u16, depthUnit());
+    if (!description_.registration) return depth;
+    return registerDepth(depth, depthCamera(), camera(), T_colour_depth_);
+}
+
+cv::Mat DatasetReader::readImage(std::size_t i) const {
+    cv::Mat image = readColourFile(entry(i).image);
+    checkSize(image, camera(), entry(i).image);
+    return image;
+}
+
+RgbdFrame DatasetReader::readFrame(std::size_t i) const {
+    RgbdFrame frame;
+    frame.timestamp = entry(i).timestamp;
+    const cv::Mat image = readImage(i);
+    frame.grey = toGrey(image);
+    if (image.channels() == 3) frame.colour = image;
+    frame.depth = toFrameDepth(readDepth(i));
+    return frame;
+}
+
+std::string DatasetReader::summary() const {
+    const PinholeCamera& c = camera();
+    char text[256];
+    std::snprintf(text, sizeof text, "camera %dx%d fx %g fy %g cx %g cy %g, %s, depth_scale %g, from ",
+                  c.width, c.height, c.fx, c.fy, c.cx, c.cy,
+                  c.isDistorted() ? "with lens distortion" : "no lens distortion", depthScale());
+    std::string lines = text + description_.camera_source + "\n" + description_.association.toText();
+    for (const std::string& note : notes()) lines += "\n" + note;
+    return lines;
+}
+
+std::vector<std::string> DatasetReader::notes() const {
+    std::vector<std::string> notes = description_.notes;
+    const GroundTruth& truth = groundTruth();
+    if (!truth.file.empty())
+        notes.push_back("ground truth: " + std::to_string(truth.poses.size()) + " poses from " + truth.file +
+                        (truth.note.empty() ? "" : ", " + truth.note));
+    if (!description_.imu_source.empty()) notes.push_back("inertial sensor: " + description_.imu_source);
+    return notes;
+}
+
+DatasetReader openDataset(const std::string& folder, const DatasetOptions& options) {
+    std::error_code fault;
+    if (!fs::exists(folder, fault)) {
+        if (fault && fault != std::errc::no_such_file_or_directory)
+            throw std::runtime_error("cannot read folder " + folder + ": " + fault.message());
+        throw std::runtime_error("dataset folder not found: " + folder);
+    }
+    if (!fs::is_directory(folder)) throw std::runtime_error("not a folder: " + folder);
+    if (!isPermitted(folder, R_OK | X_OK))
+        throw std::runtime_error("cannot read folder " + folder + ": " + std::strerror(errno));
+    std::string names, needs;
+    for (const Format& format : kFormats) {
+        names += std::string(names.empty() ? "" : ", ") + format.name;
+        needs += std::string(needs.empty() ? "" : "; ") + format.name + ": " + format.needs;
+        if (options.format == format.name || (options.format == "auto" && format.recognises(folder)))
+            return DatasetReader(format.load(folder, options), options.tolerate_missing);
+    }
+    if (options.format != "auto")
+        throw std::runtime_error("unknown dataset format '" + options.format + "' (known: auto, " + names +
+                                 ")");
+    const std::string better = betterFolder(folder);
+    throw std::runtime_error("no dataset recognised in " + folder + " (known layouts and what each needs: " +
+                             needs + ")" + (better.empty() ? "" : "; did you mean " + better + "?"));
+}
+
+std::vector<std::string> datasetFormats() {
+    std::vector<std::string> names = {"auto"};
+    for (const Format& format : kFormats) names.emplace_back(format.name);
+    return names;
+}
+
+}  // namespace roevo

@@ -1,0 +1,77 @@
+#include "recordings/depth_scale.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <iterator>
+#include <vector>
+
+namespace roevo {
+namespace {
+
+constexpr double kMinMedian = 0.1, kMaxMedian = 20;  // m
+constexpr double kTypical = 2;                       // m
+constexpr double kLikelyNear = 0.4, kLikelyFar = 8;  // m: what most recordings are within
+
+/// How far a median is from what is usual, as the logarithm of the factor between them.
+double distanceFromTypical(double median) {
+    return std::abs(std::log(median / kTypical));
+}
+
+template <class Value>
+double medianOf(const cv::Mat& depth, Value invalid) {
+    std::vector<Value> values;
+    for (int row = 0; row < depth.rows; ++row)
+        std::copy_if(depth.ptr<Value>(row), depth.ptr<Value>(row) + depth.cols, std::back_inserter(values),
+                     [=](Value d) { return d > 0 && d != invalid; });
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+double medianDepth(const cv::Mat& depth, std::uint16_t invalid) {
+    return depth.depth() == CV_16U ? medianOf<std::uint16_t>(depth, invalid) : medianOf<float>(depth, 0);
+}
+
+bool isPlausibleMedianDepth(double metres) {
+    return metres >= kMinMedian && metres <= kMaxMedian;
+}
+
+std::string likelyDepthScales(double median_units) {
+    std::string text;
+    std::vector<double> known{1, 100, 256, 1000, 5000, 10000};
+    const auto off = [&](double scale) { return distanceFromTypical(median_units / scale); };
+    std::sort(known.begin(), known.end(), [&](double a, double b) { return off(a) < off(b); });
+    for (const double scale : known) {
+        const double median = median_units / scale;
+        if (median < kLikelyNear || median > kLikelyFar) continue;
+        char one[80];
+        std::snprintf(one, sizeof one, "%s %g would give %.3g m", text.empty() ? "depth_scale" : ",", scale,
+                      median);
+        text += one;
+    }
+    return text;
+}
+
+std::string depthScaleFault(const RgbdFrame& frame) {
+    constexpr double kFactors[] = {0.0002, 0.001, 0.01, 0.1, 0.2, 5, 10, 100, 1000, 5000};
+    const double median = medianDepth(frame.depth);
+    if (median == 0 || isPlausibleMedianDepth(median)) return {};
+
+    const auto off = [&](double factor) { return distanceFromTypical(median * factor); };
+    const double factor = *std::min_element(std::begin(kFactors), std::end(kFactors),
+                                            [&](double a, double b) { return off(a) < off(b); });
+    char text[256];
+    std::snprintf(
+        text, sizeof text,
+        "the depth scale makes no sense: the median depth of the first frame is %.4g m (0.1 to 20 m is "
+        "plausible); depths are likely to be %g times too %s, which would make it %.3g m",
+        median, factor > 1 ? factor : 1 / factor, factor > 1 ? "small" : "large", median * factor);
+    return text;
+}
+
+}  // namespace roevo

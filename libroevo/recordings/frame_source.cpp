@@ -1,0 +1,162 @@
+#include "recordings/frame_source.h"
+
+#include <mrpt/obs/CObservation3DRangeScan.h>
+
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+#include "evaluation/trajectory_io.h"
+#include "programs/program.h"
+#include "recordings/dataset_reader.h"
+#include "recordings/depth_scale.h"
+#include "recordings/sensor_files.h"
+#include "roevo_mrpt/observation_converter.h"
+#include "roevo_mrpt/rawlog_reader.h"
+#include "roevo_mrpt/time_conversions.h"
+
+namespace roevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Runs decode() into frame, with its time and with what it throws as the frame's fault.
+template <class Decode>
+void decodeInto(SourceFrame& frame, const Decode& decode) {
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        frame.frame = decode();
+        frame.fault.clear();
+    } catch (const std::exception& e) {
+        frame.frame = RgbdFrame();
+        frame.fault = firstLine(e.what());
+    }
+    frame.ms_decode =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+class FolderSource : public FrameSource {
+  public:
+    explicit FolderSource(const std::string& folder) : reader_(open(folder)) {}
+
+    bool next(SourceFrame& frame) override {
+        if (index_ >= reader_.size()) return false;
+        const std::size_t i = index_++;
+        frame.timestamp = reader_.entry(i).timestamp;
+        frame.progress = static_cast<double>(index_) / static_cast<double>(reader_.size());
+        decodeInto(frame, [&] { return reader_.readFrame(i); });
+        return true;
+    }
+    bool skip() override { return index_ < reader_.size() && ++index_; }
+
+    const PinholeCamera& camera() const override { return reader_.camera(); }
+    std::string kind() const override { return reader_.description().format; }
+    std::string cameraSource() const override { return reader_.description().camera_source; }
+    GroundTruth groundTruth() const override { return reader_.groundTruth(); }
+    std::vector<std::string> notes() const override {
+        std::vector<std::string> notes = reader_.notes();
+        notes.insert(notes.begin(), reader_.description().association.toText());
+        return notes;
+    }
+    std::size_t size() const override { return reader_.size(); }
+    std::string warning() const override { return {}; }
+
+  private:
+    static DatasetReader open(const std::string& folder) {
+        DatasetOptions options;
+        options.tolerate_missing = true;  // such frames are rejected with the reason, the others tracked
+        return openDataset(folder, options);
+    }
+
+    DatasetReader reader_;
+    std::size_t index_ = 0;
+};
+
+class RawlogSource : public FrameSource {
+  public:
+    RawlogSource(const std::string& path, const std::string& sensor_label)
+        : path_(path), reader_(path, sensor_label), scan_(reader_.next()) {
+        // next() throws by itself when there is no scan at all.
+        if (scan_) camera_ = colourCameraOf(*scan_);
+    }
+
+    bool next(SourceFrame& frame) override {
+        if (!scan_) return false;
+        frame.timestamp = fromMrptTime(scan_->timestamp);
+        frame.mounted = isMountedOnRobot(*scan_);
+        frame.camera_on_robot = cameraOnRobot(*scan_);
+        decodeInto(frame, [&] {
+            RgbdFrame decoded = toRgbdFrame(*scan_);
+            if (colourCameraOf(*scan_) != camera_)
+                throw std::runtime_error(
+                    "the camera is not the one of the first frame (size or intrinsics changed)");
+            return decoded;
+        });
+        const auto start = std::chrono::steady_clock::now();
+        scan_ = reader_.next();  // reading from the file belongs to decoding, too
+        frame.ms_decode +=
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        frame.progress = reader_.progress();
+        return true;
+    }
+    bool skip() override {
+        if (!scan_) return false;
+        scan_ = reader_.next();
+        return true;
+    }
+
+    const PinholeCamera& camera() const override { return camera_; }
+    std::string kind() const override { return "rawlog"; }
+    std::string cameraSource() const override {
+        return "the rawlog's observations, sensor '" + reader_.report().label + "'";
+    }
+    GroundTruth groundTruth() const override {
+        fs::path beside = path_;
+        beside.replace_filename(beside.stem().string() + "_groundtruth.txt");
+        return readGroundTruth(beside.string());
+    }
+    std::vector<std::string> notes() const override { return {}; }
+    std::size_t size() const override { return 0; }
+    std::string warning() const override { return reader_.report().warning(); }
+
+  private:
+    std::string path_;
+    RawlogReader reader_;
+    std::shared_ptr<mrpt::obs::CObservation3DRangeScan> scan_;
+    PinholeCamera camera_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> openSource(const std::string& input, const std::string& sensor_label) {
+    std::error_code fault;
+    const fs::file_status status = fs::status(input, fault);
+    if (status.type() == fs::file_type::not_found)
+        throw std::runtime_error("cannot read " + input + ": there is no such file or folder");
+    if (fault) throw std::runtime_error("cannot read " + input + ": " + fault.message());
+    if (!fs::is_directory(status)) return std::make_unique<RawlogSource>(input, sensor_label);
+    if (!sensor_label.empty())
+        throw UsageError("--sensor-label is for rawlogs, and " + input + " is a folder");
+    return std::make_unique<FolderSource>(input);
+}
+
+void skipFrames(FrameSource& source, std::size_t count, const std::string& input) {
+    for (std::size_t i = 0; i < count; ++i)
+        if (!source.skip())
+            throw std::runtime_error("--skip " + std::to_string(count) + ": " + input + " has only " +
+                                     std::to_string(i) + " frames");
+}
+
+GroundTruth groundTruthFor(const std::string& path, const FrameSource& source) {
+    if (path.empty()) return source.groundTruth();
+    return {readTumTrajectory(path), path, {}, true};
+}
+
+std::string DepthScaleCheck::faultOf(const SourceFrame& frame) {
+    if (done_ || !frame.fault.empty()) return {};
+    done_ = true;
+    return depthScaleFault(frame.frame);
+}
+
+}  // namespace roevo

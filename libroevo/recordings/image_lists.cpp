@@ -1,0 +1,92 @@
+#include "recordings/image_lists.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "evaluation/association.h"
+#include "recordings/text_list.h"
+#include "roevo_mrpt/time_conversions.h"
+
+namespace fs = std::filesystem;
+
+namespace roevo {
+
+void matchLists(const std::string& folder_name, const std::string& colour_list, const std::string& depth_list,
+                double max_difference, DatasetDescription& out) {
+    const fs::path folder(folder_name);
+    const auto colours = readStampedList((folder / colour_list).string(), out.association);
+    const auto depths = readStampedList((folder / depth_list).string(), out.association);
+    for (const auto& [list, name] : {std::pair(&colours, &colour_list), {&depths, &depth_list}})
+        if (list->empty()) throw std::runtime_error((folder / *name).string() + " lists no images");
+    const auto colour = stampsOf(colours), depth = stampsOf(depths);
+    for (const StampMatch& match : associateStamps(colour, depth, max_difference)) {
+        const ListEntry &c = colours[match.first], &d = depths[match.second];
+        out.frames.push_back(
+            {c.timestamp, d.timestamp, (folder / c.file).string(), (folder / d.file).string()});
+    }
+    if (out.frames.empty()) {
+        char text[200];
+        std::snprintf(text, sizeof text,
+                      ": no colour image has a depth image within %g s (%zu colour, %zu depth images, "
+                      "closest pair %.3g s apart)",
+                      max_difference, colour.size(), depth.size(), smallestDifference(colour, depth));
+        throw std::runtime_error(folder.string() + text);
+    }
+    out.association.dropped_colour = colour.size() - out.frames.size();
+    out.association.dropped_depth = depth.size() - out.frames.size();
+}
+
+void readAssociations(const std::string& folder_name, const std::string& file_name, double max_difference,
+                      DatasetDescription& out) {
+    double closest = INFINITY;
+    const fs::path folder(folder_name), file = folder / file_name;
+    for (const TextLine& line : readTextLines(file.string())) {
+        const std::string where = file.string() + ":" + std::to_string(line.number);
+        if (line.words.size() != 4)
+            throw std::runtime_error(where + ": expected 'timestamp image timestamp depth_image'");
+        DatasetEntry entry{parseNumber(line.words[0], where), parseNumber(line.words[2], where),
+                           (folder / line.words[1]).string(), (folder / line.words[3]).string()};
+        if (line.words[1].find("depth") != std::string::npos &&
+            line.words[3].find("depth") == std::string::npos) {
+            std::swap(entry.timestamp, entry.depth_timestamp);
+            std::swap(entry.image, entry.depth);
+        }
+        const double difference = std::abs(entry.timestamp - entry.depth_timestamp);
+        closest = std::min(closest, difference);
+        if (difference > max_difference) {
+            ++out.association.dropped_colour;
+            ++out.association.dropped_depth;
+            continue;
+        }
+        out.frames.push_back(std::move(entry));
+    }
+    if (!out.frames.empty()) return;
+    if (std::isinf(closest)) throw std::runtime_error(file.string() + " lists no images");
+    char text[120];
+    std::snprintf(text, sizeof text, ": no pair is within %g s, the closest is %.3g s apart", max_difference,
+                  closest);
+    throw std::runtime_error(file.string() + text);
+}
+
+void finishFrames(DatasetDescription& out) {
+    AssociationReport& report = out.association;
+    for (DatasetEntry& frame : out.frames) {
+        frame.timestamp = roundToMicroseconds(frame.timestamp);
+        frame.depth_timestamp = roundToMicroseconds(frame.depth_timestamp);
+    }
+    sortByTime(out.frames, report);
+    for (std::size_t i = 0; i < out.frames.size(); i++) {
+        const DatasetEntry& frame = out.frames[i];
+        report.largest_difference =
+            std::max(report.largest_difference, std::abs(frame.timestamp - frame.depth_timestamp));
+        if (i > 0)
+            report.largest_gap = std::max(report.largest_gap, frame.timestamp - out.frames[i - 1].timestamp);
+    }
+    report.matched = out.frames.size();
+}
+
+}  // namespace roevo

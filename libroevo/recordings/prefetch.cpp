@@ -1,0 +1,45 @@
+#include <optional>
+#include <utility>
+
+#include "programs/ahead.h"
+#include "recordings/forwarding_source.h"
+
+namespace roevo {
+namespace {
+
+class PrefetchingSource : public ForwardingSource {
+  public:
+    using ForwardingSource::ForwardingSource;
+
+    bool next(SourceFrame& frame) override {
+        if (!ahead_) ahead_.emplace([this] { return decode(); });
+        std::optional<SourceFrame> decoded = ahead_->next();
+        if (!decoded) return false;
+        frame = std::move(*decoded);
+        return true;
+    }
+
+    // skip() only before the first next(): the thread owns the source from then on.
+
+    std::string warning() const override {
+        // What has been read so far may be changing under the thread's hands until it has ended.
+        return ahead_ && ahead_->isBusy() ? std::string() : ForwardingSource::warning();
+    }
+
+  private:
+    std::optional<SourceFrame> decode() {
+        std::optional<SourceFrame> frame(std::in_place);
+        if (!ForwardingSource::next(*frame)) frame.reset();
+        return frame;
+    }
+
+    std::optional<Ahead<SourceFrame>> ahead_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> prefetch(std::unique_ptr<FrameSource> source) {
+    return std::make_unique<PrefetchingSource>(std::move(source));
+}
+
+}  // namespace roevo
