@@ -5,7 +5,7 @@ target_link_libraries(roevo_test_support PUBLIC opencv_core opencv_imgproc openc
 roevo_test(test_evaluation
   SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_support.cpp apps/test_ahead.cpp
           apps/test_run_report.cpp ${PROJECT_SOURCE_DIR}/apps/roevo-odometry/run_report.cpp
-  LIBS roevo_evaluation roevo_programs roevo_test_support)
+  LIBS roevo roevo_evaluation roevo_programs roevo_test_support)
 
 target_include_directories(test_evaluation PRIVATE ${PROJECT_SOURCE_DIR}/apps)
 

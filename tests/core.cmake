@@ -1,42 +1,41 @@
 roevo_test(test_core_camera
   SOURCES core/test_pinhole_camera.cpp core/test_undistorter.cpp core/test_depth_registration.cpp
-  LIBS roevo opencv_calib3d)
+  LIBS roevo_internal opencv_calib3d)
 roevo_test(test_core_edges
   SOURCES core/test_gradient.cpp core/test_canny.cpp core/test_adjacency.cpp core/test_organize.cpp
           core/test_organize_trees.cpp core/test_normals.cpp core/test_edge_grid.cpp core/test_edge_depth.cpp
           core/test_edge_sides.cpp
-  LIBS roevo)
+  LIBS roevo_internal)
 roevo_test(test_core_tracking
   SOURCES core/test_kernels.cpp core/test_photometric.cpp core/test_fine_jacobians.cpp core/test_gauss_newton.cpp
           core/test_se3.cpp core/test_motion_model.cpp core/test_edge_association.cpp core/test_rolling_shutter.cpp core/test_motion_blur.cpp core/test_edge_points.cpp core/test_options.cpp
-  LIBS roevo)
+          core/test_relative_pose.cpp core/test_fault.cpp
+  LIBS roevo_internal)
 # Ceres solves the bundle adjustment once more, as an independent oracle.
 find_package(Ceres REQUIRED)
 roevo_test(test_core_mapping
   SOURCES core/test_disjoint_set.cpp core/test_covisibility.cpp core/test_semi_dense.cpp
           core/test_edge_smoothing.cpp core/test_edge_fusion.cpp core/test_bundle_adjustment.cpp core/test_bundle_ceres.cpp core/test_pseudo_edges.cpp
           core/test_local_mapper.cpp core/test_packed_keyframe.cpp
-  LIBS roevo Ceres::ceres)
+  LIBS roevo_internal Ceres::ceres)
 # One ctest entry per suite, since the cases of a suite share a rendered sequence.
-add_executable(test_core_odometry core/test_pose_history.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp core/test_odometry_accuracy.cpp core/test_odometry_status.cpp
-               core/test_odometry_covariance.cpp core/test_odometry_semi_dense.cpp core/test_odometry_stages.cpp)
-target_link_libraries(test_core_odometry PRIVATE roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-# How the odometry is made inside
-target_include_directories(test_core_odometry PRIVATE ${PROJECT_SOURCE_DIR}/libroevo/src)
-foreach(suite PoseHistory KeyframeFromMap FineTracking OdometryAccuracy OdometryStatus OdometryCovariance OdometrySemiDense OdometryStages)
+add_executable(test_core_odometry core/test_trajectory.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp core/test_odometry_accuracy.cpp core/test_odometry_status.cpp
+               core/test_odometry_covariance.cpp core/test_odometry_semi_dense.cpp core/test_tracker_overrides.cpp)
+target_link_libraries(test_core_odometry PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
+foreach(suite Trajectory KeyframeChanges FineTracking OdometryAccuracy OdometryStatus OdometryCovariance OdometrySemiDense TrackerOverrides)
   add_test(NAME ${suite} COMMAND test_core_odometry --gtest_filter=${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
 add_executable(test_core_mapped_runs core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp
                core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp)
-target_link_libraries(test_core_mapped_runs PRIVATE roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
+target_link_libraries(test_core_mapped_runs PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
 foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout)
   add_test(NAME ${suite} COMMAND test_core_mapped_runs --gtest_filter=*${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
 roevo_test(test_core_sequences
-  SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp core/test_shadow_edges.cpp
-  LIBS roevo_simulator roevo_evaluation roevo_datasets)
+  SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp core/test_shadow_edges.cpp core/test_option_extremes.cpp
+  LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets)
 foreach(program camera edges tracking mapping odometry mapped_runs sequences)
   target_include_directories(test_core_${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_include_directories(test_core_${program} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})

@@ -10,9 +10,8 @@ add_library(roevo_methods STATIC
   methods/icp.cpp
   methods/opencv_rgbd.cpp)
 target_include_directories(roevo_methods PUBLIC ${PROJECT_SOURCE_DIR}/apps ${CMAKE_CURRENT_SOURCE_DIR})
-target_link_libraries(roevo_methods PUBLIC roevo PRIVATE roevo_mrpt roevo_build_flags)
-# How the core checks frames and takes times.
-target_include_directories(roevo_methods PRIVATE ${PROJECT_SOURCE_DIR}/libroevo/src)
+# Baselines share parts of the core: how frames are checked, the tracker, the motion model.
+target_link_libraries(roevo_methods PUBLIC roevo_internal PRIVATE roevo_mrpt roevo_build_flags)
 
 # Baselines of libraries that need not be there: without its library a method is known, and says why it cannot be run.
 find_package(mrpt-vision QUIET)

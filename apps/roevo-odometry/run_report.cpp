@@ -20,6 +20,12 @@ std::string format(const char* pattern, ...) {
     return text;
 }
 
+std::string joined(const std::vector<MapRefusal>& refusals) {
+    std::string text;
+    for (const MapRefusal& refusal : refusals) text += (text.empty() ? "" : "; ") + describe(refusal);
+    return text;
+}
+
 }  // namespace
 
 std::size_t RunReport::count(FrameStatus status) const {
@@ -31,9 +37,10 @@ std::string RunReport::failure() const {
     const auto broken = std::find_if(trajectory.begin(), trajectory.end(),
                                      [](const StampedPose& p) { return !p.T_world_camera.isFinite(); });
     if (broken != trajectory.end())
-        return format("the pose of the frame at %.6f s is not a number, which is a fault of this program; "
-                      "please report it with the options and the recording",
-                      broken->timestamp);
+        return format(
+            "the pose of the frame at %.6f s is not a number, which is a fault of this program; "
+            "please report it with the options and the recording",
+            broken->timestamp);
     const std::size_t initialised = count(FrameStatus::kInitialised);
     if (count(FrameStatus::kOk) > 0 || (initialised > 0 && frames.size() == initialised)) return {};
     std::map<std::string, std::vector<const FrameRecord*>> reasons;
@@ -68,7 +75,7 @@ std::string framesCsv(const RunReport& report) {
                       r.sigmaTranslation(), r.sigmaRotationDeg(), f.ms_decode, r.ms.edges, r.ms.coarse,
                       r.ms.fine, r.ms.total, r.ms.mapping, r.ms.waiting, r.map_correction,
                       r.map_turn / kDegree) +
-               csvField(r.map_reason) + "\n";
+               csvField(joined(r.map_refusals)) + "\n";
     }
     return csv;
 }

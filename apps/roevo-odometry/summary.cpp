@@ -98,16 +98,6 @@ Json timingsJson(const RunReport& report) {
     return json;
 }
 
-// Counts the kinds of a frame's reasons of mapping: "kind: which; kind: which".
-void countKinds(const std::string& joined, Json& kinds) {
-    for (std::size_t from = 0; from < joined.size();) {
-        const std::size_t end = std::min(joined.find("; ", from), joined.size());
-        const std::string kind = joined.substr(from, std::min(joined.find(": ", from), end) - from);
-        kinds[kind] = kinds.value(kind, 0) + 1;
-        from = end + 2;
-    }
-}
-
 // What mapping took per keyframe, beside tracking, and how long tracking waited for it.
 Json mappingJson(const RunReport& report) {
     if (report.mode != Mode::kBundleAdjustment) return nullptr;
@@ -118,7 +108,10 @@ Json mappingJson(const RunReport& report) {
         longest_wait = std::max(longest_wait, f.result.ms.waiting);
         largest_correction = std::max(largest_correction, f.result.map_correction);
         largest_turn = std::max(largest_turn, f.result.map_turn);
-        countKinds(f.result.map_reason, reasons);
+        for (const MapRefusal& refusal : f.result.map_refusals) {
+            const char* kind = toString(refusal.kind);
+            reasons[kind] = reasons.value(kind, 0) + 1;
+        }
     }
     return {{"keyframes", times.size()},
             {"mean_ms", times.empty() ? 0 : sumOf(times) / static_cast<double>(times.size())},

@@ -30,7 +30,7 @@ void parseSize(const std::string& text, int& width, int& height) {
 Eigen::Isometry3d lastCamera(const std::string& trajectory_file) {
     Eigen::Isometry3d T_scene_world = Eigen::Isometry3d::Identity();
     T_scene_world.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-    return T_scene_world * readTumTrajectory(trajectory_file).back().T_world_camera;
+    return T_scene_world * readTumTrajectory(trajectory_file).back().T_world_camera.isometry();
 }
 
 int run(int argc, char** argv) {

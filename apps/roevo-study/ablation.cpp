@@ -6,6 +6,7 @@
 
 #include "ablation_pieces.h"
 #include "bar_chart.h"
+#include "coarse_points.h"
 #include "programs/progress.h"
 #include "roevo-compare/report/results.h"
 #include "roevo/odometry.h"
@@ -18,6 +19,24 @@ constexpr std::size_t kVariants = kAblationVariants;
 constexpr std::size_t kPiece = 120;  // frames that are held to be tracked backwards
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
+/// Counts what it chooses.
+class CountingTracker : public CoarsePointsTracker {
+  public:
+    CountingTracker(CoarsePoints points, const PinholeCamera& camera, const OdometryOptions& options,
+                    VariantRun& result)
+        : CoarsePointsTracker(points, camera, options), result_(result) {}
+    PhotometricPoints choosePoints(const EdgePoints3D& edges, const Frame& frame,
+                                   const RowMotion& rows) const override {
+        PhotometricPoints chosen = CoarsePointsTracker::choosePoints(edges, frame, rows);
+        result_.points += static_cast<double>(chosen.size());
+        ++result_.keyframes;
+        return chosen;
+    }
+
+  private:
+    VariantRun& result_;
+};
+
 /// One odometry on its way through a recording.
 class Run {
   public:
@@ -25,14 +44,9 @@ class Run {
         OdometryOptions options = input.options;
         options.mode = Mode::kCoarse;
         options.mapping.semi_dense_points = 0;  // moves no pose
-        OdometryStages stages = coarseStages(points, input.camera, options);
-        stages.photometric_points = [this, sample = stages.photometric_points](const KeyframeView& view) {
-            PhotometricPoints chosen = sample(view);
-            result_.points += static_cast<double>(chosen.size());
-            ++result_.keyframes;
-            return chosen;
-        };
-        odometry_ = std::make_unique<Odometry>(input.camera, options, Pose::Identity(), stages);
+        odometry_ = std::make_unique<Odometry>(
+            input.camera, options, Pose::Identity(),
+            std::make_unique<CountingTracker>(points, input.camera, options, result_));
     }
     Run(const Run&) = delete;  // the odometry points to it
 

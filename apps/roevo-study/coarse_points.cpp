@@ -18,29 +18,26 @@ const char* label(CoarsePoints points) {
     return "";
 }
 
-OdometryStages coarseStages(CoarsePoints kind, const PinholeCamera& camera, const OdometryOptions& options) {
-    OdometryStages stages;
-    stages.photometric_points = [kind, camera, options](const KeyframeView& view) {
-        const int most = options.coarse.max_points;
-        if (kind == CoarsePoints::kOriented) return samplePhotometricPoints(view.edges, view.pyramid, most);
-        EdgePoints3D points;
-        if (kind == CoarsePoints::kOrganized) {
-            points = view.edges;
-            points.image.gradient_x.assign(points.size(), 1);
-            points.image.gradient_y.assign(points.size(), 0);
-        } else {
-            Gradient gradient;
-            computeGradient(view.pyramid.level(0), options.edges.blur_sigma, gradient);
-            points = liftPixels(kind == CoarsePoints::kDso ? selectDsoPixels(gradient, most)
-                                                           : selectCannyPixels(gradient, options.edges),
-                                gradient, view.depth, camera, view.rows, options.edges, options.sensor);
-        }
-        PhotometricPoints sample = samplePhotometricPoints(points, view.pyramid, most);
-        sample.source.clear();  // they are no edge points of the keyframe
-        sample.turning = false;
-        return sample;
-    };
-    return stages;
+PhotometricPoints CoarsePointsTracker::choosePoints(const EdgePoints3D& edges, const Frame& frame,
+                                                    const RowMotion& rows) const {
+    if (kind_ == CoarsePoints::kOriented) return Tracker::choosePoints(edges, frame, rows);
+    const int most = options_.coarse.max_points;
+    EdgePoints3D points;
+    if (kind_ == CoarsePoints::kOrganized) {
+        points = edges;
+        points.image.gradient_x.assign(points.size(), 1);
+        points.image.gradient_y.assign(points.size(), 0);
+    } else {
+        Gradient gradient;
+        computeGradient(frame.pyramid.level(0), options_.edges.blur_sigma, gradient);
+        points = liftPixels(kind_ == CoarsePoints::kDso ? selectDsoPixels(gradient, most)
+                                                        : selectCannyPixels(gradient, options_.edges),
+                            gradient, frame.images.depth, camera_, rows, options_.edges, options_.sensor);
+    }
+    PhotometricPoints sample = samplePhotometricPoints(points, frame.pyramid, most);
+    sample.source.clear();  // they are no edge points of the keyframe
+    sample.turning = false;
+    return sample;
 }
 
 }  // namespace roevo

@@ -1,7 +1,7 @@
 #pragma once
 #include "roevo/camera/pinhole_camera.h"
-#include "roevo/odometry_stages.h"
 #include "roevo/options.h"
+#include "tracking/tracker.h"
 
 namespace roevo {
 
@@ -16,9 +16,18 @@ inline constexpr CoarsePoints kAllCoarsePoints[] = {CoarsePoints::kDso, CoarsePo
                                                     CoarsePoints::kOrganized, CoarsePoints::kOriented};
 const char* label(CoarsePoints points);
 
-/// An odometry in mode ct that aligns these points and is ROEVO's in everything else: edges (for the keyframe
-/// rule), coarse tracker, largest number of points.
-/// @param camera  with its lens
-OdometryStages coarseStages(CoarsePoints points, const PinholeCamera& camera, const OdometryOptions& options);
+/// Aligns these points in mode ct and is ROEVO's tracker in everything else: edges (for the keyframe rule),
+/// coarse tracking, largest number of points.
+class CoarsePointsTracker : public Tracker {
+  public:
+    /// @param camera  with its lens
+    CoarsePointsTracker(CoarsePoints points, const PinholeCamera& camera, const OdometryOptions& options)
+        : Tracker(camera, options), kind_(points) {}
+    PhotometricPoints choosePoints(const EdgePoints3D& edges, const Frame& frame,
+                                   const RowMotion& rows) const override;
+
+  private:
+    CoarsePoints kind_;
+};
 
 }  // namespace roevo

@@ -6,8 +6,8 @@
 #include "bar_chart.h"
 #include "programs/gnuplot.h"
 #include "programs/progress.h"
-#include "roevo/tracking/edge_points.h"
 #include "study.h"
+#include "tracking/edge_points.h"
 
 namespace roevo {
 namespace {

@@ -3,13 +3,13 @@
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "camera/undistorter.h"
+#include "edges/organize.h"
 #include "efficiency.h"
 #include "registration_steps.h"
 #include "roevo-compare/methods/distance_field.h"
-#include "roevo/camera/undistorter.h"
-#include "roevo/edges/organize.h"
 #include "roevo/odometry.h"
-#include "roevo/odometry_stages.h"
+#include "tracking/tracker.h"
 
 namespace roevo {
 namespace {
@@ -94,51 +94,157 @@ FineOptions alikeOptions(FineOptions options) {
     return options;
 }
 
-/// Both odometries; their registrations are timed by the same clock around the same call.
+OdometryOptions withFine(OdometryOptions options, const FineOptions& fine) {
+    options.fine = fine;
+    return options;
+}
+
+/// Times of one frame, ms of processor time; besides: what the odometry itself would not have done.
+struct StepTimes {
+    double coarse = 0, registration = 0, besides = 0, alike = 0, alike_field = 0;
+};
+
+/// Times both steps of a tracker by the same clock around the same calls.
+class TimedTracker : public Tracker {
+  public:
+    TimedTracker(const PinholeCamera& camera, const OdometryOptions& options, bool count_steps)
+        : Tracker(camera, options), count_steps_(count_steps) {}
+
+    void reset() { times_ = StepTimes(); }
+    const StepTimes& times() const { return times_; }
+    FrameWork& work() { return work_; }
+
+  protected:
+    CoarseResult align(const Keyframe& reference, const Frame& frame, const RollingShutter& shutter,
+                       const std::vector<Pose>& guesses, const Brightness& brightness) override {
+        CoarseResult result;
+        times_.coarse +=
+            timed([&] { result = Tracker::align(reference, frame, shutter, guesses, brightness); });
+        return result;
+    }
+
+    bool count_steps_;
+    StepTimes times_;
+    FrameWork work_;
+};
+
+/// ROEVO's fine tracking, and beside it that and the field with all that differs switched off.
+class OursTimed : public TimedTracker {
+  public:
+    OursTimed(const StudyInput& input, const OdometryOptions& options, bool count_steps)
+        : TimedTracker(input.camera, options, count_steps),
+          fine_(input.camera, options),
+          alike_(input.camera, withFine(options, alikeOptions(options.fine))),
+          alike_field_(input.camera, alikeOptions(options.fine), 0),
+          steps_(options.fine, [&](const FineOptions& fine) {
+              return FineTracker(input.camera, withFine(options, fine));
+          }) {}
+
+  protected:
+    FineResult refine(const Keyframe& reference, const Frame& frame, const Pose& T_start,
+                      const PosePrior& prior, const RollingShutter& shutter,
+                      const Brightness& brightness) override {
+        const auto track = [&](auto& tracker) {
+            return tracker.track(reference, frame, T_start, prior, shutter, brightness);
+        };
+        FineResult result;
+        times_.registration = timed([&] { result = track(fine_); });
+        times_.besides = timed([&] {
+            work_.ours.points = lookedUpPoints(reference, options_.fine);
+            if (count_steps_) work_.ours.steps = steps_.count(result, track);
+            alike_field_.prepare(frame);
+            bool converged = true;
+            times_.alike = timed([&] { converged = track(alike_).converged; });
+            times_.alike_field = timed([&] { converged = track(alike_field_).converged && converged; });
+            if (converged) work_.alike = {work_.ours.points, kFixedSteps};
+        });
+        return result;
+    }
+
+  private:
+    FineTracker fine_, alike_;
+    DistanceFieldTracker alike_field_;
+    StepCounter<FineTracker> steps_;
+};
+
+class FieldTimed : public TimedTracker {
+  public:
+    FieldTimed(const StudyInput& input, const OdometryOptions& options, bool count_steps)
+        : TimedTracker(input.camera, options, count_steps),
+          field_(input.camera, options.fine, 0),
+          steps_(options.fine,
+                 [&](const FineOptions& fine) { return DistanceFieldTracker(input.camera, fine, 0); }) {}
+
+  protected:
+    FineResult refine(const Keyframe& reference, const Frame& frame, const Pose& T_start,
+                      const PosePrior& prior, const RollingShutter& shutter,
+                      const Brightness& brightness) override {
+        const auto track = [&](DistanceFieldTracker& tracker) {
+            return tracker.track(reference, frame, T_start, prior, shutter, brightness);
+        };
+        field_.prepare(frame);  // building the field is timed apart
+        FineResult result;
+        times_.registration = timed([&] { result = track(field_); });
+        work_.field.points = lookedUpPoints(reference, options_.fine);
+        if (count_steps_) work_.field.steps = steps_.count(result, track);
+        return result;
+    }
+
+  private:
+    DistanceFieldTracker field_;
+    StepCounter<DistanceFieldTracker> steps_;
+};
+
+/// An odometry and the tracker in it.
+template <class Timed>
+struct Contestant {
+    Contestant(const StudyInput& input, Mode mode, bool count_steps)
+        : Contestant(input, optionsFor(input, mode),
+                     std::make_unique<Timed>(input, optionsFor(input, mode), count_steps)) {}
+    Contestant(const StudyInput& input, const OdometryOptions& options, std::unique_ptr<Timed> own)
+        : tracker(*own), odometry(input.camera, options, Pose::Identity(), std::move(own)) {}
+
+    Timed& tracker;  // the odometry's
+    Odometry odometry;
+};
+
+/// Both odometries.
 class Contest {
   public:
     /// @param count_steps  of the registrations, which takes time
     Contest(const StudyInput& input, bool count_steps)
-        : options_(input.options.fine),
-          fine_(input.options.fine, input.options.edges, input.options.sensor),
-          alike_(alikeOptions(options_), input.options.edges, input.options.sensor),
-          field_(options_, 0),
-          alike_field_(alikeOptions(options_), 0),
-          fine_steps_(options_,
-                      [&](const FineOptions& options) {
-                          return FineTracker(options, input.options.edges, input.options.sensor);
-                      }),
-          field_steps_(options_, [](const FineOptions& options) { return DistanceFieldTracker(options, 0); }),
-          count_steps_(count_steps),
-          ours_(input.camera, optionsFor(input, Mode::kBundleAdjustment), Pose::Identity(), ourStages()),
-          theirs_(input.camera, optionsFor(input, Mode::kTracking), Pose::Identity(), fieldStages()),
+        : ours_(input, Mode::kBundleAdjustment, count_steps),
+          theirs_(input, Mode::kTracking, count_steps),
           features_(input.camera, input.options.edges) {}
-    Contest(const Contest&) = delete;  // the odometries point to the trackers
 
     /// @return whether both tracked the frame
     bool process(const RgbdFrame& frame, bool ours_first, FrameTimes& times, FrameWork& work) {
         bool both = true;
-        work_ = FrameWork();
+        ours_.tracker.work() = theirs_.tracker.work() = FrameWork();
         for (const bool ours : {ours_first, !ours_first}) {
-            registration_ = besides_ = 0;
+            TimedTracker& tracker = ours ? static_cast<TimedTracker&>(ours_.tracker) : theirs_.tracker;
+            tracker.reset();
             FrameResult result;
-            const double whole = timed([&] { result = (ours ? ours_ : theirs_).processFrame(frame); });
+            const double whole =
+                timed([&] { result = (ours ? ours_.odometry : theirs_.odometry).processFrame(frame); });
             both = both && result.status == FrameStatus::kOk;
+            const StepTimes& steps = tracker.times();
             if (ours) {
                 if (result.ms.mapping > 0) mapping.push_back(result.ms.mapping);
-                times[kCoarse] = result.ms.coarse;
-                times[kRegistration] = registration_;
-                times[kWhole] = whole - besides_;
-                times[kAlike] = alike_ms_[0];
-                times[kAlikeField] = alike_ms_[1];
+                times[kCoarse] = steps.coarse;
+                times[kRegistration] = steps.registration;
+                times[kWhole] = whole - steps.besides;
+                times[kAlike] = steps.alike;
+                times[kAlikeField] = steps.alike_field;
                 // Waits for the map, so that it is not at work while others are timed
-                if (result.new_keyframe) ours_.trajectory();
+                if (result.new_keyframe) ours_.odometry.trajectory();
             } else {
-                times[kCoarseField] = result.ms.coarse;
-                times[kRegistrationField] = registration_;
+                times[kCoarseField] = steps.coarse;
+                times[kRegistrationField] = steps.registration;
             }
         }
-        work = work_;
+        work = ours_.tracker.work();
+        work.field = theirs_.tracker.work().field;
         if (both) features_.measure(frame.grey, times);
         return both;
     }
@@ -146,61 +252,9 @@ class Contest {
     std::vector<double> mapping;  ///< ms, of every keyframe whose map took effect
 
   private:
-    OdometryStages ourStages() {
-        OdometryStages stages;
-        stages.clock = processorTime;
-        stages.registration = [this](const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
-                                     const PosePrior& prior, const RollingShutter& shutter,
-                                     const Brightness& brightness) {
-            const auto track = [&](auto& tracker) {
-                return tracker.track(keyframe, frame, T_start, prior, shutter, brightness);
-            };
-            FineResult result;
-            registration_ = timed([&] { result = track(fine_); });
-            besides_ = timed([&] {
-                work_.ours.points = lookedUpPoints(keyframe, options_);
-                if (count_steps_) work_.ours.steps = fine_steps_.count(result, track);
-                alike_field_.prepare(frame);
-                bool converged = true;
-                alike_ms_[0] = timed([&] { converged = track(alike_).converged; });
-                alike_ms_[1] = timed([&] { converged = track(alike_field_).converged && converged; });
-                if (converged) work_.alike = {work_.ours.points, kFixedSteps};
-            });
-            return result;
-        };
-        return stages;
-    }
-    OdometryStages fieldStages() {
-        OdometryStages stages;
-        stages.clock = processorTime;
-        stages.registration = [this](const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
-                                     const PosePrior& prior, const RollingShutter& shutter,
-                                     const Brightness& brightness) {
-            const auto track = [&](DistanceFieldTracker& tracker) {
-                return tracker.track(keyframe, frame, T_start, prior, shutter, brightness);
-            };
-            field_.prepare(frame);  // building the field is timed apart
-            FineResult result;
-            registration_ = timed([&] { result = track(field_); });
-            work_.field.points = lookedUpPoints(keyframe, options_);
-            if (count_steps_) work_.field.steps = field_steps_.count(result, track);
-            return result;
-        };
-        return stages;
-    }
-
-    FineOptions options_;
-    FineTracker fine_, alike_;
-    DistanceFieldTracker field_, alike_field_;
-    StepCounter<FineTracker> fine_steps_;
-    StepCounter<DistanceFieldTracker> field_steps_;
-    bool count_steps_;
-    Odometry ours_, theirs_;
+    Contestant<OursTimed> ours_;
+    Contestant<FieldTimed> theirs_;
     FeatureProcessing features_;
-    FrameWork work_;
-    // Of the frame at work, ms; besides: what our odometry would not have done
-    double registration_ = 0, besides_ = 0;
-    std::array<double, 2> alike_ms_{};
 };
 
 Measured measureOnce(const StudyInput& input, bool first_pass, bool ours_first, Progress& progress,

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roevo/edges/canny.h"
-#include "roevo/edges/edge_depth.h"
-#include "roevo/tracking/kernels.h"
+#include "edges/canny.h"
+#include "edges/edge_depth.h"
+#include "tracking/kernels.h"
 
 namespace roevo {
 namespace {

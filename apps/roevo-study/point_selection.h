@@ -2,9 +2,9 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-#include "roevo/edges/gradient.h"
+#include "edges/gradient.h"
 #include "roevo/options.h"
-#include "roevo/tracking/edge_points.h"
+#include "tracking/edge_points.h"
 
 namespace roevo {
 

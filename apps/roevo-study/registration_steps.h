@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "roevo/options.h"
-#include "roevo/tracking/fine_tracker.h"
+#include "tracking/fine_tracker.h"
 
 namespace roevo {
 

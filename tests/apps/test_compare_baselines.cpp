@@ -9,7 +9,7 @@
 #include "analytic_room.h"
 #include "core/support/simulated.h"
 #include "method.h"
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {

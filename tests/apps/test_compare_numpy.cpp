@@ -92,8 +92,8 @@ Walk randomWalk(unsigned seed, double seconds) {
     Pose drift = Pose::Identity();
     for (double t = 0.004; t < seconds; t += 1 / 30.0) {
         const Eigen::Vector3d axis(normal(random), normal(random), normal(random));
-        drift.translate(0.002 * axis);
-        drift.rotate(Eigen::AngleAxisd(0.001 * axis.norm(), axis.normalized()));
+        drift = drift * Pose(Eigen::Quaterniond(Eigen::AngleAxisd(0.001 * axis.norm(), axis.normalized())),
+                             0.002 * axis);
         walk.estimate.push_back({1.3e9 + t + 0.001 * normal(random), elsewhere * motion(t) * drift});
     }
     return walk;

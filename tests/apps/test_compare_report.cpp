@@ -115,8 +115,8 @@ std::vector<SequenceComparison> everyKind() {
     auto mapped = makeRun("roevo-ba", 0.002);
     // In a world of its own: only aligned does it come into the picture
     for (StampedPose& pose : mapped.trajectory)
-        pose.T_world_camera = Eigen::Translation3d(100, -50, 20) *
-                              Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, 3).normalized()) *
+        pose.T_world_camera = Pose(Eigen::Translation3d(100, -50, 20) *
+                                   Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, 3).normalized())) *
                               pose.T_world_camera;
     mapped.scene = "map.3Dscene";
     std::vector<SequenceComparison> all{

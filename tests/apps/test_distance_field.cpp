@@ -2,15 +2,17 @@
 // differences, signs, and whole sequences.
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <opencv2/core.hpp>
 
 #include "core/support/random_pose.h"
 #include "core/support/simulated.h"
+#include "edges/edge_extractor.h"
 #include "methods/distance_field.h"
 #include "methods/distance_field_method.h"
-#include "roevo/edges/edge_extractor.h"
-#include "roevo/odometry_stages.h"
-#include "roevo/tracking/robust.h"
+#include "roevo/odometry.h"
+#include "tracking/robust.h"
+#include "tracking/tracker.h"
 
 namespace roevo {
 namespace {
@@ -80,7 +82,7 @@ TEST(DistanceFieldTracker, ResidualIsDifferentiatedRight) {
     std::mt19937 random(9);
     DistanceField field;
     field.build(randomMask(random, kCamera.width, kCamera.height, 300));
-    DistanceFieldTracker tracker(FineOptions(), 0);
+    DistanceFieldTracker tracker(kCamera, FineOptions(), 0);
     int compared = 0;
     for (int i = 0; i < 1000; ++i) {
         const Pose pose = testing::randomPose(random, 0.5, 0.4);
@@ -128,7 +130,7 @@ TEST(DistanceFieldTracker, PointsFarFromAnyEdgeOrOutsideSayNothing) {
     cv::Mat mask = cv::Mat::zeros(kCamera.height, kCamera.width, CV_8UC1);
     mask.at<std::uint8_t>(100, 100) = 1;
     field.build(mask);
-    DistanceFieldTracker tracker(FineOptions(), 0);
+    DistanceFieldTracker tracker(kCamera, FineOptions(), 0);
     const auto gradientAt = [&](double u, double v) {
         const Keyframe keyframe = onePoint(kCamera.backProject(u, v, 2), 1);
         return tracker.linearise(keyframe, field, kCamera, Pose::Identity(), RowMotion(), 6).gradient.norm();
@@ -150,34 +152,30 @@ struct TwoFrames {
     OdometryOptions options;
     PinholeCamera camera = sequence.camera;
     EdgeExtractor extractor{options.edges};
-    OrganizedEdges edges;
-    ImagePyramid pyramid;
+    Frame frame;
     Keyframe keyframe;
     Pose T_truth;
 
     explicit TwoFrames(int other) : sequence(room(other + 1)) {
-        const RgbdFrame &first = sequence.frames.front(), &second = sequence.frames.back();
-        extractor.extract(first.grey, edges);
-        keyframe.edges = liftEdges(edges, first.depth, camera, RowMotion(), options.edges, options.sensor);
+        take(sequence.frames.front());
+        keyframe.edges =
+            liftEdges(frame.edges, frame.images.depth, camera, RowMotion(), options.edges, options.sensor);
         keyframe.median_depth = static_cast<double>(keyframe.edges.medianDepth());
-        pyramid.build(first.grey, 2);
-        keyframe.photometric = samplePhotometricPoints(keyframe.edges, pyramid, options.coarse.max_points);
-        extractor.extract(second.grey, edges);
-        pyramid.build(second.grey, 2);
+        keyframe.photometric =
+            samplePhotometricPoints(keyframe.edges, frame.pyramid, options.coarse.max_points);
+        take(sequence.frames.back());
         T_truth = sequence.truth.back().T_world_camera.inverse() * sequence.truth.front().T_world_camera;
     }
-    FineFrame frame() const {
-        FineFrame view;
-        view.timestamp = 1;
-        view.edges = &edges;
-        view.mask = &extractor.mask();
-        view.pyramid = &pyramid;
-        view.camera = view.raw_camera = &camera;
-        return view;
+    void take(const RgbdFrame& images) {
+        frame.images = images;
+        frame.ideal_grey = images.grey;
+        extractor.extract(images.grey, frame.edges, frame.mask);
+        frame.grid.build(frame.edges, camera.width, camera.height);
+        frame.pyramid.build(images.grey, 2);
     }
     FineResult track(const Pose& T_start, double photometric_weight) const {
-        return DistanceFieldTracker(options.fine, photometric_weight)
-            .track(keyframe, frame(), T_start, {T_start, 1, 1}, RollingShutter(), Brightness());
+        return DistanceFieldTracker(camera, options.fine, photometric_weight)
+            .track(keyframe, frame, T_start, {T_start, 1, 1}, RollingShutter(), Brightness());
     }
 };
 
@@ -202,7 +200,9 @@ TEST(DistanceFieldTracker, FindsThePoseFromAnyDirection) {
 
 TEST(DistanceFieldTracker, WithoutEdgesItSaysSoAndKeepsThePose) {
     TwoFrames two(1);
-    two.extractor.extract(cv::Mat(two.camera.height, two.camera.width, CV_8UC1, cv::Scalar(90)), two.edges);
+    RgbdFrame even = two.sequence.frames.back();
+    even.grey = cv::Mat(even.grey.size(), CV_8UC1, cv::Scalar(90));
+    two.take(even);
     const FineResult found = two.track(two.T_truth, 0);
     EXPECT_FALSE(found.converged);
     EXPECT_EQ(found.inliers, 0);
@@ -238,6 +238,23 @@ TEST(DistanceFieldMethod, WithoutNoiseTheErrorIsAFewMillimetres) {
     EXPECT_LT(errors[1], 0.9 * errors[0]) << "intensities see below the pixels of the mask";
 }
 
+/// ROEVO's tracker with the field alone in the place of fine tracking.
+class WithField : public Tracker {
+  public:
+    WithField(const PinholeCamera& camera, const OdometryOptions& options)
+        : Tracker(camera, options), field_(camera, options.fine, 0) {}
+
+  protected:
+    FineResult refine(const Keyframe& reference, const Frame& frame, const Pose& T_start,
+                      const PosePrior& prior, const RollingShutter& shutter,
+                      const Brightness& brightness) override {
+        return field_.track(reference, frame, T_start, prior, shutter, brightness);
+    }
+
+  private:
+    DistanceFieldTracker field_;
+};
+
 TEST(DistanceFieldMethod, WhereTheWorldBeginsDoesNotMatter) {
     const testing::Sequence sequence = room(15);
     const OdometryOptions options = [] {
@@ -246,14 +263,8 @@ TEST(DistanceFieldMethod, WhereTheWorldBeginsDoesNotMatter) {
         return tracking;
     }();
     const auto run = [&](const Pose& T_world_start) {
-        DistanceFieldTracker tracker(options.fine, 0);
-        OdometryStages stages;
-        stages.registration = [&](const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
-                                  const PosePrior& prior, const RollingShutter& shutter,
-                                  const Brightness& brightness) {
-            return tracker.track(keyframe, frame, T_start, prior, shutter, brightness);
-        };
-        Odometry odometry(sequence.camera, options, T_world_start, stages);
+        Odometry odometry(sequence.camera, options, T_world_start,
+                          std::make_unique<WithField>(sequence.camera, options));
         std::vector<Pose> poses;
         for (std::size_t i = 0; i < 15; ++i) {
             poses.push_back(T_world_start.inverse() *

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "roevo-odometry/run_report.h"
 
@@ -25,7 +26,7 @@ TEST(RunReport, ATrackedRunIsNoFailure) {
 }
 
 TEST(RunReport, APoseThatIsNotANumberIsAFailureThatSaysWhere) {
-    for (const double bad : {std::nan(""), INFINITY}) {
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
         RunReport report = trackedReport();
         report.trajectory[1].T_world_camera.translation().x() = bad;
         const std::string failure = report.failure();

@@ -7,9 +7,9 @@
 
 #include "apps/study_fixture.h"
 #include "coarse_points.h"
+#include "edges/canny.h"
+#include "edges/edge_extractor.h"
 #include "point_selection.h"
-#include "roevo/edges/canny.h"
-#include "roevo/edges/edge_extractor.h"
 
 namespace roevo {
 namespace {
@@ -135,12 +135,13 @@ TEST(PointSelection, CannyIsWhatTheExtractorSeesBeforeItOrganizes) {
     const auto pixels = selectCannyPixels(gradientOf(grey), EdgeOptions());
     EdgeExtractor extractor{EdgeOptions()};
     OrganizedEdges edges;
-    extractor.extract(grey, edges);
+    EdgeMask mask;
+    extractor.extract(grey, edges, mask);
     cv::Mat raw = cv::Mat::zeros(grey.size(), CV_8UC1);
     for (const cv::Point& p : pixels) raw.at<std::uint8_t>(p) = 1;
-    const cv::Mat& adjusted = extractor.mask().mask;
+    const cv::Mat& adjusted = mask.mask;
     EXPECT_EQ(cv::countNonZero(adjusted & ~raw & 1), 0) << "organizing only takes pixels away";
-    EXPECT_GT(pixels.size(), extractor.mask().pixels.size());
+    EXPECT_GT(pixels.size(), mask.pixels.size());
     EXPECT_TRUE(std::is_sorted(pixels.begin(), pixels.end(), [](const cv::Point& a, const cv::Point& b) {
         return std::make_pair(a.y, a.x) < std::make_pair(b.y, b.x);
     }));
@@ -173,7 +174,7 @@ TEST(CoarsePoints, AllTrackASmallSequence) {
     options.mode = Mode::kCoarse;
     for (const CoarsePoints points : kAllCoarsePoints) {
         Odometry odometry(sequence.camera, options, sequence.start(),
-                          coarseStages(points, sequence.camera, options));
+                          std::make_unique<CoarsePointsTracker>(points, sequence.camera, options));
         testing::TrackedRun run;
         for (const RgbdFrame& frame : sequence.frames) run.results.push_back(odometry.processFrame(frame));
         EXPECT_EQ(run.count(FrameStatus::kOk), 29) << label(points);
@@ -186,19 +187,17 @@ TEST(CoarsePoints, AllTrackASmallSequence) {
 
 TEST(CoarsePoints, OnlyOrientedPatchesTurnWithTheCamera) {
     const testing::Sequence sequence = room(1);
-    const RgbdFrame& frame = sequence.frames[0];
     const OdometryOptions options;
-    EdgeExtractor extractor(options.edges);
-    OrganizedEdges edges;
-    extractor.extract(frame.grey, edges);
-    const EdgePoints3D lifted =
-        liftEdges(edges, frame.depth, sequence.camera, RowMotion(), options.edges, options.sensor);
-    ImagePyramid pyramid;
-    pyramid.build(frame.grey, 3);
+    Frame frame;
+    frame.images = sequence.frames[0];
+    EdgeExtractor(options.edges).extract(frame.images.grey, frame.edges, frame.mask);
+    const EdgePoints3D lifted = liftEdges(frame.edges, frame.images.depth, sequence.camera, RowMotion(),
+                                          options.edges, options.sensor);
+    frame.pyramid.build(frame.images.grey, 3);
     const RowMotion rows;
     for (const CoarsePoints kind : kAllCoarsePoints) {
-        const PhotometricPoints points = coarseStages(kind, sequence.camera, options)
-                                             .photometric_points({lifted, pyramid, frame.depth, rows});
+        const PhotometricPoints points =
+            CoarsePointsTracker(kind, sequence.camera, options).choosePoints(lifted, frame, rows);
         ASSERT_GT(points.size(), 300U);
         EXPECT_LE(static_cast<int>(points.size()), options.coarse.max_points);
         const bool own = kind == CoarsePoints::kOriented;
@@ -208,7 +207,7 @@ TEST(CoarsePoints, OnlyOrientedPatchesTurnWithTheCamera) {
         EXPECT_EQ(static_cast<std::size_t>(along_x) == points.size(), !own);
         if (kind != CoarsePoints::kOrganized) continue;
         const PhotometricPoints oriented =
-            samplePhotometricPoints(lifted, pyramid, options.coarse.max_points);
+            samplePhotometricPoints(lifted, frame.pyramid, options.coarse.max_points);
         EXPECT_EQ(points.x, oriented.x) << "the same places as with oriented patches";
         EXPECT_EQ(points.weight, oriented.weight);
     }
@@ -220,7 +219,7 @@ TEST(CoarsePoints, OrientedPatchesAreTheOdometrysOwn) {
     options.mode = Mode::kCoarse;
     Odometry own(sequence.camera, options, sequence.start());
     Odometry study(sequence.camera, options, sequence.start(),
-                   coarseStages(CoarsePoints::kOriented, sequence.camera, options));
+                   std::make_unique<CoarsePointsTracker>(CoarsePoints::kOriented, sequence.camera, options));
     for (std::size_t i = 0; i < 12; ++i) {
         const Pose a = own.processFrame(sequence.frames[i]).T_world_camera;
         const Pose b = study.processFrame(sequence.frames[i]).T_world_camera;

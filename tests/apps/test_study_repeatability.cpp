@@ -9,7 +9,7 @@
 #include "repeatability/bins.h"
 #include "repeatability/judge.h"
 #include "repeatability/measure.h"
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 #include "support/data_folder.h"
 #include "support/tum_folder.h"
 

@@ -3,7 +3,7 @@
 
 #include "apps/study_fixture.h"
 #include "repeatability/measure.h"
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {

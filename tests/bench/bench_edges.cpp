@@ -2,8 +2,8 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/room.h"
-#include "roevo/edges/edge_extractor.h"
-#include "roevo/edges/edge_grid.h"
+#include "edges/edge_extractor.h"
+#include "edges/edge_grid.h"
 
 namespace roevo::bench {
 namespace {
@@ -56,8 +56,9 @@ void edgeExtractor(benchmark::State& state) {
     const cv::Mat& grey = room().frames.front().grey;
     EdgeExtractor extractor{EdgeOptions()};
     OrganizedEdges out;
+    EdgeMask mask;
     for (auto _ : state) {
-        extractor.extract(grey, out);
+        extractor.extract(grey, out, mask);
         benchmark::DoNotOptimize(out.x.data());
         benchmark::ClobberMemory();
     }

@@ -22,7 +22,7 @@ void processFrame(benchmark::State& state) {
         if (next == sequence.frames.size()) {  // from the beginning again, the first frame not counted
             state.PauseTiming();
             odometry = std::make_unique<Odometry>(sequence.camera, options);
-            odometry->processFrame(sequence.frames.front());
+            (void)odometry->processFrame(sequence.frames.front());
             next = 1;
             state.ResumeTiming();
         }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <opencv2/core/utility.hpp>
 
-#include "roevo/edges/edge_extractor.h"
+#include "edges/edge_extractor.h"
 #include "roevo_simulator/simulator.h"
 
 namespace roevo::bench {
@@ -31,7 +31,8 @@ Room makeRoom() {
                          options.edges.canny_high_factor * otsuThreshold(room.gradient.magnitude));
     room.low = options.edges.canny_low_ratio * room.high;
     canny(room.gradient, room.low, room.high, room.raw_mask);
-    EdgeExtractor(options.edges).extract(first.grey, room.edges);
+    EdgeMask mask;
+    EdgeExtractor(options.edges).extract(first.grey, room.edges, mask);
     room.pyramid.build(first.grey, options.coarse.levels);
     room.points = liftEdges(room.edges, first.depth, room.camera, RowMotion(), options.edges, options.sensor);
     room.photometric = samplePhotometricPoints(room.points, room.pyramid, options.coarse.max_points);

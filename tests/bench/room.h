@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "roevo/camera/rgbd_frame.h"
-#include "roevo/edges/canny.h"
-#include "roevo/edges/gradient.h"
-#include "roevo/edges/organized_edges.h"
+#include "edges/canny.h"
+#include "edges/gradient.h"
+#include "edges/organized_edges.h"
 #include "roevo/options.h"
-#include "roevo/tracking/edge_points.h"
-#include "roevo/tracking/photometric.h"
+#include "tracking/edge_points.h"
+#include "tracking/photometric.h"
 
 namespace roevo::bench {
 

@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/support/edge_masks.h"
-#include "roevo/edges/organize.h"
+#include "edges/organize.h"
 
 namespace roevo {
 namespace {

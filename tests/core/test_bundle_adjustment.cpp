@@ -1,6 +1,6 @@
 // Bundle adjustment of a window: what it converges to, and how fast.
 #include "core/support/bundle_fixture.h"
-#include "roevo/mapping/pseudo_edges.h"
+#include "mapping/pseudo_edges.h"
 
 namespace roevo {
 namespace {

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "core/support/analytic_image.h"
-#include "roevo/edges/canny.h"
+#include "edges/canny.h"
 
 namespace roevo {
 namespace {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "core/support/mapping_world.h"
-#include "roevo/mapping/covisibility.h"
+#include "mapping/covisibility.h"
 
 namespace roevo {
 namespace {

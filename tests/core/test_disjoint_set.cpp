@@ -4,7 +4,7 @@
 #include <random>
 #include <set>
 
-#include "roevo/mapping/disjoint_set.h"
+#include "mapping/disjoint_set.h"
 
 namespace roevo {
 namespace {

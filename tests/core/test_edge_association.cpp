@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "roevo/tracking/edge_association.h"
+#include "tracking/edge_association.h"
 #include "roevo/types.h"
 
 namespace roevo {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "roevo/camera/pinhole_camera.h"
-#include "roevo/edges/edge_depth.h"
+#include "edges/edge_depth.h"
 
 namespace roevo {
 namespace {
@@ -45,7 +45,7 @@ TEST(EdgeDepth, SlantedPlaneIsExactBetweenPixels) {
     }
 }
 
-TEST(EdgeDepth, NeverLeavesTheRangeOfItsSamples) {
+TEST(EdgeDepth, AmongItsSamplesItStaysWithinTheirRange) {
     std::mt19937 random(52);
     std::uniform_real_distribution<float> value(1.0F, 1.04F), place(3, 76);
     cv::Mat depth(80, 100, CV_32FC1);

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "core/support/random_pose.h"
-#include "roevo/edges/edge_grid.h"
+#include "edges/edge_grid.h"
 
 namespace roevo {
 namespace {

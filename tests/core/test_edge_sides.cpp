@@ -5,9 +5,9 @@
 #include <functional>
 #include <random>
 
+#include "edges/edge_depth.h"
+#include "edges/edge_sides.h"
 #include "roevo/camera/pinhole_camera.h"
-#include "roevo/edges/edge_depth.h"
-#include "roevo/edges/edge_sides.h"
 #include "roevo/types.h"
 
 namespace roevo {
@@ -64,7 +64,7 @@ class EdgeSidesTest : public testing::Test {
         return z;
     }
     void correct(std::vector<float>& z, const PinholeCamera& lens = kCamera) {
-        sides_.correct(edges_, 0, pixels(lens), depth_, static_cast<float>(EdgeOptions().depth_jump), z);
+        sides_.correct(edges_, 0, pixels(lens), depth_, static_cast<float>(EdgeOptions().depth_jump), 1, z);
     }
     std::vector<float> corrected() {
         std::vector<float> z = patches();

@@ -4,8 +4,8 @@
 
 #include "core/support/random_pose.h"
 #include "roevo/camera/pinhole_camera.h"
-#include "roevo/tracking/gauss_newton.h"
-#include "roevo/tracking/photometric.h"
+#include "tracking/gauss_newton.h"
+#include "tracking/photometric.h"
 
 namespace roevo {
 namespace {

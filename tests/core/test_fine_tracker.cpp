@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/support/simulated.h"
-#include "roevo/edges/edge_extractor.h"
-#include "roevo/tracking/fine_tracker.h"
-#include "roevo/tracking/se3.h"
+#include "odometry/front_end.h"
+#include "tracking/fine_tracker.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -20,29 +20,25 @@ class FineTracking : public ::testing::Test {
     static void TearDownTestSuite() { delete sequence_; }
 
     void SetUp() override {
-        const auto lift = [&](const RgbdFrame& frame) {
-            OrganizedEdges edges;
-            EdgeExtractor(options_.edges).extract(frame.grey, edges);
-            return edges;
-        };
-        keyframe_.edges = liftEdges(lift(sequence_->frames[0]), sequence_->frames[0].depth, sequence_->camera,
-                                    RowMotion(), options_.edges, options_.sensor);
+        const PinholeCamera& camera = sequence_->camera;
+        Frame first;
+        FrontEnd(camera, options_).process(sequence_->frames[0], first);
+        keyframe_.edges =
+            liftEdges(first.edges, first.images.depth, camera, RowMotion(), options_.edges, options_.sensor);
         keyframe_.median_depth = static_cast<double>(keyframe_.edges.medianDepth());
-        edges_ = lift(sequence_->frames[4]);
-        grid_.build(edges_, sequence_->camera.width, sequence_->camera.height);
-        pyramid_.build(sequence_->frames[4].grey, 1);
+        FrontEnd(camera, options_).process(sequence_->frames[4], frame_);
         truth_ = sequence_->truth[4].T_world_camera.inverse() * sequence_->truth[0].T_world_camera;
     }
+    /// Tracked, and assessed at the pose that was found.
     FineResult trackFrom(const Pose& start, const Pose& likely, const RollingShutter& shutter = {}) {
-        FineTracker tracker(options_.fine, options_.edges, options_.sensor);
-        FineFrame frame;
-        frame.edges = &edges_;
-        frame.grid = &grid_;
-        frame.pyramid = &pyramid_;
-        frame.depth = &sequence_->frames[4].depth;
-        frame.raw_camera = frame.camera = &sequence_->camera;
-        const Pose better = tracker.betterStart(keyframe_, frame, start, likely, shutter);
-        return tracker.track(keyframe_, frame, better, {likely, 1, 1}, shutter, Brightness());
+        FineTracker tracker(sequence_->camera, options_);
+        const Pose better = tracker.chooseInitialPose(keyframe_, frame_, start, likely, shutter);
+        const FineResult found =
+            tracker.track(keyframe_, frame_, better, {likely, 1, 1}, shutter, Brightness());
+        const Pose& pose = found.T_current_keyframe;
+        FineResult assessed = tracker.assess(keyframe_, frame_, pose, shutter.motion(pose));
+        assessed.converged = assessed.converged && found.converged;
+        return assessed;
     }
     double errorOf(const FineResult& result) const {
         return (truth_.inverse() * result.T_current_keyframe).translation().norm();
@@ -57,29 +53,28 @@ class FineTracking : public ::testing::Test {
     /// other, by how far they move in so many seconds while the camera does this.
     void smear(const RowMotion& rows, double seconds) {
         const PinholeCamera& camera = sequence_->camera;
-        for (std::size_t i = 0; i < edges_.size(); ++i) {
-            const int u = static_cast<int>(std::lround(edges_.x[i])),
-                      v = static_cast<int>(std::lround(edges_.y[i]));
-            const float z = sequence_->frames[4].depth.at<float>(v, u);
+        OrganizedEdges& edges = frame_.edges;
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            const int u = static_cast<int>(std::lround(edges.x[i])),
+                      v = static_cast<int>(std::lround(edges.y[i]));
+            const float z = frame_.images.depth.at<float>(v, u);
             if (!(z > 0)) continue;
             const Eigen::Vector3d point = camera.backProject(u, v, static_cast<double>(z));
             const Eigen::Vector2d moved =
                 camera.project(point + seconds * rows.pointVelocity(point)) - camera.project(point);
-            const double across = std::abs(moved.x() * static_cast<double>(edges_.normal_x[i]) +
-                                           moved.y() * static_cast<double>(edges_.normal_y[i])) *
-                                  (edges_.edge_of[i] % 2 == 0 ? 1 : -1);
-            edges_.x[i] += static_cast<float>(across) * edges_.normal_x[i];
-            edges_.y[i] += static_cast<float>(across) * edges_.normal_y[i];
+            const double across = std::abs(moved.x() * static_cast<double>(edges.normal_x[i]) +
+                                           moved.y() * static_cast<double>(edges.normal_y[i])) *
+                                  (edges.edge_of[i] % 2 == 0 ? 1 : -1);
+            edges.x[i] += static_cast<float>(across) * edges.normal_x[i];
+            edges.y[i] += static_cast<float>(across) * edges.normal_y[i];
         }
-        grid_.build(edges_, camera.width, camera.height);
+        frame_.grid.build(edges, camera.width, camera.height);
     }
 
     static Sequence* sequence_;
     OdometryOptions options_;
     Keyframe keyframe_;
-    OrganizedEdges edges_;
-    EdgeGrid grid_;
-    ImagePyramid pyramid_;
+    Frame frame_;
     Pose truth_ = Pose::Identity();
 };
 Sequence* FineTracking::sequence_ = nullptr;

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "core/support/analytic_image.h"
-#include "roevo/edges/gradient.h"
+#include "edges/gradient.h"
 
 namespace roevo {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "core/support/random_pose.h"
-#include "roevo/tracking/kernels.h"
+#include "tracking/kernels.h"
 
 namespace roevo::kernels {
 namespace {

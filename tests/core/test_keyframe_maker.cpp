@@ -1,7 +1,7 @@
-// What local mapping tells about a keyframe reaches all of its points, and nothing else does.
+// What changes a keyframe after it was made: the verdicts of the map, and another motion of its rows.
 #include <gtest/gtest.h>
 
-#include "odometry/keyframe_maker.h"
+#include "tracking/keyframe.h"
 
 namespace roevo {
 namespace {
@@ -14,7 +14,7 @@ Keyframe keyframeOfTwoEdges() {
     for (int i = 0; i < 9; ++i) {
         const auto at = static_cast<float>(i);
         image.x.push_back(10 + at);
-        image.y.push_back(20);
+        image.y.push_back(20 + at);
         image.edge_of.push_back(i < 6 ? 0 : 1);
         keyframe.edges.weight.push_back(0.5F + at);
         keyframe.photometric.source.push_back(i);
@@ -26,36 +26,55 @@ Keyframe keyframeOfTwoEdges() {
     return keyframe;
 }
 
-TEST(KeyframeFromMap, EachPointTakesItsNearestOneOfTheSameEdge) {
+TEST(KeyframeChanges, OnlyTheNamedEdgesCountForLess) {
     const Keyframe before = keyframeOfTwoEdges();
     Keyframe keyframe = before;
-    MapUpdate update;
-    update.source = {1, 4, 7};
-    update.weight = {0.5F, 1, 0};
-    update.depth_ratio = {1, 1.1F, 0.9F};
-    takeFromMap(keyframe, update);
+    keyframe.weaken({false, true}, 0.3);
     for (std::size_t i = 0; i < before.edges.size(); ++i) {
-        const std::size_t from = i < 3 ? 0 : i < 6 ? 1 : 2;
-        const float ratio = update.depth_ratio[from], weight = update.weight[from];
-        EXPECT_FLOAT_EQ(keyframe.edges.x[i], before.edges.x[i] * ratio) << i;
-        EXPECT_FLOAT_EQ(keyframe.edges.y[i], before.edges.y[i] * ratio) << i;
-        EXPECT_FLOAT_EQ(keyframe.edges.z[i], before.edges.z[i] * ratio) << i;
-        EXPECT_FLOAT_EQ(keyframe.photometric.z[i], before.photometric.z[i] * ratio) << i;
-        EXPECT_FLOAT_EQ(keyframe.edges.weight[i], before.edges.weight[i] * weight) << i;
-        EXPECT_FLOAT_EQ(keyframe.photometric.weight[i], before.photometric.weight[i] * weight) << i;
+        const float factor = i < 6 ? 1 : 0.3F;
+        EXPECT_FLOAT_EQ(keyframe.edges.weight[i], before.edges.weight[i] * factor) << i;
+        EXPECT_FLOAT_EQ(keyframe.photometric.weight[i], before.photometric.weight[i] * factor) << i;
+        EXPECT_EQ(keyframe.edges.z[i], before.edges.z[i]) << i;
     }
 }
 
-TEST(KeyframeFromMap, NoNewsChangesNothing) {
+TEST(KeyframeChanges, PhotometricPointsThatAreNoEdgePointsCountAsBefore) {
+    Keyframe keyframe = keyframeOfTwoEdges();
+    const std::vector<float> before = keyframe.photometric.weight;
+    keyframe.photometric.source.clear();  // as an experiment chooses them
+    keyframe.weaken({true, true}, 0.3);
+    EXPECT_EQ(keyframe.photometric.weight, before);
+}
+
+TEST(KeyframeChanges, PhotometricPointsMoveWithTheEdgesThatTheyCameFrom) {
     const Keyframe before = keyframeOfTwoEdges();
     Keyframe keyframe = before;
-    MapUpdate update;
-    takeFromMap(keyframe, update);
-    update.source = {1, 4, 7};
-    takeFromMap(keyframe, update);
-    EXPECT_EQ(keyframe.edges.z, before.edges.z);
-    EXPECT_EQ(keyframe.edges.weight, before.edges.weight);
-    EXPECT_EQ(keyframe.photometric.weight, before.photometric.weight);
+    RowMotion rows;
+    rows.velocity << 0.3, 0, 0.1;
+    rows.seconds_per_row = 1e-3;
+    keyframe.setRowMotion(rows);
+    EXPECT_EQ(keyframe.row_motion, rows);
+    for (std::size_t i = 0; i < before.edges.size(); ++i) {
+        const Eigen::Vector3d p =
+            rows.toReference(Eigen::Vector3d(before.edges.x[i], before.edges.y[i], before.edges.z[i]),
+                             static_cast<double>(before.edges.image.y[i]));
+        EXPECT_NEAR(keyframe.edges.x[i], p.x(), 1e-5);
+        EXPECT_EQ(keyframe.photometric.x[i], keyframe.edges.x[i]);
+        EXPECT_EQ(keyframe.photometric.z[i], keyframe.edges.z[i]);
+    }
+    keyframe.setRowMotion(before.row_motion);
+    EXPECT_NEAR(keyframe.edges.x[5], before.edges.x[5], 1e-4);
+}
+
+TEST(KeyframeChanges, SharesOfWhatWasFoundNeedEnoughTrials) {
+    Keyframe keyframe = keyframeOfTwoEdges();
+    EXPECT_EQ(keyframe.foundShares(), (std::vector<float>{-1, -1}));
+    keyframe.count({6, 3}, {3, 0});
+    EXPECT_EQ(keyframe.foundShares(), (std::vector<float>{-1, -1})) << "less than ten";
+    keyframe.count({6, 3}, {6, 0});
+    EXPECT_EQ(keyframe.foundShares(), (std::vector<float>{0.75F, -1}));
+    keyframe.count({6, 6}, {});  // lost: nothing was looked for
+    EXPECT_EQ(keyframe.foundShares(), (std::vector<float>{0.75F, -1}));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ struct Learned {
 Learned learn(const testing::Sequence& sequence, const OdometryOptions& options) {
     Odometry odometry(sequence.camera, options, sequence.start());
     Learned learned;
-    for (const RgbdFrame& frame : sequence.frames) odometry.processFrame(frame);
+    for (const RgbdFrame& frame : sequence.frames) (void)odometry.processFrame(frame);
     learned.readout = odometry.readoutTime();
     learned.ate = evaluate(sequence.truth, odometry.trajectory()).ate.translation.rmse;
     return learned;

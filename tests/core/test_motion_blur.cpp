@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/support/random_pose.h"
-#include "roevo/tracking/motion_blur.h"
+#include "tracking/motion_blur.h"
 
 namespace roevo {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "roevo/edges/organized_edges.h"
+#include "edges/organized_edges.h"
 
 namespace roevo {
 namespace {

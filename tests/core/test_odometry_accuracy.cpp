@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/support/simulated.h"
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -139,7 +139,7 @@ TEST(OdometryAccuracy, TwoRunsGiveTheSameBytes) {
 
 TEST(OdometryAccuracy, MapEdgesLieOnTheSurfaces) {
     Odometry odometry(room().camera, OdometryOptions(), room().start());
-    odometry.processFrame(room().frames[0]);
+    (void)odometry.processFrame(room().frames[0]);
     const EdgeMap map = odometry.map();
     ASSERT_GT(map.size(), 20U);
     const cv::Mat& depth = room().frames[0].depth;

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "core/support/mapped_run.h"
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -164,7 +164,7 @@ TEST(OdometryMapping, EndingEarlyGivesTheLastKeyframeAsEndingLate) {
     for (std::size_t count = 12; count < path().frames.size() && compared < 3; ++count) {
         if (!reference().results[count - 1].new_keyframe) continue;
         Odometry odometry(path().camera, manyKeyframes(), path().start());
-        for (std::size_t i = 0; i < count; ++i) odometry.processFrame(path().frames[i]);
+        for (std::size_t i = 0; i < count; ++i) (void)odometry.processFrame(path().frames[i]);
         const auto early = odometry.keyframes();
         const auto early_poses = odometry.trajectory();
         EXPECT_GT(
@@ -172,7 +172,7 @@ TEST(OdometryMapping, EndingEarlyGivesTheLastKeyframeAsEndingLate) {
             1e-6)
             << "the last keyframe is refined, too";
         for (int i = 1; i <= manyKeyframes().mapping.latency; ++i)
-            odometry.processFrame(black(early_poses.back().timestamp + i * kInterval));
+            (void)odometry.processFrame(black(early_poses.back().timestamp + i * kInterval));
         const auto late = odometry.keyframes();
         ASSERT_EQ(early.size(), late.size());
         for (std::size_t k = 0; k < early.size(); ++k)
@@ -207,7 +207,7 @@ TEST(OdometryMapping, ShortSequencesHaveAllPosesAndAMap) {
     while (!reference().results[second].new_keyframe) ++second;
     for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{3}, second + 1}) {
         Odometry odometry(path().camera, manyKeyframes(), path().start());
-        for (std::size_t i = 0; i < count; ++i) odometry.processFrame(path().frames[i]);
+        for (std::size_t i = 0; i < count; ++i) (void)odometry.processFrame(path().frames[i]);
         const auto poses = odometry.trajectory();
         ASSERT_EQ(poses.size(), count);
         EXPECT_EQ(odometry.liveTrajectory().size(), count);

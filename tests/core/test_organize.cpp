@@ -7,7 +7,7 @@
 
 #include "core/support/analytic_image.h"
 #include "core/support/edge_masks.h"
-#include "roevo/edges/edge_extractor.h"
+#include "edges/edge_extractor.h"
 
 namespace roevo {
 namespace {
@@ -111,8 +111,9 @@ TEST(Organize, IsTheSameOnASecondCall) {
     options.threshold_smoothing = 0;
     EdgeExtractor extractor(options);
     OrganizedEdges first, second;
-    extractor.extract(shapes(), first);
-    extractor.extract(shapes(), second);
+    EdgeMask mask;
+    extractor.extract(shapes(), first, mask);
+    extractor.extract(shapes(), second, mask);
     ASSERT_GT(first.numEdges(), 3);
     EXPECT_EQ(first.x, second.x);
     EXPECT_EQ(first.y, second.y);
@@ -138,12 +139,13 @@ double shareFound(const OrganizedEdges& a, const OrganizedEdges& b) {
 TEST(Organize, BrightnessAndContrastHardlyMatter) {
     const cv::Mat image = shapes();
     OrganizedEdges plain;
-    EdgeExtractor(EdgeOptions()).extract(image, plain);
+    EdgeMask mask;
+    EdgeExtractor(EdgeOptions()).extract(image, plain, mask);
     for (const auto& [gain, offset] : {std::pair(0.5, 0.0), {0.5, 100.0}, {1.0, 50.0}, {1.2, 0.0}}) {
         cv::Mat changed;
         image.convertTo(changed, CV_8U, gain, offset);
         OrganizedEdges edges;
-        EdgeExtractor(EdgeOptions()).extract(changed, edges);
+        EdgeExtractor(EdgeOptions()).extract(changed, edges, mask);
         EXPECT_GT(shareFound(plain, edges), 0.95) << gain << " " << offset;
         EXPECT_GT(shareFound(edges, plain), 0.95) << gain << " " << offset;
     }
@@ -158,7 +160,8 @@ TEST(Organize, StrengthIsGreyLevelsPerPixel) {
     EdgeOptions options;
     options.min_high_threshold = 16;
     options.canny_high_factor = 0.5;
-    EdgeExtractor(options).extract(image, edges);
+    EdgeMask mask;
+    EdgeExtractor(options).extract(image, edges, mask);
     for (const float strength : edges.strength) EXPECT_NEAR(strength, 12, 0.8);
 }
 
@@ -167,22 +170,25 @@ TEST(Organize, EveryFrameKeepsItsShareOfThePreviousThreshold) {
     options.threshold_smoothing = 0.75;
     EdgeExtractor extractor(options);
     OrganizedEdges edges;
-    extractor.extract(shapes(), edges);
+    EdgeMask mask;
+    extractor.extract(shapes(), edges, mask);
     const double first = extractor.highThreshold();
     cv::Mat faint;
     shapes().convertTo(faint, CV_8U, 0.4, 80);
     EdgeExtractor fresh(options);
-    fresh.extract(faint, edges);
+    fresh.extract(faint, edges, mask);
     const double alone = fresh.highThreshold();
     ASSERT_LT(alone, 0.8 * first);
-    extractor.extract(faint, edges);
+    extractor.extract(faint, edges, mask);
     EXPECT_NEAR(extractor.highThreshold(), 0.75 * first + 0.25 * alone, 1e-9);
 }
 
 TEST(Organize, ABlackImageHasNoEdges) {
     OrganizedEdges edges;
+    EdgeMask mask;
     EdgeExtractor extractor{EdgeOptions()};
-    extractor.extract(cv::Mat::zeros(120, 160, CV_8UC1), edges);
+    extractor.extract(cv::Mat::zeros(120, 160, CV_8UC1), edges, mask);
+    EXPECT_TRUE(mask.pixels.empty());
     EXPECT_EQ(edges.numEdges(), 0);
     EXPECT_EQ(edges.size(), 0U);
 }

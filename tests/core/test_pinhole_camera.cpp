@@ -7,7 +7,7 @@
 #include "core/support/analytic_image.h"
 #include "core/support/random_pose.h"
 #include "roevo/camera/pinhole_camera.h"
-#include "roevo/tracking/image_pyramid.h"
+#include "tracking/image_pyramid.h"
 
 namespace roevo {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "core/support/mapping_world.h"
-#include "roevo/mapping/bundle_adjustment.h"
-#include "roevo/mapping/pseudo_edges.h"
+#include "mapping/bundle_adjustment.h"
+#include "mapping/pseudo_edges.h"
 
 namespace roevo {
 namespace {

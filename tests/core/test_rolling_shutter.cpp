@@ -5,7 +5,7 @@
 
 #include "core/support/random_pose.h"
 #include "roevo/options.h"
-#include "roevo/tracking/rolling_shutter.h"
+#include "tracking/rolling_shutter.h"
 
 namespace roevo {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <opencv2/core.hpp>
 
-#include "roevo/mapping/semi_dense.h"
+#include "mapping/semi_dense.h"
 
 namespace roevo {
 namespace {

@@ -46,7 +46,7 @@ TEST(ShadowEdges, ThoseOfMovingShadowsAreKeptOutAndOthersAreNot) {
     double longest_readout = 0;
     for (int i = 0; i < kFrames; ++i) {
         const simulator::SimulatedFrame frame = simulator.frame(i);
-        odometry.processFrame({frame.timestamp, frame.grey, frame.depth_noisy, cv::Mat()});
+        (void)odometry.processFrame({frame.timestamp, frame.grey, frame.depth_noisy, cv::Mat()});
         longest_readout = std::max(longest_readout, std::abs(odometry.readoutTime()));
         masks[frame.timestamp] = {frame.shadow_border, frame.objects};
     }

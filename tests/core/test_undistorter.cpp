@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/support/analytic_image.h"
-#include "roevo/camera/undistorter.h"
+#include "camera/undistorter.h"
 
 namespace roevo {
 namespace {

@@ -112,7 +112,7 @@ TEST_F(RoevoOdometryTest, OnlyBundleAdjustmentTellsWhichEdgesAreTheSame) {
 
 TEST_F(RoevoOdometryTest, TheMapLeavesOutPseudoEdgesTheSimpleMapDoesNot) {
     odometry_.options.odometry.mode = Mode::kBundleAdjustment;
-    odometry_.options.odometry.keyframe.min_matched_ratio = 1;  // many keyframes
+    odometry_.options.odometry.keyframe.min_overlap = 1;  // many keyframes
     odometry_.processObservation(*scan_);
     // The left third of what the first keyframe sees is not seen again
     cv::Mat image = scan_->intensityImage.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);

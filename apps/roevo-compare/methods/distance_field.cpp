@@ -7,13 +7,40 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "roevo/tracking/robust.h"
-#include "roevo/tracking/se3.h"
+#include "tracking/robust.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// The distance residual, with a radius that narrows down as FineTracker's does.
+class FieldTerm : public ResidualTerm {
+  public:
+    FieldTerm(DistanceFieldTracker& tracker, const Keyframe& keyframe, const DistanceField& field,
+              const PinholeCamera& camera, const FineOptions& options)
+        : tracker_(tracker), keyframe_(keyframe), field_(field), camera_(camera), options_(options) {}
+
+    int narrowed() const { return std::clamp(options_.max_iterations - 1, 1, 4); }
+    bool linearise(const Linearisation& at, PoseSystem& system) override {
+        const double share = std::min(1.0, static_cast<double>(at.iteration) / narrowed());
+        const double radius =
+            options_.search_radius + share * (options_.final_radius - options_.search_radius);
+        const PoseSystem own =
+            tracker_.linearise(keyframe_, field_, camera_, at.T_current_keyframe, at.rows, radius);
+        system.hessian += own.hessian;
+        system.gradient += own.gradient;
+        return static_cast<int>(tracker_.numNear()) >= options_.min_inliers;
+    }
+
+  private:
+    DistanceFieldTracker& tracker_;
+    const Keyframe& keyframe_;
+    const DistanceField& field_;
+    const PinholeCamera& camera_;
+    const FineOptions& options_;
+};
 
 double millisecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -90,56 +117,40 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
     return system;
 }
 
-void DistanceFieldTracker::prepare(const FineFrame& frame) {
-    if (field_timestamp_ == frame.timestamp) return;
+void DistanceFieldTracker::prepare(const Frame& frame) {
+    if (field_timestamp_ == frame.timestamp()) return;
     const Clock::time_point begin = Clock::now();
-    field_.build(frame.mask->mask);
-    field_timestamp_ = frame.timestamp;
+    field_.build(frame.mask.mask);
+    field_timestamp_ = frame.timestamp();
     times_.field += millisecondsSince(begin);
 }
 
-FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
+FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const Frame& frame, const Pose& T_start,
                                        const PosePrior& prior, const RollingShutter& shutter,
                                        const Brightness& brightness) {
     prepare(frame);
     const Clock::time_point begin = Clock::now();
-    const PinholeCamera& camera = *frame.camera;
-    const double depth = std::max(keyframe.median_depth, 0.1);
+    FieldTerm field(*this, keyframe, field_, ideal_, options_);
+    PhotometricTerm photometric(photometric_, keyframe.photometric, 0, frame.pyramid.level(0), ideal_,
+                                brightness);
+    photometric.balance(photometric_weight_, [this] { return near_.size(); });
+    PriorTerm likely(prior, kCorrelatedPoints);
+    std::vector<ResidualTerm*> terms{&field, &likely};
+    if (photometric_weight_ > 0 && keyframe.photometric.size() > 0) terms.push_back(&photometric);
+    GaussNewtonOptions loop;
+    loop.max_iterations = options_.max_iterations;
+    loop.settled_from = field.narrowed();
+    loop.focal_length = ideal_.fx;
+    loop.depth = keyframe.typicalDepth();
+    const GaussNewtonResult found = minimise(T_start, shutter, terms, loop);
+    const Pose& pose = found.T_current_keyframe;
     FineResult result;
-    Pose pose = T_start;
-    Brightness gain = brightness;
-    PoseSystem system;
-    const double narrowing = std::clamp(options_.max_iterations - 1.0, 1.0, 4.0);
-    for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
-        const double share = std::min(1.0, iteration / narrowing);
-        const double radius =
-            options_.search_radius + share * (options_.final_radius - options_.search_radius);
-        const RowMotion rows = shutter.motion(pose);
-        system = linearise(keyframe, field_, camera, pose, rows, radius);
-        if (static_cast<int>(near_.size()) < options_.min_inliers) break;
-        if (photometric_weight_ > 0 && keyframe.photometric.size() > 0) {
-            photometric_.evaluate(keyframe.photometric, 0, frame.pyramid->level(0), camera, pose, rows, gain);
-            const double count = static_cast<double>(near_.size()) /
-                                 std::max<double>(1, photometric_.numVisible() * kernels::kPatchSize);
-            kernels::NormalEquations equations;
-            photometric_.accumulate(keyframe.photometric, 0, camera, photometric_weight_ * count, equations);
-            system.add(equations);
-            gain = photometric_.fitBrightness(keyframe.photometric, 0, gain);
-        }
-        system.addPrior(prior, pose, kCorrelatedPoints);
-        const Vector6d step = system.solve();
-        pose = poseIncrement(step) * pose;
-        const double motion_px = camera.fx * (step.tail<3>().norm() + step.head<3>().norm() / depth);
-        if (motion_px < 0.01 && share >= 1) break;
-    }
     result.inliers = inliers_;
     result.scale = scale_;
     result.matched_ratio = visible_ > 0 ? static_cast<double>(near_.size()) / visible_ : 0;
     result.converged = inliers_ >= options_.min_inliers && pose.isFinite();
     result.T_current_keyframe = result.converged ? pose : T_start;
-    if (result.converged) {
-        result.covariance = kCorrelatedPoints * system.hessian.inverse();
-    }
+    if (result.converged) result.covariance = kCorrelatedPoints * found.system.hessian.inverse();
     times_.registration += millisecondsSince(begin);
     return result;
 }

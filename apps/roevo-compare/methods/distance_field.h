@@ -3,7 +3,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-#include "roevo/tracking/fine_tracker.h"
+#include "tracking/fine_tracker.h"
 
 namespace roevo {
 
@@ -33,23 +33,27 @@ class DistanceField {
 /// association no point of the frame is there to have one, and the longer late steps, which overshoot here.
 class DistanceFieldTracker {
   public:
+    /// @param camera  with its lens
     /// @param photometric_weight  FineOptions::photometric_weight for the residual joined with the
     /// photometric one as in FineTracker; 0 for the field alone
-    DistanceFieldTracker(const FineOptions& options, double photometric_weight)
-        : options_(options), photometric_weight_(photometric_weight) {}
+    DistanceFieldTracker(const PinholeCamera& camera, const FineOptions& options, double photometric_weight)
+        : ideal_(camera.undistorted()), options_(options), photometric_weight_(photometric_weight) {}
 
     /// Builds the field of a frame when it is new; track() does so, too.
-    void prepare(const FineFrame& frame);
+    void prepare(const Frame& frame);
 
     /// As FineTracker::track(). FineResult::inliers counts points
     /// near an edge, matched_ratio their share of those that are looked up and visible.
-    FineResult track(const Keyframe& keyframe, const FineFrame& frame, const Pose& T_start,
-                     const PosePrior& prior, const RollingShutter& shutter, const Brightness& brightness);
+    [[nodiscard]] FineResult track(const Keyframe& keyframe, const Frame& frame, const Pose& T_start,
+                                   const PosePrior& prior, const RollingShutter& shutter,
+                                   const Brightness& brightness);
 
     /// Weighted normal equations at a pose.
     /// @param radius  points farther than this from any edge are left out, px
     PoseSystem linearise(const Keyframe& keyframe, const DistanceField& field, const PinholeCamera& camera,
                          const Pose& T_current_keyframe, const RowMotion& rows, double radius);
+    /// Points that counted in the last linearisation.
+    std::size_t numNear() const { return near_.size(); }
 
     /// Milliseconds since the last call, of building fields and of registering.
     struct Times {
@@ -58,6 +62,7 @@ class DistanceFieldTracker {
     Times takeTimes();
 
   private:
+    PinholeCamera ideal_;
     FineOptions options_;
     double photometric_weight_;
     DistanceField field_;

@@ -2,22 +2,42 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "distance_field.h"
 #include "odometry_frame.h"
 #include "roevo/odometry.h"
-#include "roevo/odometry_stages.h"
+#include "tracking/tracker.h"
 
 namespace roevo {
 namespace {
 
 constexpr char kAlone[] = "distance-field", kJoined[] = "distance-field-photometric";
 
+/// ROEVO's tracker with the field in place of fine tracking.
+class FieldTracker : public Tracker {
+  public:
+    FieldTracker(const PinholeCamera& camera, const OdometryOptions& options, bool photometric)
+        : Tracker(camera, options),
+          field_(camera, options.fine, photometric ? options.fine.photometric_weight : 0) {}
+    DistanceFieldTracker::Times takeTimes() { return field_.takeTimes(); }
+
+  protected:
+    FineResult refine(const Keyframe& reference, const Frame& frame, const Pose& T_start,
+                      const PosePrior& prior, const RollingShutter& shutter,
+                      const Brightness& brightness) override {
+        return field_.track(reference, frame, T_start, prior, shutter, brightness);
+    }
+
+  private:
+    DistanceFieldTracker field_;
+};
+
 class DistanceFieldMethod : public Method {
   public:
     DistanceFieldMethod(const PinholeCamera& camera, const OdometryOptions& options, bool photometric)
-        : tracker_(options.fine, photometric ? options.fine.photometric_weight : 0),
-          odometry_(camera, trackingOnly(options), Pose::Identity(), stagesOf(tracker_)) {}
+        : DistanceFieldMethod(camera, trackingOnly(options),
+                              std::make_unique<FieldTracker>(camera, trackingOnly(options), photometric)) {}
 
     std::vector<std::string> stages() const override {
         return {"edges", "coarse", "distance field", "registration", "keyframe rule"};
@@ -34,21 +54,15 @@ class DistanceFieldMethod : public Method {
     }
 
   private:
+    DistanceFieldMethod(const PinholeCamera& camera, const OdometryOptions& options,
+                        std::unique_ptr<FieldTracker> tracker)
+        : tracker_(*tracker), odometry_(camera, options, Pose::Identity(), std::move(tracker)) {}
     static OdometryOptions trackingOnly(OdometryOptions options) {
         options.mode = Mode::kTracking;
         return options;
     }
-    static OdometryStages stagesOf(DistanceFieldTracker& tracker) {
-        OdometryStages stages;
-        stages.registration = [&tracker](const Keyframe& keyframe, const FineFrame& frame,
-                                         const Pose& T_start, const PosePrior& prior,
-                                         const RollingShutter& shutter, const Brightness& brightness) {
-            return tracker.track(keyframe, frame, T_start, prior, shutter, brightness);
-        };
-        return stages;
-    }
 
-    DistanceFieldTracker tracker_;
+    FieldTracker& tracker_;  // the odometry's
     Odometry odometry_;
     bool started_ = false;
 };

@@ -11,10 +11,10 @@
 #include <opencv2/core.hpp>
 
 #include "depth_resampler.h"
-#include "odometry/stopwatch.h"
 #include "registration_method.h"
-#include "roevo/tracking/se3.h"
 #include "roevo_mrpt/pose_conversions.h"
+#include "stopwatch.h"
+#include "tracking/se3.h"
 #endif
 
 namespace roevo {

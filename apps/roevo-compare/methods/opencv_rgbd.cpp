@@ -7,10 +7,10 @@
 #include <opencv2/core.hpp>
 #include <opencv2/rgbd.hpp>
 
+#include "camera/undistorter.h"
 #include "depth_resampler.h"
-#include "odometry/stopwatch.h"
 #include "registration_method.h"
-#include "roevo/camera/undistorter.h"
+#include "stopwatch.h"
 #endif
 
 namespace roevo {
@@ -89,10 +89,10 @@ class OpencvRgbd : public RegistrationMethod {
     }
 
     static Pose toPose(const cv::Mat& T) {
-        Pose pose = Pose::Identity();
+        Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
         for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 4; ++column) pose(row, column) = T.at<double>(row, column);
-        return pose;
+            for (int column = 0; column < 4; ++column) matrix(row, column) = T.at<double>(row, column);
+        return Pose(matrix);
     }
 
     Undistorter undistorter_;

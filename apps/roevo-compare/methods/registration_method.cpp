@@ -22,7 +22,7 @@ RegistrationMethod::RegistrationMethod(const PinholeCamera& camera, const Odomet
 MethodFrame RegistrationMethod::processFrame(const RgbdFrame& frame) {
     MethodFrame out;
     out.stage_ms.assign(stages().size(), 0.0);
-    out.reason = faultOf(frame, camera_, last_timestamp_);
+    out.reason = describe(inputFault(frame, camera_, last_timestamp_));
     if (out.reason.empty() && frame.depth.empty()) out.reason = "no depth image";
     if (!out.reason.empty()) return out;
     const double gap = frame.timestamp - last_timestamp_;
@@ -45,7 +45,8 @@ MethodFrame RegistrationMethod::processFrame(const RgbdFrame& frame) {
         velocity_known_ = false;
     }
     Expected expected;
-    expected.T_reference_frame = T_world_reference_.inverse() * motion_.predict(frame.timestamp);
+    expected.T_reference_frame =
+        T_world_reference_.inverse() * motion_.predict(frame.timestamp).T_reference_camera;
     expected.dt = frame.timestamp - reference_timestamp_;
     expected.velocity_known = velocity_known_;
     Registration found = registerFrame(frame, expected);
@@ -56,8 +57,7 @@ MethodFrame RegistrationMethod::processFrame(const RgbdFrame& frame) {
         out.reason = "the registration gave a number that is not finite";
     }
     out.tracked = found.T_reference_frame.has_value();
-    out.T_world_camera =
-        T_world_reference_ * found.T_reference_frame.value_or(expected.T_reference_frame);
+    out.T_world_camera = T_world_reference_ * found.T_reference_frame.value_or(expected.T_reference_frame);
     if (out.tracked) {
         velocity_known_ = gap >= kShortestGap && gap <= kLongestGap;
         if (velocity_known_)

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "method.h"
-#include "roevo/tracking/motion_model.h"
+#include "tracking/motion_model.h"
 
 namespace roevo {
 

@@ -9,7 +9,8 @@ std::shared_ptr<FeatureFrame> FeatureExtractor::extract(const RgbdFrame& frame, 
     cv::Mat buffer;
     out->grey = undistorter_.apply(frame.grey, buffer).clone();
     out->depth = frame.depth.clone();
-    extractor_.extract(out->grey, out->edges);
+    EdgeMask mask;
+    extractor_.extract(out->grey, out->edges, mask);
     out->lifted = liftEdges(out->edges, out->depth, camera_, RowMotion(), options_.edges, options_.sensor);
     out->grid.build(out->edges, camera_.width, camera_.height);
     out->lifted_grid.build(out->lifted.image, camera_.width, camera_.height);

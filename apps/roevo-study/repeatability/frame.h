@@ -3,13 +3,13 @@
 #include <memory>
 #include <opencv2/core/mat.hpp>
 
+#include "camera/undistorter.h"
+#include "edges/edge_extractor.h"
+#include "edges/edge_grid.h"
 #include "roevo/camera/rgbd_frame.h"
-#include "roevo/camera/undistorter.h"
-#include "roevo/edges/edge_extractor.h"
-#include "roevo/edges/edge_grid.h"
 #include "roevo/options.h"
-#include "roevo/tracking/edge_points.h"
 #include "roevo/types.h"
+#include "tracking/edge_points.h"
 
 namespace roevo {
 

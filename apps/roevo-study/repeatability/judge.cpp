@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "roevo/edges/canny.h"
+#include "edges/canny.h"
 
 namespace roevo {
 namespace {

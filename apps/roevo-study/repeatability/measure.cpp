@@ -7,7 +7,7 @@
 
 #include "programs/progress.h"
 #include "repeatability/methods.h"
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {

@@ -6,8 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
-#include "roevo/edges/edge_depth.h"
-#include "roevo/tracking/photometric.h"
+#include "edges/edge_depth.h"
+#include "tracking/photometric.h"
 
 namespace roevo {
 namespace {
@@ -114,11 +114,11 @@ void DisjointSets::insert(const FeatureFrame& frame, bool keyframe) {
     Keyframe tracked;
     tracked.id = static_cast<int>(frame.number);
     tracked.timestamp = frame.timestamp;
-    tracked.T_world_camera = frame.T_world_search;
     tracked.edges = frame.lifted;
     tracked.median_depth = static_cast<double>(frame.lifted.medianDepth());
     keyframes_.push_back(
         toMapKeyframe(tracked, std::vector<Rgb>(frame.lifted.size()), camera_, options_.mapping.max_points));
+    keyframes_.back().T_world_camera = frame.T_world_search;
     std::vector<const MapKeyframe*> others;  // the newest first
     const auto window = static_cast<std::size_t>(options_.mapping.window);
     for (std::size_t i = keyframes_.size() - 1; i > 0 && others.size() + 1 < window; --i)

@@ -5,9 +5,9 @@
 
 #include "frame.h"
 #include "judge.h"
+#include "mapping/covisibility.h"
 #include "roevo/camera/pinhole_camera.h"
-#include "roevo/mapping/covisibility.h"
-#include "roevo/tracking/edge_association.h"
+#include "tracking/edge_association.h"
 
 namespace roevo {
 

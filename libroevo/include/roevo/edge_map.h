@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "roevo/types.h"
@@ -20,6 +21,18 @@ const char* toString(EdgeVerdict verdict);
 inline bool isPseudo(EdgeVerdict verdict) {
     return verdict == EdgeVerdict::kSpread || verdict == EdgeVerdict::kVanishing;
 }
+
+/// Why the map left a keyframe where it was.
+struct MapRefusal {
+    enum class Kind { kFewObservations, kMovedTooFar };
+    Kind kind = Kind::kFewObservations;
+    int keyframe = 0;
+    int observations = 0;          ///< that fit the map
+    double moved = 0, turned = 0;  ///< m and degrees, by which bundle adjustment would have moved it
+};
+/// In words, without and with the keyframe and the numbers.
+const char* toString(MapRefusal::Kind kind);
+std::string describe(const MapRefusal& refusal);
 
 /// An organized edge of the map: points in order along the edge, world frame, metres.
 struct MapEdge {

@@ -1,28 +1,39 @@
 #pragma once
-/// Every option of the odometry, one flat struct per stage, with unit and range. The same table serves config
-/// files,
+/// Every option of the odometry, one flat struct per stage, with unit and range. Pixels are those of a camera
+/// with f = 525 px and 640 columns, frames those of 30 Hz: other cameras and rates scale them. The same table
+/// serves config files,
 /// `--set`, config_used.ini, --help and the checks.
 
+#include <cmath>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace roevo {
 
+inline constexpr double kFrameRate = 30;  ///< Hz, that counts of frames are meant for
+
 enum class Mode { kCoarse, kTracking, kBundleAdjustment };  ///< paper's ct, tr and tr+ba
 
 struct SensorOptions {
-    double depth_weight_k = 0.6;    ///< k of Eq. (20), 1/m
-    double min_depth = 0.2;         ///< d_min of Eq. (20), m; nearer depths are not used
-    double max_depth = 5.0;         ///< d_max of Eq. (20), m
-    double depth_limit = 9.0;       ///< farther depths are not used, m
-    double depth_noise = 2e-3;      ///< a in sigma_z = a z^2, 1/m
-    bool estimate_readout = true;   ///< learn the read-out time from the images; else it is readout_time
-    double readout_sigma = 0.01;    ///< how far from 0 the learned read-out time may well be, s, one sigma
-    double readout_memory = 0.995;  ///< share of what was learned that is kept from frame to frame
+    double depth_weight_k = 0.6;      ///< k of Eq. (20), 1/m
+    double min_depth = 0.2;           ///< d_min of Eq. (20), m; nearer depths are not used
+    double max_depth = 5.0;           ///< d_max of Eq. (20), m
+    double depth_limit = 9.0;         ///< farther depths are not used, m
+    double depth_noise = 2e-3;        ///< a in sigma_z^2 = s0^2 + (a z^2)^2, 1/m
+    double depth_noise_floor = 1e-3;  ///< s0 of it, m: what does not grow with depth
+    bool estimate_readout = true;     ///< learn the read-out time from the images; else it is readout_time
+    double readout_sigma = 0.01;      ///< how far from 0 the learned read-out time may well be, s, one sigma
+    double readout_memory = 0.995;    ///< share of what was learned that is kept from frame to frame
     double readout_time = 0;     ///< time from the first to the last row of a rolling shutter, s (0: global)
     double blur_time = 0.005;    ///< one sigma of when an edge was seen (exposure, stamps), s; 0: sharp
     double reference_row = 0.5;  ///< row whose time the stamp means, as a share of the height
+
+    /// sigma_z at a depth, m.
+    double depthSigma(double depth) const {
+        const double grown = depth_noise * depth * depth;
+        return std::sqrt(depth_noise_floor * depth_noise_floor + grown * grown);
+    }
 };
 
 struct EdgeOptions {
@@ -57,7 +68,7 @@ struct FineOptions {
     double chi2 = 16;             ///< chi-square limit of a residual
     double photometric_weight =
         0.3;                    ///< alpha^2 of Eq. (9) after both residuals are normalised by their spread
-    double depth_weight = 0.3;  ///< weight of the depth residual of associated points (0: as in the paper)
+    double depth_weight = 0.4;  ///< weight of the depth residual of associated points (0: as in the paper)
     double depth_chi2 = 12;     ///< chi-square limit of a depth residual
     int min_inliers = 40;       ///< fewer inliers: the frame is not tracked
     double min_matched_ratio =
@@ -65,17 +76,17 @@ struct FineOptions {
 };
 
 struct KeyframeOptions {
-    double min_matched_ratio = 0.7;  ///< new keyframe below this share of associable edges
-    double max_rotation_deg = 15;    ///< new keyframe beyond this rotation
-    double max_translation = 0.15;   ///< new keyframe beyond this translation, relative to the median depth
+    double min_overlap = 0.7;       ///< new keyframe below this share of associable edges
+    double max_rotation_deg = 15;   ///< new keyframe beyond this rotation
+    double max_translation = 0.15;  ///< new keyframe beyond this translation, relative to the median depth
 };
 
 /// The motion that is thought likely: it decides in directions that the edges hardly see.
 struct MotionOptions {
-    double acceleration = 10;                ///< m/s^2, one sigma
-    double angular_acceleration_deg = 1000;  ///< deg/s^2, one sigma
-    double speed = 1;                        ///< m/s, one sigma where no velocity is known
-    double angular_speed_deg = 60;           ///< deg/s, one sigma where no velocity is known
+    double acceleration = 5;                ///< m/s^2, one sigma
+    double angular_acceleration_deg = 500;  ///< deg/s^2, one sigma
+    double speed = 1;                       ///< m/s, one sigma where no velocity is known
+    double angular_speed_deg = 60;          ///< deg/s, one sigma where no velocity is known
 };
 
 struct LossOptions {
@@ -99,7 +110,6 @@ struct MappingOptions {
     int max_reused = 4;            ///< so many of them
     bool deterministic = true;     ///< the tracker waits for the map; else it takes what is ready
     int latency = 4;               ///< frames after which the mapping of a keyframe takes effect
-    bool refine_depth = false;     ///< the tracker uses the fused depth of its keyframe
     double pseudo_weight = 0.3;    ///< what pseudo-edges of the keyframe still count in tracking
     /// Surface points kept of a keyframe, next to its edges (0: none); in all modes. 10 bytes each.
     int semi_dense_points = 2500;

@@ -1,5 +1,6 @@
 #pragma once
-/// Types used everywhere in the core. Poses are named `T_a_b`: they map a point given in frame b into frame a.
+/// Types used everywhere in the core. Poses are named `T_a_b`: they map a point given in frame b into frame
+/// a.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -27,7 +28,8 @@ class Pose {
     Pose(const Eigen::Isometry3d& pose)  // NOLINT: Eigen's own type is welcome wherever a pose is
         : Pose(Eigen::Quaterniond(pose.linear()), pose.translation()) {}
     /// Of whatever Eigen makes a rigid motion of: a translation, an angle and its axis, a 4x4 matrix.
-    template <class Motion, class = std::enable_if_t<std::is_constructible_v<Eigen::Isometry3d, const Motion&>>>
+    template <class Motion,
+              class = std::enable_if_t<std::is_constructible_v<Eigen::Isometry3d, const Motion&>>>
     explicit Pose(const Motion& motion) : Pose(Eigen::Isometry3d(motion)) {}
 
     static Pose Identity() { return {}; }

@@ -1,4 +1,4 @@
-#include "roevo/camera/undistorter.h"
+#include "camera/undistorter.h"
 
 #include <opencv2/imgproc.hpp>
 

@@ -1,4 +1,4 @@
-#include "roevo/edges/canny.h"
+#include "edges/canny.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "roevo/edges/edge_depth.h"
+#include "edges/edge_depth.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,8 @@
 namespace roevo {
 namespace {
 
-constexpr int kMaxRadius = 5;
+constexpr int kMaxRadius = 15;
+constexpr int kMostAcross = 5;     ///< pixels to each side; of larger patches every n-th is looked at
 constexpr int kMinForeground = 3;  ///< fewer near pixels are speckle
 struct Sample {
     float z, dx, dy;
@@ -47,12 +48,13 @@ EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOpti
     const int cu = static_cast<int>(std::lround(u)), cv_ = static_cast<int>(std::lround(v));
     const auto near_limit = static_cast<float>(sensor.min_depth),
                far_limit = static_cast<float>(sensor.depth_limit);
+    const int step = std::max(1, (radius + kMostAcross - 1) / kMostAcross);
     std::array<Sample, (2 * kMaxRadius + 1) * (2 * kMaxRadius + 1)> samples;
     int count = 0;
     float nearest = far_limit, farthest = near_limit;
-    for (int y = std::max(0, cv_ - radius); y <= std::min(depth.rows - 1, cv_ + radius); ++y) {
+    for (int y = std::max(0, cv_ - radius); y <= std::min(depth.rows - 1, cv_ + radius); y += step) {
         const auto* row = depth.ptr<float>(y);
-        for (int x = std::max(0, cu - radius); x <= std::min(depth.cols - 1, cu + radius); ++x) {
+        for (int x = std::max(0, cu - radius); x <= std::min(depth.cols - 1, cu + radius); x += step) {
             const float z = row[x];
             if (!(z >= near_limit && z <= far_limit)) continue;
             samples[static_cast<std::size_t>(count++)] = {z, static_cast<float>(x) - u,

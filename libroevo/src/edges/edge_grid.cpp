@@ -1,4 +1,4 @@
-#include "roevo/edges/edge_grid.h"
+#include "edges/edge_grid.h"
 
 namespace roevo {
 

@@ -1,4 +1,4 @@
-#include "roevo/edges/edge_sides.h"
+#include "edges/edge_sides.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,14 +6,15 @@
 namespace roevo {
 namespace {
 
+// Pixels and points are those of a 640x480 Kinect
 constexpr double kReach = 4;              ///< px to each side
 constexpr double kFurther = 8;            ///< px, where the other side is background
 constexpr double kClear = 0.6;            ///< px; nearer samples may show either side
 constexpr double kMostlyBehind = 0.5;     ///< share of a side's samples that makes it background
 constexpr double kMinSeen = 6;            ///< samples that can tell
 constexpr double kAgree = 2;              ///< sigmas of the shorter line
-constexpr std::size_t kWindow = 20;       ///< points before and after that help
-constexpr std::size_t kLeast = 4;         ///< of them at an end of the edge
+constexpr double kWindow = 20;            ///< points before and after that help
+constexpr double kLeast = 4;              ///< of them at an end of the edge
 constexpr double kMinSamples = 12;        ///< of a side
 constexpr double kCorrelated = 4;         ///< neighbouring depths err together: one in so many is independent
 constexpr double kLeastVariance = 1e-10;  ///< relative: 1e-5 of the depth
@@ -30,8 +31,8 @@ double belief(double value, double variance) {
 /// that the normal passes: where edges run along rows or columns, the nearest one would be off to the same
 /// side all along.
 template <typename Take>
-void visit(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, double reach, const cv::Mat& depth,
-           const Take& take) {
+void visit(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, double reach, double clear,
+           const cv::Mat& depth, const Take& take) {
     const bool by_column = std::abs(normal.x()) >= std::abs(normal.y());
     const int main = by_column ? 0 : 1, other = 1 - main;
     const double slope = normal[other] / normal[main];
@@ -45,7 +46,7 @@ void visit(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, double r
             if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
             const double distance = normal.dot(Eigen::Vector2d(x, y) - pixel);
             const float there = depth.at<float>(y, x);
-            if (std::abs(distance) >= kClear && there > 0 && std::isfinite(there))
+            if (std::abs(distance) >= clear && there > 0 && std::isfinite(there))
                 take(distance, there, 1 - std::abs(j - k));
         }
     }
@@ -75,24 +76,28 @@ bool EdgeSides::Side::isBackground(double least) const {
 }
 
 void EdgeSides::sample(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, float z,
-                       const cv::Mat& depth, float jump, Strip& sums) {
+                       const cv::Mat& depth, float jump, double scale, Strip& sums) {
     const Strip before = sums;
-    visit(pixel, normal, kReach, depth, [&](double distance, float there, double weight) {
-        Side& side = distance > 0 ? sums.plus : sums.minus;
-        side.seen += weight;
-        if (there - z > jump * z) side.behind += weight;
-        if (std::abs(there - z) > jump * z) return;
-        side.close.add(std::abs(distance), static_cast<double>(z / there) - 1, weight);
-    });
+    visit(pixel, normal, scale * kReach, scale * kClear, depth,
+          [&](double distance, float there, double weight) {
+              Side& side = distance > 0 ? sums.plus : sums.minus;
+              side.seen += weight;
+              if (there - z > jump * z) side.behind += weight;
+              if (std::abs(there - z) > jump * z) return;
+              side.close.add(std::abs(distance), static_cast<double>(z / there) - 1, weight);
+          });
     const Strip own = sums - before;
     const bool plus = own.minus.isBackground(1), minus = own.plus.isBackground(1);
     if (plus == minus) return;
-    visit(pixel, normal, kFurther, depth, [&](double distance, float there, double weight) {
-        const double away = plus ? distance : -distance;
-        // A surface that recedes leaves the jump further out
-        if (away < 0 || std::abs(there - z) > (1 + static_cast<float>(away / kReach)) * jump * z) return;
-        (plus ? sums.plus : sums.minus).wide.add(away, static_cast<double>(z / there) - 1, weight);
-    });
+    visit(pixel, normal, scale * kFurther, scale * kClear, depth,
+          [&](double distance, float there, double weight) {
+              const double away = plus ? distance : -distance;
+              // A surface that recedes leaves the jump further out
+              if (away < 0 ||
+                  std::abs(there - z) > (1 + static_cast<float>(away / (scale * kReach))) * jump * z)
+                  return;
+              (plus ? sums.plus : sums.minus).wide.add(away, static_cast<double>(z / there) - 1, weight);
+          });
 }
 
 EdgeSides::Meeting EdgeSides::fit(const Sums& sums) {
@@ -134,19 +139,21 @@ double EdgeSides::correction(const Strip& strip) {
 
 void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first,
                         const std::vector<Eigen::Vector2d>& pixels, const cv::Mat& depth, float jump,
-                        std::vector<float>& z) {
+                        double scale, std::vector<float>& z) {
     const std::size_t count = pixels.size();
     strips_.assign(count + 1, Strip());
     for (std::size_t k = 0; k < count; ++k) {
         strips_[k + 1] = strips_[k];
         const Eigen::Vector2d normal(edges.normal_x[first + k], edges.normal_y[first + k]);
-        if (z[k] > 0) sample(pixels[k], normal, z[k], depth, jump, strips_[k + 1]);
+        if (z[k] > 0) sample(pixels[k], normal, z[k], depth, jump, scale, strips_[k + 1]);
     }
     const auto most = static_cast<double>(jump);
+    const auto window = static_cast<std::size_t>(std::lround(scale * kWindow));
+    const auto least = static_cast<std::size_t>(std::lround(scale * kLeast));
     for (std::size_t k = 0; k < count; ++k) {
         if (!(z[k] > 0)) continue;
         // As many before as after, so that a depth that changes along the edge does not lean to one side
-        const std::size_t reach = std::min({kWindow, std::max(k, kLeast), std::max(count - 1 - k, kLeast)});
+        const std::size_t reach = std::min({window, std::max(k, least), std::max(count - 1 - k, least)});
         const std::size_t from = k > reach ? k - reach : 0, to = std::min(count, k + reach + 1);
         const double value = std::clamp(correction(strips_[to] - strips_[from]), -most, most);
         z[k] = static_cast<float>(static_cast<double>(z[k]) / (1 + value));

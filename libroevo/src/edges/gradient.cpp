@@ -1,4 +1,4 @@
-#include "roevo/edges/gradient.h"
+#include "edges/gradient.h"
 
 #include <algorithm>
 #include <array>

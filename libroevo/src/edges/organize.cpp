@@ -1,4 +1,4 @@
-#include "roevo/edges/organize.h"
+#include "edges/organize.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "roevo/edges/organized_edges.h"
+#include "edges/organized_edges.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "roevo/mapping/bundle_adjustment.h"
+#include "mapping/bundle_adjustment.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "roevo/tracking/fine_tracker.h"
-#include "roevo/tracking/se3.h"
+#include "tracking/fine_tracker.h"
+#include "tracking/se3.h"
 #include "window_equations.h"
 
 namespace roevo {

@@ -1,9 +1,9 @@
-#include "roevo/mapping/covisibility.h"
+#include "mapping/covisibility.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "roevo/tracking/photometric.h"
+#include "tracking/photometric.h"
 
 namespace roevo {
 

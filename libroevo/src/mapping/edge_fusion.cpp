@@ -1,4 +1,4 @@
-#include "roevo/mapping/edge_fusion.h"
+#include "mapping/edge_fusion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kMinRun = 4;  ///< points of the shortest run that is stitched
 constexpr std::int32_t kApart = -1;
 /// Farther from the reference than this, a point shows something else.
-constexpr double kReachPixels = 12.5, kReachSigmas = 8;
+constexpr double kReachAngle = 12.5 / 525, kReachSigmas = 8;  // rad
 
 }  // namespace
 
@@ -130,8 +130,8 @@ bool EdgeFuser::isNear(const Eigen::Vector3d& p, const Eigen::Vector3d& referenc
     const Eigen::Vector3d apart = reference - p;
     const double along = apart.dot(ray) / depth;
     const double across_squared = apart.squaredNorm() - along * along;
-    const double most_across = kReachPixels * depth / focal_length_;
-    const double most_along = kReachSigmas * depth_noise_ * depth * depth + most_across;
+    const double most_across = kReachAngle * depth;
+    const double most_along = kReachSigmas * sensor_.depthSigma(depth) + most_across;
     return across_squared < most_across * most_across && std::abs(along) < most_along;
 }
 

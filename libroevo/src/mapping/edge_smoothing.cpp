@@ -1,4 +1,4 @@
-#include "roevo/mapping/edge_smoothing.h"
+#include "mapping/edge_smoothing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,8 @@ constexpr double kSigmas = 3;
 
 }  // namespace
 
-void smoothDepthAlong(std::vector<Eigen::Vector3d>& points, const Pose& T_world_camera, double depth_noise) {
+void smoothDepthAlong(std::vector<Eigen::Vector3d>& points, const Pose& T_world_camera,
+                      const SensorOptions& sensor) {
     const auto count = static_cast<int>(points.size());
     if (count < kLeastPoints) return;
     const Pose T_camera_world = T_world_camera.inverse();
@@ -40,8 +41,8 @@ void smoothDepthAlong(std::vector<Eigen::Vector3d>& points, const Pose& T_world_
         }
         if (!(line.spread() > 1e-9 * line.magnitude())) continue;
         const double fitted = line.atZero();
-        // sigma of 1 / z is a, whatever the depth
-        if (!(std::abs(fitted - inverse[at]) <= kSigmas * depth_noise) || !(fitted > 0)) continue;
+        const double sigma = sensor.depthSigma(1 / inverse[at]) * inverse[at] * inverse[at];  // of 1 / z
+        if (!(std::abs(fitted - inverse[at]) <= kSigmas * sigma) || !(fitted > 0)) continue;
         points[at] = T_world_camera * (Eigen::Vector3d(image[at].x(), image[at].y(), 1) / fitted);
     }
 }

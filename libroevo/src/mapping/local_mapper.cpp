@@ -1,11 +1,10 @@
-#include "roevo/mapping/local_mapper.h"
+#include "mapping/local_mapper.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "map_edges.h"
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -36,7 +35,7 @@ LocalMapper::LocalMapper(const PinholeCamera& camera, const OdometryOptions& opt
     : camera_(camera),
       options_(options),
       graph_(options.fine, 3),
-      fuser_(camera.fx, options.sensor.depth_noise),
+      fuser_(options.sensor),
       adjuster_(options.mapping, options.sensor, camera),
       judge_(options.mapping, options.sensor, camera) {}
 
@@ -51,7 +50,7 @@ std::vector<const MapKeyframe*> LocalMapper::recentOf(int id) const {
     return recent;
 }
 
-void LocalMapper::hold(int id) {
+void LocalMapper::unpack(int id) {
     MapKeyframe& keyframe = keyframes_.at(id);
     if (keyframe.size() > 0) return;
     if (const auto packed = packed_.find(id); packed != packed_.end())
@@ -69,7 +68,7 @@ bool LocalMapper::bringToReadout(MapKeyframe& keyframe) const {
 
 void LocalMapper::prepare(const std::vector<const MapKeyframe*>& members) {
     for (const MapKeyframe* member : members) {
-        hold(member->id);
+        unpack(member->id);
         // What was packed is not what it is now
         if (bringToReadout(keyframes_.at(member->id))) packed_.erase(member->id);
     }
@@ -134,23 +133,16 @@ void LocalMapper::buildWindow(int newest, const std::vector<const MapKeyframe*>&
     }
 }
 
-bool LocalMapper::acceptable(const WindowKeyframe& view, int inliers, std::string& reason) const {
+std::optional<MapRefusal> LocalMapper::refusalOf(const WindowKeyframe& view, int inliers) const {
     const MapKeyframe& keyframe = *view.keyframe;
     const Pose jump = keyframe.T_world_camera.inverse() * view.T_world_camera;
     const double moved = jump.translation().norm(), degrees = rotationAngle(jump) / kDegree;
-    const auto refuse = [&](const char* why, const char* detail, auto... values) {
-        char text[64];
-        std::snprintf(text, sizeof text, detail, values...);
-        reason = std::string("left as it was, ") + why + ": keyframe " + std::to_string(keyframe.id) + " (" +
-                 text + ")";
-        return false;
-    };
-    if (inliers < options_.fine.min_inliers) return refuse("too few observations fit the map", "%d", inliers);
-    if (!view.T_world_camera.isFinite() ||
-        moved > kLargestJump * std::max(0.1, keyframe.median_depth) || degrees > kLargestTurn) {
-        return refuse("bundle adjustment moved it too far", "%.0f mm, %.1f deg", 1000 * moved, degrees);
-    }
-    return true;
+    const MapRefusal refusal{MapRefusal::Kind::kFewObservations, keyframe.id, inliers, moved, degrees};
+    if (inliers < options_.fine.min_inliers) return refusal;
+    const bool sound = view.T_world_camera.isFinite() && degrees <= kLargestTurn &&
+                       moved <= kLargestJump * std::max(0.1, keyframe.median_depth);
+    if (sound) return std::nullopt;
+    return MapRefusal{MapRefusal::Kind::kMovedTooFar, keyframe.id, inliers, moved, degrees};
 }
 
 void LocalMapper::addPriors() {
@@ -164,7 +156,11 @@ void LocalMapper::addPriors() {
             prior.from = static_cast<int>(from);
             prior.to = static_cast<int>(to);
             prior.T_from_to = keyframe.T_parent_camera;
-            prior.information = options_.mapping.prior_weight * keyframe.parent_information;
+            const Eigen::Matrix3d R = window_[to].T_world_camera.linear();
+            Matrix6d to_world = Matrix6d::Zero();
+            to_world.topLeftCorner<3, 3>() = to_world.bottomRightCorner<3, 3>() = R;
+            prior.information =
+                options_.mapping.prior_weight * to_world * keyframe.parent_information * to_world.transpose();
             priors_.push_back(prior);
         }
     }
@@ -218,7 +214,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     update.refinement = adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
     takePoses(update);
     keepVerdicts();
-    describeNewest(update);
+    update.verdicts = verdicts_.at(id);
     leaveWindow(keyframe);
     return update;
 }
@@ -228,9 +224,10 @@ void LocalMapper::takePoses(MapUpdate& update) {
     std::vector<bool> refused(window_.size(), false);
     for (std::size_t slot = 0; slot < window_.size(); ++slot) {
         const int inliers = slot < update.refinement.inliers.size() ? update.refinement.inliers[slot] : 0;
-        std::string fault;
-        refused[slot] = !window_[slot].fixed && !acceptable(window_[slot], inliers, fault);
-        if (refused[slot]) update.reason += (update.reason.empty() ? "" : "; ") + fault;
+        if (window_[slot].fixed) continue;
+        const auto refusal = refusalOf(window_[slot], inliers);
+        if (refusal) update.refusals.push_back(*refusal);
+        refused[slot] = refusal.has_value();
     }
     for (std::size_t slot = 0; slot < window_.size(); ++slot) {
         WindowKeyframe& view = window_[slot];
@@ -246,34 +243,6 @@ void LocalMapper::takePoses(MapUpdate& update) {
         if (refused[slot] && view.T_world_camera.matrix() == keyframe.T_world_camera.matrix()) continue;
         keyframe.T_world_camera = view.T_world_camera;
         update.poses.emplace_back(keyframe.id, view.T_world_camera);
-    }
-}
-
-void LocalMapper::describeNewest(MapUpdate& update) const {
-    // Where the newest keyframe's points are according to all that see them, and which are no true edges
-    const bool depth = options_.mapping.refine_depth, weight = options_.mapping.pseudo_weight < 1;
-    if (!depth && !weight) return;
-    const MapKeyframe& keyframe = *window_.back().keyframe;
-    const auto newest = static_cast<std::int32_t>(window_.size()) - 1;
-    if (depth) update.depth_ratio.assign(keyframe.size(), 1);
-    if (weight) update.weight.assign(keyframe.size(), 1);
-    update.source = keyframe.source;
-    const Pose T_camera_world = keyframe.T_world_camera.inverse();
-    for (std::size_t edge = 0; edge < fused_.views.size(); ++edge) {
-        const IndexRange own = fused_.pointsOf(edge);
-        for (std::size_t p = own.first; p < own.end; ++p) {
-            const auto [first, end] = fused_.observationsOf(p);
-            for (std::size_t k = first; k < end; ++k) {
-                if (fused_.observations[k].slot != newest) continue;
-                const auto i = static_cast<std::size_t>(fused_.observations[k].point);
-                if (weight && isPseudo(fused_.verdicts[edge]))
-                    update.weight[i] = static_cast<float>(options_.mapping.pseudo_weight);
-                if (!depth || end - first < 2 || fused_.verdicts[edge] != EdgeVerdict::kTrue) continue;
-                const double z = (T_camera_world * fused_.points[p]).z();
-                const double ratio = z / static_cast<double>(keyframe.z[i]);
-                if (std::abs(ratio - 1) < 0.1) update.depth_ratio[i] = static_cast<float>(ratio);
-            }
-        }
     }
 }
 

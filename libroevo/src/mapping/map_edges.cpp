@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "roevo/mapping/bundle_adjustment.h"
-#include "roevo/mapping/edge_fusion.h"
-#include "roevo/mapping/edge_smoothing.h"
+#include "mapping/bundle_adjustment.h"
+#include "mapping/edge_fusion.h"
+#include "mapping/edge_smoothing.h"
 
 namespace roevo {
 namespace {
@@ -36,7 +36,7 @@ EdgeMap fuseEdges(const MapContents& contents, const PinholeCamera& camera, cons
     for (const auto& [id, keyframe] : contents.keyframes)
         window.push_back({&keyframe, keyframe.T_world_camera, true});
     FusedEdges edges;
-    EdgeFuser fuser(camera.fx, options.sensor.depth_noise);
+    EdgeFuser fuser(options.sensor);
     fuser.fuse(window, contents.clusters, edges);
     BundleAdjuster(options.mapping, options.sensor, camera).refine(window, edges, {}, kIterations);
     EdgeMap map;
@@ -53,7 +53,7 @@ EdgeMap fuseEdges(const MapContents& contents, const PinholeCamera& camera, cons
             return edges.observations[edges.observationsOf(p).end - 1];
         };
         smoothDepthAlong(points, window[static_cast<std::size_t>(reference(first).slot)].T_world_camera,
-                         options.sensor.depth_noise);
+                         options.sensor);
         for (std::size_t p = first; p < end; ++p) {
             const Observation seen = reference(p);
             const MapKeyframe& keyframe = *window[static_cast<std::size_t>(seen.slot)].keyframe;
@@ -84,7 +84,7 @@ EdgeMap edgesAsSeen(const MapContents& contents, const SensorOptions& sensor) {
                 points.push_back(keyframe.T_world_camera * keyframe.point(i));
                 edge.colours.push_back(keyframe.colours[i]);
             }
-            smoothDepthAlong(points, keyframe.T_world_camera, sensor.depth_noise);
+            smoothDepthAlong(points, keyframe.T_world_camera, sensor);
             for (const Eigen::Vector3d& point : points) edge.points.push_back(point.cast<float>());
             map.push_back(std::move(edge));
         }

@@ -2,9 +2,9 @@
 #include <map>
 #include <vector>
 
+#include "mapping/map_keyframe.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/edge_map.h"
-#include "roevo/mapping/map_keyframe.h"
 #include "roevo/options.h"
 
 namespace roevo {

@@ -1,9 +1,9 @@
-#include "roevo/mapping/map_keyframe.h"
+#include "mapping/map_keyframe.h"
 
 #include <algorithm>
 
 #include "line_fit.h"
-#include "roevo/tracking/kernels.h"
+#include "tracking/kernels.h"
 
 namespace roevo {
 namespace {
@@ -20,25 +20,10 @@ void reserve(MapKeyframe& keyframe, std::size_t points) {
         array->reserve(points + kernels::paddedSize(1));
     }
     image.edge_of.reserve(points);
-    keyframe.source.reserve(points);
     keyframe.colours.reserve(points);
 }
 
 }  // namespace
-
-const char* toString(EdgeVerdict verdict) {
-    switch (verdict) {
-        case EdgeVerdict::kUnconfirmed:
-            return "unconfirmed";
-        case EdgeVerdict::kTrue:
-            return "true";
-        case EdgeVerdict::kSpread:
-            return "pseudo: observations disagree";
-        case EdgeVerdict::kVanishing:
-            return "pseudo: seen too rarely";
-    }
-    return "unknown";
-}
 
 void computeSlopes(MapKeyframe& keyframe) {
     const OrganizedEdges& image = keyframe.image;
@@ -78,8 +63,6 @@ void compact(MapKeyframe& keyframe) {
         array->clear();
         array->shrink_to_fit();
     }
-    keyframe.source.clear();
-    keyframe.source.shrink_to_fit();
 }
 
 MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,
@@ -87,7 +70,6 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
     MapKeyframe out;
     out.id = keyframe.id;
     out.timestamp = keyframe.timestamp;
-    out.T_world_camera = keyframe.T_world_camera;
     out.median_depth = keyframe.median_depth;
     const EdgePoints3D& edges = keyframe.edges;
     const std::size_t limit = static_cast<std::size_t>(std::max(1, max_points));
@@ -109,7 +91,6 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
             out.y.push_back(edges.y[i]);
             out.z.push_back(edges.z[i]);
             out.weight.push_back(edges.weight[i]);
-            out.source.push_back(static_cast<std::int32_t>(i));
             out.colours.push_back(colours.at(i));
         }
         out.image.finishEdge();

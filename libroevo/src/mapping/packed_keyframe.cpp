@@ -1,11 +1,11 @@
-#include "roevo/mapping/packed_keyframe.h"
+#include "mapping/packed_keyframe.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "roevo/tracking/edge_points.h"
-#include "roevo/tracking/kernels.h"
+#include "tracking/edge_points.h"
+#include "tracking/kernels.h"
 
 namespace roevo {
 
@@ -70,7 +70,6 @@ void dropPoints(MapKeyframe& keyframe) {
     keyframe.image = OrganizedEdges();
     for (auto* array : {&keyframe.x, &keyframe.y, &keyframe.z, &keyframe.weight, &keyframe.slope})
         std::vector<float>().swap(*array);
-    std::vector<std::int32_t>().swap(keyframe.source);
     std::vector<Rgb>().swap(keyframe.colours);
 }
 

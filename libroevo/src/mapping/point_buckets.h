@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "roevo/edges/organized_edges.h"
+#include "edges/organized_edges.h"
 
 namespace roevo {
 

@@ -1,4 +1,4 @@
-#include "roevo/mapping/pseudo_edges.h"
+#include "mapping/pseudo_edges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +15,9 @@ constexpr double kSeeShare = 0.3;       ///< and sees it when so much of that is
 constexpr std::size_t kMostLooks = 12;  ///< points of an edge that are looked for, evenly along it
 /// An edge is in an image when so much of it has an edge point within so many pixels and about its direction.
 constexpr double kImageShare = 0.5;
-constexpr float kLookRadius = 3, kLookSine = 0.35F;
-constexpr std::size_t kTangentSpan = 3;  ///< points to each side that a tangent is taken between
-constexpr double kFrameEvidence = 3;     ///< keyframes that all frames since a keyframe count as
+constexpr float kLookRadius = 3, kLookSine = 0.35F;  // the radius in pixels of a 640x480 Kinect
+constexpr std::size_t kTangentSpan = 3;              ///< points to each side that a tangent is taken between
+constexpr double kFrameEvidence = 3;                 ///< keyframes that all frames since a keyframe count as
 
 double tangentResidual(const PinholeCamera& camera, const MapKeyframe& keyframe, std::size_t i,
                        const Eigen::Vector3d& in_camera) {
@@ -94,6 +94,7 @@ bool PseudoEdgeJudge::isInImage(std::size_t slot, const OrganizedEdges& image, c
                                 std::size_t edge) const {
     const auto [first, end] = edges.pointsOf(edge);
     int inside = 0, found = 0;
+    const auto radius = std::max(1.0F, static_cast<float>(camera_.pixelScale())) * kLookRadius;
     Eigen::Vector2f pixel, before, after;
     for (std::size_t p = first; p < end; p += 1 + (end - first) / kMostLooks) {
         if (!project(slot, edges.points[p], pixel)) continue;
@@ -103,7 +104,7 @@ bool PseudoEdgeJudge::isInImage(std::size_t slot, const OrganizedEdges& image, c
         project(slot, edges.points[std::min(end - 1, p + kTangentSpan)], after);
         const Eigen::Vector2f chord = after - before;
         const float limit = kLookSine * chord.norm();
-        found += buckets_->any(pixel.x(), pixel.y(), kLookRadius, [&](std::size_t i) {
+        found += buckets_->any(pixel.x(), pixel.y(), radius, [&](std::size_t i) {
             return std::abs(chord.x() * image.normal_x[i] + chord.y() * image.normal_y[i]) < limit;
         });
     }

@@ -1,4 +1,4 @@
-#include "roevo/mapping/semi_dense.h"
+#include "mapping/semi_dense.h"
 
 #include <algorithm>
 #include <cmath>

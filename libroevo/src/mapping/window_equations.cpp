@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "roevo/tracking/robust.h"
-#include "roevo/tracking/se3.h"
+#include "tracking/robust.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
 
-constexpr double kNoScale = 2.0;         ///< px of spread where nothing is seen
-constexpr double kLeastVariance = 1e-6;  ///< m^2 of depth: a millimetre, whatever the sensor
-constexpr double kNearest = 0.05;        ///< m; nearer points cannot be projected
-constexpr std::size_t kScaleStep = 3;    ///< every so manieth point is enough for a median
+constexpr double kNoScale = 2.0;       ///< px of spread where nothing is seen
+constexpr double kNearest = 0.05;      ///< m; nearer points cannot be projected
+constexpr std::size_t kScaleStep = 3;  ///< one point in so many is enough for a median
 /// Points that make the Hessian; there are more than it needs. All make the gradient, so that nothing but the
 /// step to the optimum is approximate.
 constexpr std::size_t kHessianPoints = 1500;
@@ -51,11 +50,10 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
                     keyframe.image.normal_y[i]);
                 const auto trust = static_cast<double>(keyframe.weight[i] / (1 + blur));
                 const auto depth = static_cast<double>(keyframe.z[i]);
-                const double sigma = sensor_.depth_noise * depth * depth;
+                const double sigma = sensor_.depthSigma(depth);
                 sights_.push_back({camera_.fx * nx, camera_.fy * ny, nx * x + ny * y, -camera_.fx * ny,
                                    camera_.fy * nx, nx * y - ny * x, depth,
-                                   static_cast<double>(keyframe.slope[i]), trust,
-                                   1 / (sigma * sigma + kLeastVariance), slot});
+                                   static_cast<double>(keyframe.slope[i]), trust, 1 / (sigma * sigma), slot});
             }
             points_.push_back(static_cast<std::int32_t>(p));
             begin_.push_back(static_cast<std::int32_t>(sights_.size()));

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "roevo/mapping/bundle_adjustment.h"
-#include "roevo/tracking/motion_blur.h"
+#include "mapping/bundle_adjustment.h"
+#include "tracking/motion_blur.h"
 
 namespace roevo {
 

@@ -1,7 +1,7 @@
+#include "roevo/frame_result.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "roevo/odometry.h"
 
 namespace roevo {
 

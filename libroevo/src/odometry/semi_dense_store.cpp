@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "roevo/mapping/semi_dense.h"
+#include "mapping/semi_dense.h"
 
 namespace roevo {
 namespace {
@@ -70,7 +70,7 @@ SemiDenseStore::Job SemiDenseStore::sample(Job job) const {
     return job;
 }
 
-void SemiDenseStore::add(const OrganizedEdges& edges, const FrameData& data) {
+void SemiDenseStore::add(const OrganizedEdges& edges, const Frame& frame, const RowMotion& rows) {
     if (max_points_ == 0) return;
     collect(kMostSampling - 1);
     Job job;
@@ -79,10 +79,10 @@ void SemiDenseStore::add(const OrganizedEdges& edges, const FrameData& data) {
         spare_.pop_back();
     }
     thinInto(job.centres, edges);
-    data.images.grey.copyTo(job.frame.grey);
-    data.images.depth.copyTo(job.frame.depth);
-    data.images.colour.copyTo(job.frame.colour);
-    job.rows = data.row_motion;
+    frame.images.grey.copyTo(job.frame.grey);
+    frame.images.depth.copyTo(job.frame.depth);
+    frame.images.colour.copyTo(job.frame.colour);
+    job.rows = rows;
     sampling_.push_back(std::async(std::launch::async, &SemiDenseStore::sample, this, std::move(job)));
 }
 

@@ -5,11 +5,12 @@
 #include <future>
 #include <vector>
 
-#include "frame_data.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/edge_map.h"
-#include "roevo/odometry.h"
+#include "roevo/frame_result.h"
 #include "roevo/options.h"
+#include "tracking/frame.h"
+#include "tracking/rolling_shutter.h"
 
 namespace roevo {
 
@@ -46,7 +47,7 @@ class SemiDenseStore {
 
     /// Adds the next keyframe. Waits only when several of them are being sampled already.
     /// @param edges  of the keyframe, ideal px
-    void add(const OrganizedEdges& edges, const FrameData& data);
+    void add(const OrganizedEdges& edges, const Frame& frame, const RowMotion& rows);
 
     /// All points in the world, one keyframe after the other, waiting for those that are being sampled.
     /// @param keyframes  all that were added, in that order, at the poses that are wanted

@@ -1,48 +1,41 @@
-#include "roevo/tracking/coarse_tracker.h"
+#include "tracking/coarse_tracker.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 
 namespace roevo {
+namespace {
+
+constexpr double kDampingTranslation = 0.2;  ///< one sigma of a step, as a share of the depth
+constexpr double kDampingRotation = 0.2;     ///< rad
+
+}  // namespace
 
 double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image, int level,
                                  const PinholeCamera& camera, const RollingShutter& shutter,
                                  CoarseResult& state) {
-    const PhotometricPoints& points = keyframe.photometric;
-    const double depth = std::max(keyframe.median_depth, 0.1);
-    Pose pose = state.T_current_keyframe;
-    Brightness brightness = state.brightness;
-    double best_cost = -1;
-    for (int iteration = 0; iteration <= options_.max_iterations; ++iteration) {
-        residuals_.evaluate(points, level, image, camera, pose, shutter.motion(pose).atPyramidLevel(level),
-                            brightness);
-        if (best_cost < 0) state.num_visible = residuals_.numVisible();
-        if (residuals_.numVisible() < options_.min_points) break;
-        if (best_cost >= 0 && residuals_.cost() > 1.2 * best_cost + 0.5)
-            break;  // diverging; the best pose is kept
-        if (best_cost < 0 || residuals_.cost() <= best_cost * 1.02) {
-            best_cost = best_cost < 0 ? residuals_.cost() : std::min(best_cost, residuals_.cost());
-            state.T_current_keyframe = pose;
-            state.brightness = brightness;
-            state.num_visible = residuals_.numVisible();
-            state.residual = residuals_.scale();
-        }
-        kernels::NormalEquations equations;
-        residuals_.accumulate(points, level, camera, 1, equations);
-        PoseSystem system;
-        system.add(equations);
-        state.system = system;
-        system.addPrior({pose, 0.2 * depth, 0.2}, pose);
-        const Vector6d step = system.solve();
-        brightness = residuals_.fitBrightness(points, level, brightness);
-        pose = poseIncrement(step) * pose;
-        const double motion_px = camera.fx * (step.tail<3>().norm() + step.head<3>().norm() / depth);
-        if (motion_px < 0.01 && iteration > 0) break;
+    const double depth = keyframe.typicalDepth();
+    PhotometricTerm photometric(residuals_, keyframe.photometric, level, image, camera, state.brightness);
+    photometric.require(options_.min_points);
+    DampingTerm damping(kDampingTranslation * depth, kDampingRotation);
+    GaussNewtonOptions loop;
+    loop.max_iterations = options_.max_iterations + 1;
+    loop.focal_length = camera.fx;
+    loop.depth = depth;
+    loop.keep_best = true;
+    const GaussNewtonResult found =
+        minimise(state.T_current_keyframe, shutter, {&photometric, &damping}, loop);
+    state.T_current_keyframe = found.T_current_keyframe;
+    state.brightness = photometric.brightness();
+    state.num_visible = photometric.numVisible();
+    if (found.cost >= 0) {
+        state.residual = photometric.residual();
+        state.system = found.system;
     }
-    return best_cost;
+    return found.cost;
 }
 
 std::vector<std::size_t> CoarseTracker::mostSimilar(const Keyframe& keyframe, const cv::Mat& image, int level,

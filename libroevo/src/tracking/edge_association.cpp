@@ -1,9 +1,9 @@
-#include "roevo/tracking/edge_association.h"
+#include "tracking/edge_association.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "roevo/edges/canny.h"
+#include "edges/canny.h"
 #include "roevo/types.h"
 
 namespace roevo {
@@ -18,7 +18,7 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
     const float margin = EdgeMask::kBorder;
     const float max_u = static_cast<float>(width) - 1 - margin,
                 max_v = static_cast<float>(height) - 1 - margin;
-    visible_.assign(static_cast<std::size_t>(reference.numEdges()), 0);
+    out.visible.assign(static_cast<std::size_t>(reference.numEdges()), 0);
     stride_ =
         std::max(1, static_cast<int>((reference.size() + static_cast<std::size_t>(options_.max_points) - 1) /
                                      static_cast<std::size_t>(options_.max_points)));
@@ -50,7 +50,7 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
             out.reference.push_back(i);
             out.current.push_back(found);
         }
-        visible_[static_cast<std::size_t>(e)] = visible;
+        out.visible[static_cast<std::size_t>(e)] = visible;
         out.visible_points += visible;
     }
     vote(reference, current, out);
@@ -65,7 +65,7 @@ void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges&
     };
     std::size_t kept = 0, next = 0;  // pairs are in the order of the reference's edges
     for (int e = 0; e < reference.numEdges(); ++e) {
-        const int visible = visible_[static_cast<std::size_t>(e)];
+        const int visible = matches.visible[static_cast<std::size_t>(e)];
         const std::size_t first = next;
         touched_.clear();
         const std::int32_t end = reference.begin[static_cast<std::size_t>(e) + 1];

@@ -1,11 +1,11 @@
-#include "roevo/tracking/edge_points.h"
+#include "tracking/edge_points.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "roevo/edges/edge_depth.h"
-#include "roevo/edges/edge_sides.h"
-#include "roevo/tracking/kernels.h"
+#include "edges/edge_depth.h"
+#include "edges/edge_sides.h"
+#include "tracking/kernels.h"
 
 namespace roevo {
 
@@ -23,8 +23,10 @@ double depthWeight(double depth, const SensorOptions& sensor) {
 
 EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const PinholeCamera& camera,
                        const RowMotion& rows, const EdgeOptions& edge_options, const SensorOptions& sensor) {
-    constexpr int kMaxGap = 3;  // points without depth that an edge may bridge
-    constexpr std::size_t kMinPiece = 5;
+    const double scale = std::max(1.0, camera.pixelScale());
+    const auto most_gap =
+        static_cast<std::size_t>(std::lround(3 * scale));  // without depth, that an edge may bridge
+    const auto least_piece = static_cast<std::size_t>(std::lround(5 * scale));
     EdgePoints3D out;
     out.image.clear();
     const bool distorted = camera.isDistorted();
@@ -53,9 +55,9 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
             occluding.push_back(found.occluding ? 1 : 0);
         }
         z = patch_z;
-        if (edge_options.two_sided_depth) sides.correct(edges, first, pixels, depth, jump, z);
+        if (edge_options.two_sided_depth) sides.correct(edges, first, pixels, depth, jump, scale, z);
         const auto flush = [&] {
-            if (piece.size() >= kMinPiece) {
+            if (piece.size() >= least_piece) {
                 for (const std::size_t k : piece) {
                     const std::size_t i = first + k;
                     out.image.addPoint(edges.x[i], edges.y[i], edges.gradient_x[i], edges.gradient_y[i],
@@ -79,7 +81,7 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
             if (z[k] == 0) continue;
             if (!piece.empty()) {
                 const float previous = z[piece.back()];
-                const bool gap = k - piece.back() - 1 > kMaxGap;
+                const bool gap = k - piece.back() - 1 > most_gap;
                 if (gap || std::abs(z[k] - previous) > jump * std::min(z[k], previous)) flush();
             }
             piece.push_back(k);

@@ -1,7 +1,10 @@
-#include "roevo/tracking/gauss_newton.h"
+#include "tracking/gauss_newton.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
+
+#include "tracking/se3.h"
 
 namespace roevo {
 
@@ -32,22 +35,82 @@ void PoseSystem::add(const kernels::NormalEquations& part) {
     }
 }
 
-void PoseSystem::addPrior(const PosePrior& prior, const Pose& pose, double weight) {
-    const Pose difference = pose * prior.mean.inverse();
-    const Eigen::AngleAxisd turn(difference.linear());
-    const double position = weight / (prior.sigma_translation * prior.sigma_translation);
-    const double orientation = weight / (prior.sigma_rotation * prior.sigma_rotation);
-    hessian.diagonal().head<3>().array() += position;
-    hessian.diagonal().tail<3>().array() += orientation;
-    gradient.head<3>() += position * difference.translation();
-    gradient.tail<3>() += orientation * turn.angle() * turn.axis();
-}
-
 Vector6d PoseSystem::solve() const {
     const Eigen::LDLT<Matrix6d> factor(hessian);
     if (factor.info() != Eigen::Success || !factor.isPositive()) return Vector6d::Zero();
     const Vector6d step = -factor.solve(gradient);
     return step.allFinite() ? step : Vector6d::Zero();
+}
+
+Eigen::Matrix<double, 7, 1> PoseSystem::solveWithReadout() const {
+    Eigen::Matrix<double, 7, 7> H;
+    H << hessian, readout_mixed, readout_mixed.transpose(), readout_hessian;
+    Eigen::Matrix<double, 7, 1> g;
+    g << gradient, readout_gradient;
+    const Eigen::LDLT<Eigen::Matrix<double, 7, 7>> factor(H);
+    if (factor.info() != Eigen::Success || !factor.isPositive()) return Eigen::Matrix<double, 7, 1>::Zero();
+    const Eigen::Matrix<double, 7, 1> step = -factor.solve(g);
+    return step.allFinite() ? step : Eigen::Matrix<double, 7, 1>::Zero();
+}
+
+bool PriorTerm::linearise(const Linearisation& at, PoseSystem& system) {
+    const Pose difference = at.T_current_keyframe * prior_.mean.inverse();
+    const Eigen::AngleAxisd turn(difference.linear());
+    const double position = weight_ / (prior_.sigma_translation * prior_.sigma_translation);
+    const double orientation = weight_ / (prior_.sigma_rotation * prior_.sigma_rotation);
+    system.hessian.diagonal().head<3>().array() += position;
+    system.hessian.diagonal().tail<3>().array() += orientation;
+    system.gradient.head<3>() += position * difference.translation();
+    system.gradient.tail<3>() += orientation * turn.angle() * turn.axis();
+    return true;
+}
+
+bool DampingTerm::linearise(const Linearisation&, PoseSystem& system) {
+    system.hessian.diagonal().head<3>().array() += 1 / (sigma_translation_ * sigma_translation_);
+    system.hessian.diagonal().tail<3>().array() += 1 / (sigma_rotation_ * sigma_rotation_);
+    return true;
+}
+
+GaussNewtonResult minimise(const Pose& T_start, RollingShutter shutter,
+                           const std::vector<ResidualTerm*>& terms, const GaussNewtonOptions& options) {
+    // Costs jump a little as robust scales are estimated anew; beyond the second factor it diverges
+    constexpr double kAsGood = 1.02, kDiverging = 1.2, kCostFloor = 0.5;
+    GaussNewtonResult result;
+    result.T_current_keyframe = T_start;
+    Pose T = T_start;
+    for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+        const Linearisation at{T, shutter.motion(T), iteration};
+        PoseSystem system;
+        result.complete = std::all_of(terms.begin(), terms.end(),
+                                      [&](ResidualTerm* term) { return term->linearise(at, system); });
+        if (!result.complete) break;
+        const double cost = terms.front()->cost();
+        if (options.keep_best && result.cost >= 0 && cost > kDiverging * result.cost + kCostFloor) break;
+        if (!options.keep_best || result.cost < 0 || cost <= kAsGood * result.cost) {
+            result.cost = result.cost < 0 ? cost : std::min(result.cost, cost);
+            result.T_current_keyframe = T;
+            terms.front()->keep();
+        }
+        result.system = system;
+        result.iterations = iteration + 1;
+        const double factor = iteration < options.relaxed_from ? 1 : options.relaxation;
+        Vector6d step;
+        if (options.free_readout) {
+            const Eigen::Matrix<double, 7, 1> whole = factor * system.solveWithReadout();
+            step = whole.head<6>();
+            shutter.seconds_per_row += whole[6];
+        } else {
+            step = factor * system.solve();
+        }
+        for (ResidualTerm* term : terms) term->update();
+        T = poseIncrement(step) * T;
+        const double motion =
+            options.focal_length * (step.tail<3>().norm() + step.head<3>().norm() / options.depth);
+        if (motion < options.still && iteration >= options.settled_from) break;
+    }
+    if (!options.keep_best) result.T_current_keyframe = T;
+    result.seconds_per_row = shutter.seconds_per_row;
+    return result;
 }
 
 }  // namespace roevo

@@ -1,4 +1,4 @@
-#include "roevo/tracking/image_pyramid.h"
+#include "tracking/image_pyramid.h"
 
 #include <opencv2/imgproc.hpp>
 

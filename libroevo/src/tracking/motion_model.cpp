@@ -1,16 +1,17 @@
-#include "roevo/tracking/motion_model.h"
+#include "tracking/motion_model.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
 
 constexpr double kLongestPrediction = 0.5;  ///< s; nobody moves on evenly for longer
 constexpr double kShortestStep = 0.005,
-                 kLongestStep = 0.15;    ///< s between two poses that make a velocity for the rows
+                 kLongestStep = 0.35;    ///< s between two poses that make a velocity for the rows
 constexpr double kLeastSigma = 1e-3;     ///< m and rad, of any prior
 constexpr double kLongestReadout = 0.1;  ///< s
 
@@ -22,63 +23,94 @@ MotionModel::MotionModel(const MotionOptions& motion, const SensorOptions& senso
       image_height_(image_height),
       readout_(sensor.readout_sigma / image_height, sensor.readout_memory) {}
 
-void MotionModel::anchor(double timestamp, const Pose& T_world_camera) {
-    T_world_last_ = T_world_camera;
+void MotionModel::anchor(double timestamp, const Pose& T_reference_camera) {
+    T_reference_last_ = T_reference_assumed_ = T_reference_camera;
+    last_ = before_ = Variance();
     last_timestamp_ = timestamp;
     has_last_ = true;
-    velocity_dt_ = 0;
+    interval_ = 0;
 }
 
-void MotionModel::measure(double timestamp, const Pose& T_world_camera) {
-    velocity_ = T_world_last_.inverse() * T_world_camera;
-    velocity_dt_ = timestamp - last_timestamp_;
-    T_world_last_ = T_world_camera;
+void MotionModel::measure(double timestamp, const Pose& T_reference_camera, const Matrix6d& covariance) {
+    const double interval = timestamp - last_timestamp_;
+    // What moved between two stamps that nearly coincide is mostly their errors: the velocity stays
+    if (interval >= kShortestStep) {
+        step_ = T_reference_last_.inverse() * T_reference_camera;
+        interval_ = interval;
+        before_ = last_;
+    }
+    last_ = {covariance.topLeftCorner<3, 3>().trace() / 3, covariance.bottomRightCorner<3, 3>().trace() / 3};
+    T_reference_last_ = T_reference_assumed_ = T_reference_camera;
     last_timestamp_ = timestamp;
 }
 
-Pose MotionModel::predict(double timestamp) const {
-    if (velocity_dt_ <= 0) return T_world_last_;
-    const double elapsed = std::clamp(timestamp - last_timestamp_, 0.0, kLongestPrediction);
-    return T_world_last_ * interpolate(Pose::Identity(), velocity_, elapsed / velocity_dt_);
+void MotionModel::changeReference(const Pose& T_new_old) {
+    T_reference_last_ = T_new_old * T_reference_last_;
+    T_reference_assumed_ = T_new_old * T_reference_assumed_;
+    brightness_ = Brightness();
 }
 
-PosePrior MotionModel::prior(double timestamp, const Pose& T_world_keyframe) const {
+Prediction MotionModel::predict(double timestamp) const {
+    return {poseAt(timestamp),      T_reference_assumed_, prior(timestamp),
+            searchPrior(timestamp), shutter(timestamp),   brightness_};
+}
+
+Pose MotionModel::poseAt(double timestamp) const {
+    if (interval_ <= 0) return T_reference_last_;
+    const double elapsed = std::clamp(timestamp - last_timestamp_, 0.0, kLongestPrediction);
+    return T_reference_last_ * interpolate(Pose::Identity(), step_, elapsed / interval_);
+}
+
+PosePrior MotionModel::prior(double timestamp) const {
     const double dt = timestamp - last_timestamp_;
+    const auto sigma = [&](double acceleration, double speed, double last, double before) {
+        if (interval_ <= 0) return acceleration * dt * dt / 2 + speed * dt;
+        // A mean velocity is that of the middle of its interval: x(dt) - v dt = a dt (dt + interval) / 2
+        const double by_motion = acceleration * dt * (dt + interval_) / 2, share = dt / interval_;
+        return std::sqrt(by_motion * by_motion + (1 + share) * (1 + share) * last + share * share * before);
+    };
     PosePrior prior;
-    prior.mean = predict(timestamp).inverse() * T_world_keyframe;
-    prior.sigma_translation = motion_.acceleration * dt * dt / 2;
-    prior.sigma_rotation = motion_.angular_acceleration_deg * kDegree * dt * dt / 2;
-    if (velocity_dt_ <= 0) {
-        prior.sigma_translation += motion_.speed * dt;
-        prior.sigma_rotation += motion_.angular_speed_deg * kDegree * dt;
-    }
-    prior.sigma_translation = std::max(prior.sigma_translation, kLeastSigma);
-    prior.sigma_rotation = std::max(prior.sigma_rotation, kLeastSigma);
+    prior.mean = poseAt(timestamp).inverse();
+    prior.sigma_translation =
+        std::max(sigma(motion_.acceleration, motion_.speed, last_.position, before_.position), kLeastSigma);
+    prior.sigma_rotation =
+        std::max(sigma(motion_.angular_acceleration_deg * kDegree, motion_.angular_speed_deg * kDegree,
+                       last_.orientation, before_.orientation),
+                 kLeastSigma);
     return prior;
 }
 
-PosePrior MotionModel::searchPrior(double timestamp, const Pose& T_world_keyframe) const {
+PosePrior MotionModel::searchPrior(double timestamp) const {
     const double dt = timestamp - last_timestamp_;
-    return {T_world_last_.inverse() * T_world_keyframe, 0.1 + motion_.speed * dt, 20 * kDegree};
+    return {T_reference_last_.inverse(), 0.1 + motion_.speed * dt, 20 * kDegree};
 }
 
-RollingShutter MotionModel::shutter(double timestamp, const Pose& T_world_keyframe) const {
+RollingShutter MotionModel::shutter(double timestamp) const {
     RollingShutter shutter;
     shutter.seconds_per_row = secondsPerRow();
     shutter.reference_row = stillRows().reference_row;
     const double dt = timestamp - last_timestamp_;
     if (has_last_ && dt >= kShortestStep && dt <= kLongestStep) {
-        shutter.T_previous_keyframe = T_world_last_.inverse() * T_world_keyframe;
+        shutter.T_previous_keyframe = T_reference_last_.inverse();
         shutter.since_previous = dt;
-        if (velocity_dt_ >= kShortestStep && velocity_dt_ <= kLongestStep) {
-            const Eigen::AngleAxisd turn(velocity_.linear());
-            shutter.earlier_turn = turn.angle() / velocity_dt_ * turn.axis();
-            shutter.earlier_velocity =
-                velocity_.linear().transpose() * velocity_.translation() / velocity_dt_;
-            shutter.earlier_interval = velocity_dt_;
+        if (interval_ >= kShortestStep && interval_ <= kLongestStep) {
+            const Velocity earlier = velocityOf(step_, interval_);
+            shutter.earlier_turn = earlier.turn;
+            shutter.earlier_velocity = earlier.linear;
+            shutter.earlier_interval = interval_;
         }
     }
     return shutter;
+}
+
+RowMotion MotionModel::firstRows(double interval, const Pose& T_keyframe_next) const {
+    RowMotion rows = stillRows();
+    rows.seconds_per_row = secondsPerRow();
+    if (!(interval > 0 && interval <= kLongestStep)) return rows;
+    const Velocity velocity = velocityOf(T_keyframe_next, interval);
+    rows.turn = velocity.turn;
+    rows.velocity = T_keyframe_next.translation() / interval;
+    return rows;
 }
 
 RowMotion MotionModel::stillRows() const {

@@ -1,9 +1,9 @@
-#include "roevo/tracking/photometric.h"
+#include "tracking/photometric.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "roevo/tracking/robust.h"
+#include "tracking/robust.h"
 
 namespace roevo {
 namespace {
@@ -95,6 +95,7 @@ Eigen::Vector2f imageRotation(const Pose& T) {
 void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, const cv::Mat& image,
                                     const PinholeCamera& camera, const Pose& T, const RowMotion& rows,
                                     const Brightness& brightness) {
+    gain_ = static_cast<float>(brightness.gain);
     const std::size_t n = points.size(), padded = points.x.size();
     for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
     axis_x_.resize(n);
@@ -169,9 +170,12 @@ void PhotometricResiduals::accumulate(const PhotometricPoints& points, int level
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (weight_[i] == 0) continue;
         // From the aligned frame to the image: M = A G A^T, v = A g with A = [c -s; s c]
-        const float c = axis_x_[i], s = axis_y_[i], w = weight_[i] * scale;
-        const float g0 = patches[i].gram[0] * w, g1 = patches[i].gram[1] * w, g2 = patches[i].gram[2] * w;
-        const float r0 = residuals_[i].gradient_u * w, r1 = residuals_[i].gradient_v * w;
+        // The current image's slopes are `gain` times the reference's: so is the Jacobian
+        const float c = axis_x_[i], s = axis_y_[i], w = weight_[i] * scale, slopes = w * gain_,
+                    squares = slopes * gain_;
+        const float g0 = patches[i].gram[0] * squares, g1 = patches[i].gram[1] * squares,
+                    g2 = patches[i].gram[2] * squares;
+        const float r0 = residuals_[i].gradient_u * slopes, r1 = residuals_[i].gradient_v * slopes;
         const float m00 = c * c * g0 - 2 * c * s * g1 + s * s * g2;
         const float m01 = c * s * (g0 - g2) + (c * c - s * s) * g1;
         const float m11 = s * s * g0 + 2 * c * s * g1 + c * c * g2;
@@ -181,6 +185,28 @@ void PhotometricResiduals::accumulate(const PhotometricPoints& points, int level
         rows_.set(i, matrix, vector, x_[i], y_[i], z_[i]);
     }
     out = rows_.sum();
+}
+
+bool PhotometricTerm::linearise(const Linearisation& at, PoseSystem& system) {
+    residuals_.evaluate(points_, level_, image_, camera_, at.T_current_keyframe,
+                        at.rows.atPyramidLevel(level_), brightness_);
+    if (num_visible_ < 0) num_visible_ = residuals_.numVisible();
+    if (residuals_.numVisible() < needed_) return false;
+    double factor = weight_;
+    if (counted_) {
+        factor *= static_cast<double>(counted_()) /
+                  std::max<double>(1, residuals_.numVisible() * kernels::kPatchSize);
+    }
+    kernels::NormalEquations equations;
+    residuals_.accumulate(points_, level_, camera_, factor, equations);
+    system.add(equations);
+    return true;
+}
+
+void PhotometricTerm::keep() {
+    best_brightness_ = brightness_;
+    num_visible_ = residuals_.numVisible();
+    residual_ = residuals_.scale();
 }
 
 }  // namespace roevo

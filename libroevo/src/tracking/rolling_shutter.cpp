@@ -1,10 +1,16 @@
-#include "roevo/tracking/rolling_shutter.h"
+#include "tracking/rolling_shutter.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <cmath>
 
 namespace roevo {
+
+Velocity velocityOf(const Pose& T_begin_end, double seconds) {
+    const Eigen::AngleAxisd turn(T_begin_end.linear());
+    return {T_begin_end.linear().transpose() * T_begin_end.translation() / seconds,
+            turn.angle() / seconds * turn.axis()};
+}
 
 RowMotion RowMotion::atPyramidLevel(int level) const {
     const double scale = 1 << level;
@@ -30,10 +36,9 @@ RowMotion RollingShutter::motion(const Pose& T_current_keyframe) const {
     rows.seconds_per_row = seconds_per_row;
     if (since_previous <= 0) return rows;
     const Pose T_previous_current = T_previous_keyframe * T_current_keyframe.inverse();
-    const Eigen::AngleAxisd turn(T_previous_current.linear());
-    rows.turn = turn.angle() / since_previous * turn.axis();
-    rows.velocity =
-        T_previous_current.linear().transpose() * T_previous_current.translation() / since_previous;
+    const Velocity mean = velocityOf(T_previous_current, since_previous);
+    rows.turn = mean.turn;
+    rows.velocity = mean.linear;
     if (earlier_interval > 0) {
         // Means of two intervals, to the end of the last one
         const double ahead = since_previous / (since_previous + earlier_interval);
@@ -44,15 +49,16 @@ RowMotion RollingShutter::motion(const Pose& T_current_keyframe) const {
 }
 
 void ReadoutEstimator::add(const Matrix6d& pose_information, const Vector6d& mixed, double own,
-                           const Vector6d& pose_gradient, double own_gradient) {
+                           const Vector6d& pose_gradient, double own_gradient, double frames) {
     const Eigen::LDLT<Matrix6d> factor(pose_information);
     if (factor.info() != Eigen::Success || !factor.isPositive()) return;
     const Vector6d eliminated = factor.solve(mixed);
     const double information = own - mixed.dot(eliminated);
     const double gradient = own_gradient - eliminated.dot(pose_gradient);
     if (!(information > 0) || !std::isfinite(gradient)) return;
-    information_ = memory_ * information_ + information;
-    vector_ = memory_ * vector_ - gradient;
+    const double kept = std::pow(memory_, frames);
+    information_ = kept * information_ + information;
+    vector_ = kept * vector_ - gradient;
 }
 
 double ReadoutEstimator::worth(const Matrix6d& pose_information, const Vector6d& mixed, double own) const {

@@ -1,4 +1,4 @@
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 
 #include <Eigen/Geometry>
 
@@ -15,6 +15,11 @@ Pose poseIncrement(const Vector6d& xi) {
 
 double rotationAngle(const Pose& pose) {
     return Eigen::AngleAxisd(pose.linear()).angle();
+}
+
+double imageMotion(const Pose& a, const Pose& b, double focal_length, double depth) {
+    const Pose between = a.inverse() * b;
+    return focal_length * (rotationAngle(between) + between.translation().norm() / depth);
 }
 
 Pose interpolate(const Pose& a, const Pose& b, double share) {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/support/mapping_world.h"
-#include "roevo/mapping/bundle_adjustment.h"
+#include "mapping/bundle_adjustment.h"
 
 namespace roevo::testing {
 

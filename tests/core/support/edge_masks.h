@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "roevo/edges/canny.h"
-#include "roevo/edges/gradient.h"
+#include "edges/canny.h"
+#include "edges/gradient.h"
 
 namespace roevo::testing {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/support/random_pose.h"
-#include "roevo/mapping/edge_fusion.h"
-#include "roevo/tracking/kernels.h"
+#include "mapping/edge_fusion.h"
+#include "tracking/kernels.h"
 
 namespace roevo::testing {
 
@@ -124,7 +124,6 @@ inline TestKeyframe makeKeyframe(int id, const Pose& pose, const std::vector<Cur
             out.y.push_back(static_cast<float>(seen.y()));
             out.z.push_back(static_cast<float>(seen.z()));
             out.weight.push_back(1);
-            out.source.push_back(static_cast<std::int32_t>(out.source.size()) * 2);
             out.colours.push_back(
                 {static_cast<std::uint8_t>(sighting.curve), static_cast<std::uint8_t>(id), 0});
             made.parameter.push_back(s);
@@ -180,7 +179,7 @@ inline std::vector<std::vector<int>> clustersByCurve(const std::vector<TestKeyfr
 inline FusedEdges fuse(const std::vector<WindowKeyframe>& window,
                        const std::vector<std::vector<int>>& clusters) {
     FusedEdges edges;
-    EdgeFuser(mappingCamera().fx, SensorOptions().depth_noise).fuse(window, clusters, edges);
+    EdgeFuser(SensorOptions()).fuse(window, clusters, edges);
     return edges;
 }
 

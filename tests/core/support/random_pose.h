@@ -1,7 +1,7 @@
 #pragma once
 #include <random>
 
-#include "roevo/tracking/se3.h"
+#include "tracking/se3.h"
 
 namespace roevo::testing {
 

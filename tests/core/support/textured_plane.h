@@ -21,10 +21,13 @@ struct TexturedPlane {
         const Eigen::Vector3d ray = T_world_camera.linear() * camera.backProject(u, v, 1);
         return T_world_camera.translation() + (d - n.dot(T_world_camera.translation())) / n.dot(ray) * ray;
     }
-    cv::Mat grey(const PinholeCamera& camera, const Pose& T_world_camera) const {
+    /// @param gain, offset  of the grey levels, which are about 35 to 215 with none
+    cv::Mat grey(const PinholeCamera& camera, const Pose& T_world_camera, double gain = 1,
+                 double offset = 0) const {
         return renderGrey(
             camera.width, camera.height,
-            [&](double x, double y) { return texture(hit(camera, T_world_camera, x, y)); }, 2);
+            [&](double x, double y) { return gain * texture(hit(camera, T_world_camera, x, y)) + offset; },
+            2);
     }
     double depth(const PinholeCamera& camera, const Pose& T_world_camera, double u, double v) const {
         return (T_world_camera.inverse() * hit(camera, T_world_camera, u, v)).z();

@@ -21,6 +21,10 @@ struct PinholeCamera {
     /// centres are at integers, cx' = (cx + 0.5) / 2^level - 0.5; width and height are halved and floored.
     PinholeCamera atPyramidLevel(int level) const;
 
+    /// Pixels of this camera that see what one pixel of a 640x480 Kinect does (f = 525 px): what is given in
+    /// pixels is meant for that one.
+    double pixelScale() const { return fx / 525; }
+
     /// Ideal projection of a camera-frame point (z > 0), metres to pixels; distortion is not applied.
     Eigen::Vector2d project(const Eigen::Vector3d& point) const {
         return {fx * point.x() / point.z() + cx, fy * point.y() / point.z() + cy};

@@ -1,6 +1,6 @@
 #include <immintrin.h>
 
-#include "roevo/tracking/kernels.h"
+#include "tracking/kernels.h"
 
 namespace roevo::kernels {
 namespace {

@@ -1,4 +1,4 @@
-#include "roevo/tracking/kernels.h"
+#include "tracking/kernels.h"
 
 namespace roevo::kernels {
 namespace {

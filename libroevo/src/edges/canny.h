@@ -1,0 +1,28 @@
+#pragma once
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "edges/gradient.h"
+
+namespace roevo {
+
+/// Edge mask and the linear indices (y * width + x) of its pixels in raster order. Reusable buffers.
+struct EdgeMask {
+    cv::Mat mask;  ///< CV_8UC1: 1 on an edge, 0 elsewhere; the outermost kBorder pixels are always 0
+    std::vector<std::int32_t> pixels;
+
+    static constexpr int kBorder =
+        4;  ///< px without edges, so that patches and neighbours never leave the image
+};
+
+/// Canny's non-maximum suppression and hysteresis (8 neighbours) on a gradient. Linear in the number of
+/// pixels.
+/// @param low, high  thresholds on the gradient magnitude, Sobel units, low <= high
+void canny(const Gradient& gradient, double low, double high, EdgeMask& out);
+
+/// Sub-pixel offset (pixels, along x and y) from an edge pixel to the ridge of the gradient magnitude: the
+/// vertex of the parabola through the magnitudes before, at and after the pixel along the gradient.
+cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y);
+
+}  // namespace roevo

@@ -1,0 +1,76 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "edges/organized_edges.h"
+
+namespace roevo {
+
+/// Pixel-index grid over the points of organized edges: which point, if any, lies in a pixel. Building it is
+/// linear; a radius search looks at one word of occupancy bits per row and then only at the pixels that hold
+/// a point.
+class EdgeGrid {
+  public:
+    void build(const OrganizedEdges& edges, int width, int height);
+
+    /// Nearest point to (u, v) within `radius` (at most kMaxRadius) pixels that `accept(index)` agrees to, or
+    /// -1. (u, v) may lie outside the image.
+    template <class Accept>
+    int nearest(float u, float v, float radius, Accept&& accept) const;
+
+    static constexpr int kMaxRadius = 30;  ///< px
+
+  private:
+    static constexpr int kPadding = 64;  ///< px of empty occupancy left and right of a row
+    std::size_t bitIndex(int x, int y) const {
+        return static_cast<std::size_t>(y) * row_bits_ + static_cast<std::size_t>(x + kPadding);
+    }
+    /// `count` (< 64) occupancy bits of row y from x on, the first in the lowest bit.
+    std::uint64_t occupancy(int x, int y, int count) const {
+        const std::size_t first = bitIndex(x, y), shift = first % 64;
+        const std::uint64_t low = bits_[first / 64] >> shift;
+        const std::uint64_t high = shift == 0 ? 0 : bits_[first / 64 + 1] << (64 - shift);
+        return (low | high) & ((std::uint64_t{1} << count) - 1);
+    }
+
+    int width_ = 0, height_ = 0;
+    std::size_t row_bits_ = 0;
+    std::vector<std::int32_t> cell_;  ///< point index where the occupancy bit is set
+    std::vector<std::uint64_t> bits_;
+    const OrganizedEdges* edges_ = nullptr;
+};
+
+template <class Accept>
+int EdgeGrid::nearest(float u, float v, float radius, Accept&& accept) const {
+    constexpr float kFar = kMaxRadius + 1;  // from here on nothing of the image is in reach
+    if (!(u > -kFar && v > -kFar && u < static_cast<float>(width_) + kFar &&
+          v < static_cast<float>(height_) + kFar)) {
+        return -1;
+    }
+    const int cu = static_cast<int>(std::lround(u)), cv = static_cast<int>(std::lround(v));
+    // Points are within half a pixel of their cell's centre, the query within half a pixel of its own
+    const int reach = std::min(static_cast<int>(std::ceil(radius)), kMaxRadius) + 1;
+    int best = -1;
+    float best_squared = radius * radius;
+    for (int step = 0; step <= 2 * reach; ++step) {  // rows 0, -1, +1, -2, +2 ...
+        const int dy = (step & 1) != 0 ? -(step + 1) / 2 : step / 2;
+        const auto gap = static_cast<float>(std::max(0, std::abs(dy) - 1));
+        if (gap * gap >= best_squared) break;
+        const int y = cv + dy;
+        if (y < 0 || y >= height_) continue;
+        for (std::uint64_t row = occupancy(cu - reach, y, 2 * reach + 1); row != 0; row &= row - 1) {
+            const int x = cu - reach + __builtin_ctzll(row);
+            const auto i = static_cast<std::size_t>(cell_[static_cast<std::size_t>(y * width_ + x)]);
+            const float dx = edges_->x[i] - u, dv = edges_->y[i] - v;
+            const float squared = dx * dx + dv * dv;
+            if (squared >= best_squared || !accept(i)) continue;
+            best = static_cast<int>(i);
+            best_squared = squared;
+        }
+    }
+    return best;
+}
+
+}  // namespace roevo

@@ -1,0 +1,67 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "edges/organized_edges.h"
+
+namespace roevo {
+
+/// Corrects the depths of an edge's points by the surfaces on its two sides. A patch around an edge lies on
+/// both, and a plane through it misses the edge: by half the step where a frame stands out from a wall by
+/// less than the noise lets a single patch tell, by the bend's depth at the edge of a box. The points before
+/// and after on the same edge see the same two surfaces, and together they can tell: on each side a line is
+/// fitted to the inverse depths along the normals and continued to the edge. Where the two ends meet, the
+/// edge is there; where they differ by more than they err, it belongs to the nearer side. Where one side is
+/// mostly background, only the other one counts: sensors smear what is near over the border, with depths from
+/// further inside, and a surface that recedes towards its border came out too near. One side alone is also
+/// followed further, where the longer line agrees with the shorter one.
+class EdgeSides {
+  public:
+    /// @param edges   with normals
+    /// @param first   the edge's first point
+    /// @param pixels  of the edge's points in `depth`, px; a lens that distorts hardly turns normals
+    /// @param depth   CV_32FC1, m, 0 where unknown
+    /// @param jump    relative step of depth beyond which is what the edge does not belong to
+    /// @param scale   PinholeCamera::pixelScale()
+    /// @param z       depths of the points, m, 0 where unknown (those stay); corrected in place
+    void correct(const OrganizedEdges& edges, std::size_t first, const std::vector<Eigen::Vector2d>& pixels,
+                 const cv::Mat& depth, float jump, double scale, std::vector<float>& z);
+
+  private:
+    /// Of samples (distance from the edge, px; inverse depth relative to the edge point's, minus 1).
+    struct Sums {
+        double count = 0, s = 0, q = 0, ss = 0, sq = 0, qq = 0;
+        void add(double distance, double value, double weight);
+        Sums operator-(const Sums& other) const;
+    };
+    /// What the normals of an edge's points pass on one side.
+    struct Side {
+        Sums close;         ///< samples of the edge's own surfaces
+        Sums wide;          ///< further ones too, where the other side is background
+        double seen = 0;    ///< weight of all close samples, on whatever surface
+        double behind = 0;  ///< of those of them that are background
+        Side operator-(const Side& other) const;
+        bool isBackground(double least) const;  ///< by samples of at least so much weight
+    };
+    struct Strip {
+        Side plus, minus;  ///< along the normal, and against it
+        Strip operator-(const Strip& other) const { return {plus - other.plus, minus - other.minus}; }
+    };
+    /// Where a side's line meets the edge, and the variance of that.
+    struct Meeting {
+        bool known = false;
+        double value = 0, variance = 0;
+    };
+    static void sample(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, float z,
+                       const cv::Mat& depth, float jump, double scale, Strip& sums);
+    static Meeting fit(const Sums& sums);
+    static double correction(const Meeting& plus, const Meeting& minus);
+    static double correction(const Side& only);
+    static double correction(const Strip& strip);
+
+    std::vector<Strip> strips_;  ///< of all points before a point
+};
+
+}  // namespace roevo

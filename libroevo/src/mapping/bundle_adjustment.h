@@ -1,0 +1,52 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "mapping/edge_fusion.h"
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/options.h"
+
+namespace roevo {
+
+/// What is known of a keyframe's pose relative to another's besides the edges: it decides in directions that
+/// the edges hardly see.
+struct RelativePrior {
+    int from = 0, to = 0;  ///< window slots
+    Pose T_from_to = Pose::Identity();
+    Matrix6d information = Matrix6d::Zero();  ///< of the perturbation (t, phi) of T_world_to, world axes
+};
+
+struct RefinementResult {
+    int iterations = 0;
+    double last_step = 0;      ///< largest change of a pose in the last iteration, px of image motion
+    double scale = 0;          ///< robust spread of the point-to-tangent residuals, px
+    std::vector<int> inliers;  ///< of each window keyframe
+};
+
+class WindowEquations;
+
+/// Bundle adjustment over a window (Eqs. (17)-(19)). Both ways alternate edge fitting and pose optimisation:
+/// - alternating: each pose is registered to the fused edges as they are (the paper's Eq. (19));
+/// - joint: the poses move together, with the fused points eliminated (Schur complement), which converges in
+///   fewer rounds.
+class BundleAdjuster {
+  public:
+    BundleAdjuster(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera);
+    ~BundleAdjuster();
+    BundleAdjuster(BundleAdjuster&&) noexcept;
+    BundleAdjuster& operator=(BundleAdjuster&&) noexcept;
+
+    /// Moves the poses of the window (those not fixed) and the points of `edges`, for at most `iterations`.
+    /// @param first_scale  least spread (px) that the first iteration allows; halved in each that follows
+    RefinementResult refine(std::vector<WindowKeyframe>& window, FusedEdges& edges,
+                            const std::vector<RelativePrior>& priors, int iterations, double first_scale = 0);
+
+  private:
+    /// The largest motion, px.
+    double move(std::vector<WindowKeyframe>& window, const Eigen::VectorXd& step) const;
+
+    double focal_length_;
+    std::unique_ptr<WindowEquations> equations_;
+};
+
+}  // namespace roevo

@@ -1,0 +1,54 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "mapping/disjoint_set.h"
+#include "mapping/map_keyframe.h"
+#include "tracking/edge_association.h"
+
+namespace roevo {
+
+/// Which edges of keyframes show the same edge of the world (Sec. VI-A, Algorithms 1 and 2). The graph keeps
+/// the associations; clusters of any set of keyframes are the disjoint sets of the associations among them,
+/// so that a keyframe that leaves takes all that refers to it along.
+class CovisibilityGraph {
+  public:
+    /// @param span  points before and after that tangents are taken between
+    CovisibilityGraph(const FineOptions& fine, int span);
+
+    /// Inserts a keyframe: associates its edges with those of `others`, in that order (the newest first); an
+    /// edge once associated is not associated again, and one that finds several fragments joins them. May be
+    /// called again with keyframes of another time: they are related on their own.
+    void insert(const MapKeyframe& current, const std::vector<const MapKeyframe*>& others,
+                const PinholeCamera& camera, double radius);
+    void remove(int keyframe);
+
+    /// Points of `a`'s edges that were associated with `b`, where a is the newer; 0 when unknown.
+    int sharedPoints(int a, int b) const;
+
+    /// For every edge of `keyframes`, the index of its cluster, counted from 0 in the order of first
+    /// appearance.
+    std::vector<std::vector<int>> clusters(const std::vector<const MapKeyframe*>& keyframes) const;
+
+  private:
+    /// Maps keep them for ever: images have fewer than 65,536 edges.
+    struct Link {
+        std::uint16_t edge = 0, other_edge = 0;
+        std::uint16_t points = 0;  ///< at most 65,535
+    };
+    struct Links {
+        int other = 0;  ///< keyframe
+        std::vector<Link> links;
+    };
+
+    FineOptions options_;
+    EdgeAssociator associator_;
+    int span_;
+    std::map<int, std::vector<Links>> links_;  // by the newer keyframe
+    EdgeGrid grid_;
+    EdgeMatches matches_;
+    std::vector<float> x_, y_, z_, u_, v_;
+};
+
+}  // namespace roevo

@@ -1,0 +1,80 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "mapping/bundle_adjustment.h"
+#include "mapping/covisibility.h"
+#include "mapping/edge_fusion.h"
+#include "mapping/packed_keyframe.h"
+#include "mapping/pseudo_edges.h"
+
+namespace roevo {
+
+/// What mapping found when a keyframe was inserted.
+struct MapUpdate {
+    int keyframe = 0;                         ///< the inserted one
+    std::vector<std::pair<int, Pose>> poses;  ///< T_world_camera of all keyframes that were refined
+    std::vector<EdgeVerdict> verdicts;  ///< of the inserted keyframe's edges; empty while it is the only one
+    int reused = 0;                     ///< old keyframes that took part
+    RefinementResult refinement;
+    std::vector<MapRefusal> refusals;
+    double milliseconds = 0;  ///< of work on it
+};
+
+/// Local mapping: keeps the keyframes, relates the edges of a new one to those of its neighbours, fuses them
+/// and refines the poses of the window. No threads, no clocks: the same keyframes give the same map.
+class LocalMapper {
+  public:
+    LocalMapper(const PinholeCamera& camera, const OdometryOptions& options);
+
+    MapUpdate insert(MapKeyframe keyframe);
+
+    /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
+    void setFound(int keyframe, std::vector<float> shares);
+
+    /// How a keyframe's rows moved, where that was not known when it was inserted; before the next insert().
+    void setRowMotion(int keyframe, const RowMotion& rows);
+    /// Read-out time that all keyframes are brought to as they take part.
+    void setReadout(double seconds_per_row) { seconds_per_row_ = seconds_per_row; }
+
+    /// All of them at their present poses; points only of the newest, which the next window begins with.
+    const std::map<int, MapKeyframe>& keyframes() const { return keyframes_; }
+
+    /// All keyframes' edges fused at the present poses.
+    EdgeMap fusedMap() const;
+    /// The edges of each keyframe as it saw them, with the cluster that they belong to.
+    EdgeMap keyframeEdges() const;
+
+  private:
+    std::vector<const MapKeyframe*> recentOf(int id) const;
+    void unpack(int id);
+    bool bringToReadout(MapKeyframe& keyframe) const;
+    void prepare(const std::vector<const MapKeyframe*>& members);
+    void leaveWindow(MapKeyframe& newest);
+    std::map<int, MapKeyframe> unpacked() const;
+    std::vector<const MapKeyframe*> nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const;
+    void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
+    void takePoses(MapUpdate& update);
+    std::optional<MapRefusal> refusalOf(const WindowKeyframe& view, int inliers) const;
+    void addPriors();
+    void keepVerdicts();
+
+    PinholeCamera camera_;
+    OdometryOptions options_;
+    CovisibilityGraph graph_;
+    EdgeFuser fuser_;
+    BundleAdjuster adjuster_;
+    PseudoEdgeJudge judge_;
+    std::map<int, MapKeyframe> keyframes_;
+    std::map<int, PackedKeyframe> packed_;  ///< the points of those that have left the window once
+    double seconds_per_row_ = 0;            ///< see setReadout()
+    int track_begin_ = 0;                   ///< first keyframe of the present track
+    std::map<int, std::vector<EdgeVerdict>> verdicts_;  ///< of each keyframe's edges
+    std::vector<WindowKeyframe> window_;
+    std::vector<RelativePrior> priors_;
+    FusedEdges fused_;
+};
+
+}  // namespace roevo

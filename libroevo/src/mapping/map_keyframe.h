@@ -1,0 +1,53 @@
+#pragma once
+#include <vector>
+
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/edge_map.h"
+#include "tracking/keyframe.h"
+
+namespace roevo {
+
+/// What the map keeps of a keyframe: its edges with every n-th point, all moved to one moment of a rolling
+/// shutter.
+struct MapKeyframe {
+    int id = 0;
+    double timestamp = 0;
+    Pose T_world_camera = Pose::Identity();
+    int parent = -1;  ///< keyframe that it was tracked from, -1: none (the first, or re-anchored)
+    Pose T_parent_camera = Pose::Identity();  ///< as tracked
+    /// The first, or re-anchored after a loss: where it is relative to older ones is a guess, so that the map
+    /// relates it and those that follow to none of them.
+    bool begins_track = false;
+    Matrix6d parent_information =
+        Matrix6d::Zero();        ///< of T_parent_camera: position, then orientation, along the camera's axes
+    OrganizedEdges image;        ///< where the points would be seen at the reference row's time, ideal px
+    std::vector<float> x, y, z;  ///< camera frame, m; padded for the kernels
+    std::vector<float> weight;   ///< w_s(depth), Eq. (20)
+    std::vector<float>
+        slope;  ///< change of depth along the edge, in the direction (-normal_y, normal_x), m/px
+    std::vector<Rgb> colours;  ///< of each point
+    std::vector<float> found;  ///< of each edge: share of the frames after it that found it; < 0: not known
+    double median_depth = 0;   ///< m
+    RowMotion row_motion;      ///< that the points were moved with
+
+    std::size_t size() const { return image.size(); }
+    Eigen::Vector3d point(std::size_t i) const {
+        return {static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
+    }
+};
+
+/// Fills slope: a line through the depths of the points up to 4 places before and after.
+void computeSlopes(MapKeyframe& keyframe);
+
+/// Moves the points to where they are with another motion of the rows.
+void setRowMotion(MapKeyframe& keyframe, const RowMotion& rows, const PinholeCamera& camera);
+
+/// Drops what only a new keyframe needs: image gradients.
+void compact(MapKeyframe& keyframe);
+
+/// @param colours  one per point of the keyframe's edges
+/// @param max_points  points are thinned evenly along the edges until there are no more than these
+MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,
+                          const PinholeCamera& camera, int max_points);
+
+}  // namespace roevo

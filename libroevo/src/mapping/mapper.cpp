@@ -1,0 +1,200 @@
+#include "mapping/mapper.h"
+
+#include <Eigen/LU>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "stopwatch.h"
+
+namespace roevo {
+namespace {
+
+constexpr std::size_t kMostWaiting = 8;  ///< keyframes that wait to be mapped
+
+/// The colours of all points, edge after edge.
+std::vector<Rgb> coloursOf(const EdgeMap& edges) {
+    std::vector<Rgb> colours;
+    for (const MapEdge& edge : edges) colours.insert(colours.end(), edge.colours.begin(), edge.colours.end());
+    return colours;
+}
+
+/// The keyframes' own edges, where tracking saw them.
+class CollectingMapper : public Mapper {
+  public:
+    void insert(NewKeyframe fresh, double) override {
+        const Eigen::Isometry3f T = fresh.T_world_camera.cast<float>();
+        for (MapEdge& edge : fresh.edges) {
+            for (Eigen::Vector3f& point : edge.points) point = T * point;
+            edge.cluster = static_cast<int>(map_.size());
+            map_.push_back(std::move(edge));
+        }
+    }
+    std::vector<MapUpdate> due(double, double&) override { return {}; }
+    const std::deque<MapUpdate>& outstanding() override { return none_; }
+    EdgeMap fusedMap() const override { return map_; }
+    EdgeMap keyframeEdges() const override { return map_; }
+
+  private:
+    EdgeMap map_;
+    std::deque<MapUpdate> none_;
+};
+
+/// Runs a LocalMapper beside the tracker. Keyframes are mapped in the order of insertion, one at a time, so
+/// that the results do not depend on threads. All functions are for one caller's thread.
+class RefiningMapper : public Mapper {
+  public:
+    RefiningMapper(const PinholeCamera& camera, const OdometryOptions& options)
+        : camera_(camera), options_(options.mapping), mapper_(camera, options), worker_([this] { work(); }) {}
+    ~RefiningMapper() override {
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            stop_ = true;
+        }
+        changed_.notify_all();
+        worker_.join();
+    }
+
+    void insert(NewKeyframe fresh, double timestamp) override;
+    std::vector<MapUpdate> due(double timestamp, double& waited_ms) override;
+    const std::deque<MapUpdate>& outstanding() override;
+    EdgeMap fusedMap() const override { return finished().fusedMap(); }
+    EdgeMap keyframeEdges() const override { return finished().keyframeEdges(); }
+
+  private:
+    struct Job {
+        MapKeyframe keyframe;
+        int previous = -1;
+        std::vector<float> found;  ///< MapKeyframe::found of `previous`
+        RowMotion previous_rows;
+        double seconds_per_row = 0;
+    };
+    void work();
+    MapUpdate run(Job job);
+    MapUpdate take();
+    bool ready() const;
+    const LocalMapper& finished() const;
+
+    PinholeCamera camera_;
+    MappingOptions options_;
+    std::deque<double> due_;       // times from which on the updates take effect, s, in order
+    std::deque<MapUpdate> taken_;  // updates that were taken ahead of their time
+
+    LocalMapper mapper_;  // touched by the worker only, or by the caller while the worker is idle
+    mutable std::mutex mutex_;
+    mutable std::condition_variable changed_;
+    std::deque<Job> jobs_;
+    std::deque<MapUpdate> updates_;
+    std::exception_ptr failure_;
+    bool busy_ = false, stop_ = false;
+    std::thread worker_;  // last: starts when all else is there
+};
+
+void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
+    Job job;
+    job.keyframe = toMapKeyframe(fresh.keyframe, coloursOf(fresh.edges), camera_, options_.max_points);
+    job.keyframe.T_world_camera = fresh.T_world_camera;
+    job.keyframe.parent = fresh.tracked.keyframe;
+    job.keyframe.begins_track = fresh.tracked.keyframe < 0;
+    job.keyframe.T_parent_camera = fresh.tracked.T_keyframe_camera;
+    if (!job.keyframe.begins_track) job.keyframe.parent_information = fresh.tracked.covariance.inverse();
+    if (fresh.previous != nullptr) {
+        job.previous = fresh.previous->id;
+        job.found = fresh.previous->foundShares();
+        job.previous_rows = fresh.previous->row_motion;
+    }
+    job.seconds_per_row = fresh.seconds_per_row;
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [&] { return jobs_.size() < kMostWaiting; });
+    jobs_.push_back(std::move(job));
+    due_.push_back(timestamp + (options_.latency - 0.5) / kFrameRate);
+    changed_.notify_all();
+}
+
+std::vector<MapUpdate> RefiningMapper::due(double timestamp, double& waited_ms) {
+    std::vector<MapUpdate> updates;
+    while (!due_.empty()) {
+        if (options_.deterministic ? due_.front() > timestamp : taken_.empty() && !ready()) break;
+        if (taken_.empty()) {
+            const Stopwatch watch;
+            taken_.push_back(take());
+            waited_ms += watch.milliseconds();
+        }
+        due_.pop_front();
+        updates.push_back(std::move(taken_.front()));
+        taken_.pop_front();
+    }
+    return updates;
+}
+
+const std::deque<MapUpdate>& RefiningMapper::outstanding() {
+    while (taken_.size() < due_.size()) taken_.push_back(take());
+    return taken_;
+}
+
+MapUpdate RefiningMapper::run(Job job) {
+    const Stopwatch watch;
+    if (job.previous >= 0) {
+        mapper_.setFound(job.previous, std::move(job.found));
+        mapper_.setRowMotion(job.previous, job.previous_rows);
+    }
+    mapper_.setReadout(job.seconds_per_row);
+    MapUpdate update = mapper_.insert(std::move(job.keyframe));
+    update.milliseconds = watch.milliseconds();
+    return update;
+}
+
+void RefiningMapper::work() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [&] { return stop_ || !jobs_.empty(); });
+        if (stop_) return;
+        Job job = std::move(jobs_.front());
+        jobs_.pop_front();
+        busy_ = true;
+        lock.unlock();
+        MapUpdate update;
+        std::exception_ptr thrown;
+        try {
+            update = run(std::move(job));
+        } catch (...) {
+            thrown = std::current_exception();
+        }
+        lock.lock();
+        busy_ = false;
+        if (thrown) failure_ = thrown;
+        updates_.push_back(std::move(update));
+        changed_.notify_all();
+    }
+}
+
+bool RefiningMapper::ready() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return !updates_.empty();
+}
+
+MapUpdate RefiningMapper::take() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [&] { return !updates_.empty(); });
+    if (failure_) std::rethrow_exception(failure_);
+    MapUpdate update = std::move(updates_.front());
+    updates_.pop_front();
+    return update;
+}
+
+const LocalMapper& RefiningMapper::finished() const {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [&] { return jobs_.empty() && !busy_; });
+    if (failure_) std::rethrow_exception(failure_);
+    return mapper_;
+}
+
+}  // namespace
+
+std::unique_ptr<Mapper> makeMapper(const PinholeCamera& camera, const OdometryOptions& options) {
+    if (options.mode == Mode::kBundleAdjustment) return std::make_unique<RefiningMapper>(camera, options);
+    return std::make_unique<CollectingMapper>();
+}
+
+}  // namespace roevo

@@ -1,0 +1,59 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "mapping/edge_fusion.h"
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/options.h"
+
+namespace roevo {
+
+class PointBuckets;
+
+/// Recognises pseudo-edges: cast shadows that move, reflections, occlusion borders.
+class PseudoEdgeJudge {
+  public:
+    PseudoEdgeJudge(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera);
+    ~PseudoEdgeJudge();
+
+    /// Gives every edge its verdict: by the spread of its observations (instead of Eq. (16)'s largest
+    /// eigenvalue, which the depth noise of the sensor dominates, across the edge in the images), and by
+    /// keyframes and frames that look at its place and do not see it.
+    /// @param scale  robust spread of point-to-tangent residuals, px
+    void judge(const std::vector<WindowKeyframe>& window, FusedEdges& edges, double scale);
+
+  private:
+    double spreadOf(const std::vector<WindowKeyframe>& window, const FusedEdges& edges, std::size_t p) const;
+    /// Keyframes that look at the place of an edge, those of them that observe it, and those that do not.
+    struct Looks {
+        int looked = 0, seen = 0;
+        std::vector<int> missed;
+    };
+    struct Suspect {
+        std::size_t edge = 0;
+        Looks looks;
+        double found = 0;
+        std::size_t asked = 0;  ///< of looks.missed, whose images were asked
+    };
+
+    Looks countLooks(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
+                     std::size_t edge) const;
+    /// Whether a keyframe's image has an edge in the place of a fused one, associated or not.
+    bool isInImage(std::size_t slot, const OrganizedEdges& image, const FusedEdges& edges,
+                   std::size_t edge) const;
+    bool isVanishing(const Looks& looks, double found) const;
+    /// Whether a point is in a keyframe's image, and where.
+    bool project(std::size_t slot, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const;
+    /// Share of the frames after a keyframe that found an edge, mean over its keyframes; < 0: not known.
+    double foundShare(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
+                      std::size_t edge) const;
+
+    MappingOptions options_;
+    SensorOptions sensor_;
+    PinholeCamera camera_;
+    std::vector<Pose> T_camera_world_;  ///< of the window
+    std::vector<Suspect> suspects_;
+    std::unique_ptr<PointBuckets> buckets_;
+};
+
+}  // namespace roevo

@@ -1,0 +1,26 @@
+#pragma once
+#include "camera/undistorter.h"
+#include "edges/edge_extractor.h"
+#include "roevo/options.h"
+#include "tracking/frame.h"
+
+namespace roevo {
+
+/// From an image pair to organized edges (Sec. IV).
+class FrontEnd {
+  public:
+    /// @param camera  with its lens
+    FrontEnd(const PinholeCamera& camera, const OdometryOptions& options)
+        : undistorter_(camera), extractor_(options.edges), levels_(options.coarse.levels) {}
+
+    /// @param out  its buffers are used again
+    void process(const RgbdFrame& images, Frame& out);
+
+  private:
+    Undistorter undistorter_;
+    EdgeExtractor extractor_;
+    int levels_;
+    double last_timestamp_ = 0;  ///< s
+};
+
+}  // namespace roevo

@@ -1,0 +1,22 @@
+#pragma once
+#include "roevo/frame_result.h"
+#include "tracking/tracker.h"
+
+namespace roevo {
+
+/// What became of a frame, in values.
+struct Outcome {
+    FrameStatus status = FrameStatus::kOk;
+    Tracking tracking;          ///< its pose is relative to the present reference
+    Fault no_keyframe;          ///< why a keyframe that is due was not made
+    bool new_keyframe = false;  ///< this frame brought a new keyframe: itself or the frame before it
+    int lost_frames = 0;        ///< until this one
+};
+
+/// The reason of a frame's status in words: the one place where they are made.
+std::string describe(const Outcome& outcome);
+
+/// A frame that is not processed.
+FrameResult rejected(double timestamp, const Fault& fault, const char* where = "");
+
+}  // namespace roevo

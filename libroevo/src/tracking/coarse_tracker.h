@@ -1,0 +1,42 @@
+#pragma once
+#include <vector>
+
+#include "tracking/gauss_newton.h"
+#include "tracking/keyframe.h"
+
+namespace roevo {
+
+struct CoarseResult {
+    bool converged = false;
+    Pose T_current_keyframe = Pose::Identity();
+    Brightness brightness;
+    int num_visible = 0;
+    double residual = 0;  ///< median patch residual, grey levels
+    PoseSystem system;    ///< at the last pose, finest level, unit weights = 1 / residual variance
+};
+
+/// Photometric alignment of the keyframe's edge patches over an image pyramid, Eqs. (2), (3).
+class CoarseTracker {
+  public:
+    explicit CoarseTracker(const CoarseOptions& options) : options_(options) {}
+
+    /// @param camera   ideal camera of level 0
+    /// @param guesses  start poses T_current_keyframe, the most trusted first; the best after the coarsest
+    /// level goes on
+    CoarseResult track(const Keyframe& keyframe, const ImagePyramid& pyramid, const PinholeCamera& camera,
+                       const RollingShutter& shutter, const std::vector<Pose>& guesses,
+                       const Brightness& start);
+
+  private:
+    /// Indices of the guesses worth aligning.
+    std::vector<std::size_t> mostSimilar(const Keyframe& keyframe, const cv::Mat& image, int level,
+                                         const PinholeCamera& camera, const std::vector<Pose>& guesses,
+                                         const Brightness& brightness);
+    double alignLevel(const Keyframe& keyframe, const cv::Mat& image, int level, const PinholeCamera& camera,
+                      const RollingShutter& shutter, CoarseResult& state);
+
+    CoarseOptions options_;
+    PhotometricResiduals residuals_;
+};
+
+}  // namespace roevo

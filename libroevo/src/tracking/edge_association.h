@@ -1,0 +1,50 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "edges/edge_grid.h"
+#include "edges/organized_edges.h"
+#include "roevo/options.h"
+
+namespace roevo {
+
+/// Pairs of associated points, and how much of the reference was found again.
+struct EdgeMatches {
+    std::vector<std::int32_t> reference, current;  ///< point indices of the pairs, in the reference's order
+    std::vector<std::int32_t> visible;  ///< of each reference edge: looked-up points inside the image
+    int visible_points = 0;             ///< looked-up reference points inside the image
+    int matched_extent = 0;             ///< of them, those of matched edges
+
+    std::size_t size() const { return reference.size(); }
+    /// Share of the reference's edges that are associated, each edge counting by its visible length.
+    double matchedRatio() const {
+        return visible_points > 0 ? static_cast<double>(matched_extent) / visible_points : 0;
+    }
+};
+
+/// Edge-wise association (Sec. V-C): nearest point within a radius whose normal agrees with the reprojected
+/// edge's normal, then a vote of the points of an edge on pairs of edges; one edge may be associated with
+/// several fragments.
+class EdgeAssociator {
+  public:
+    explicit EdgeAssociator(const FineOptions& options) : options_(options) {}
+
+    /// @param reference  reference edges (spans and gradients)
+    /// @param u, v       their reprojected points, px; outside the image where not visible
+    /// @param turn       cosine and sine of the rotation that carries reference gradients into the current
+    /// image
+    /// @param span       points before and after that the tangent of a reprojected point is taken between
+    void associate(const OrganizedEdges& reference, const float* u, const float* v,
+                   const Eigen::Vector2f& turn, int span, const OrganizedEdges& current, const EdgeGrid& grid,
+                   int width, int height, double radius, EdgeMatches& out);
+
+  private:
+    void vote(const OrganizedEdges& reference, const OrganizedEdges& current, EdgeMatches& matches);
+
+    FineOptions options_;
+    std::vector<std::int32_t> votes_, touched_;
+    int stride_ = 1;  ///< one point in so many of a reference edge is looked up
+};
+
+}  // namespace roevo

@@ -1,0 +1,237 @@
+#include "tracking/edge_term.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "edges/edge_depth.h"
+#include "tracking/motion_blur.h"
+#include "tracking/robust.h"
+#include "tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+/// Once the search radius is the final one, points keep what they were associated with until the image has
+/// moved so far since, px: what they would be associated with instead lies on the same edge next to it.
+constexpr double kKeptMotion = 0.1;
+constexpr double kNarrowing = 4;  ///< iterations in which the radius narrows down
+constexpr float kUnknown = -1;    ///< depth not looked up yet
+
+}  // namespace
+
+EdgeTerm::EdgeTerm(const PinholeCamera& camera, const OdometryOptions& options)
+    : camera_(camera),
+      ideal_(camera.undistorted()),
+      options_(options.fine),
+      edge_options_(options.edges),
+      sensor_(options.sensor),
+      associator_(options.fine) {}
+
+void EdgeTerm::start(const Keyframe& keyframe, const Frame& frame) {
+    keyframe_ = &keyframe;
+    frame_ = &frame;
+    narrowing_ = true;
+    free_readout_ = has_associated_ = false;
+    current_depth_.assign(frame.edges.size(), kUnknown);
+}
+
+void EdgeTerm::startFine(const Keyframe& keyframe, const Frame& frame, bool free_readout) {
+    start(keyframe, frame);
+    narrowing_ = false;
+    free_readout_ = free_readout;
+}
+
+int EdgeTerm::narrowed() const {
+    return static_cast<int>(std::clamp(options_.max_iterations - 1.0, 1.0, kNarrowing));
+}
+
+bool EdgeTerm::linearise(const Linearisation& at, PoseSystem& system) {
+    const double share = narrowing_ ? std::min(1.0, static_cast<double>(at.iteration) / narrowed()) : 1;
+    const double radius = options_.search_radius + share * (options_.final_radius - options_.search_radius);
+    project(at.T_current_keyframe, at.rows);
+    const double moved = has_associated_ ? imageMotion(T_associated_, at.T_current_keyframe, ideal_.fx,
+                                                       keyframe_->typicalDepth())
+                                         : 0;
+    if (!has_associated_ || moved > kKeptMotion || free_readout_) {
+        associateProjected(at.T_current_keyframe, radius);
+        has_associated_ = share >= 1;
+        T_associated_ = at.T_current_keyframe;
+    }
+    if (static_cast<int>(matches_.size()) < options_.min_inliers) return false;
+    tangentResiduals(at.rows);
+    weigh();
+    if (free_readout_) {
+        if (inliers_ < options_.min_inliers) return false;
+        accumulateReadout(at, system);
+        return true;
+    }
+    depthResiduals();
+    accumulate(system);
+    return true;
+}
+
+void EdgeTerm::associate(const Pose& T_current_keyframe, const RowMotion& rows, double radius) {
+    project(T_current_keyframe, rows);
+    associateProjected(T_current_keyframe, radius);
+}
+
+void EdgeTerm::assess(const Pose& T_current_keyframe, const RowMotion& rows) {
+    associate(T_current_keyframe, rows, options_.final_radius);
+    tangentResiduals(rows);
+    weigh();
+}
+
+void EdgeTerm::project(const Pose& pose, const RowMotion& rows) {
+    const EdgePoints3D& edges = keyframe_->edges;
+    const std::vector<float>*x = &edges.x, *y = &edges.y, *z = &edges.z;
+    if (free_readout_) {
+        moved_x_ = edges.x;
+        moved_y_ = edges.y;
+        moved_z_ = edges.z;
+        exchangeMotion(keyframe_->row_motion, keyframe_->row_motion.at(rows.seconds_per_row), edges.image.y,
+                       edges.size(), moved_x_, moved_y_, moved_z_);
+        x = &moved_x_;
+        y = &moved_y_;
+        z = &moved_z_;
+    }
+    const std::size_t padded = x->size();
+    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
+    kernels::best().project(makeProjection(pose, ideal_, rows), x->data(), y->data(), z->data(), padded,
+                            {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+}
+
+void EdgeTerm::associateProjected(const Pose& T_current_keyframe, double radius) {
+    associator_.associate(keyframe_->edges.image, u_.data(), v_.data(), imageRotation(T_current_keyframe),
+                          edge_options_.tangent_span, frame_->edges, frame_->grid, ideal_.width,
+                          ideal_.height, radius, matches_);
+}
+
+void EdgeTerm::tangentResiduals(const RowMotion& rows) {
+    const OrganizedEdges& current = frame_->edges;
+    const EdgePoints3D& edges = keyframe_->edges;
+    const MotionBlur now(rows, ideal_, sensor_.blur_time),
+        then(keyframe_->row_motion, ideal_, sensor_.blur_time);
+    residual_.resize(matches_.size());
+    sharpness_.resize(matches_.size());
+    scratch_.clear();
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        const auto i = static_cast<std::size_t>(matches_.reference[k]);
+        const auto p = static_cast<std::size_t>(matches_.current[k]);
+        // Eq. (7), as a signed scalar across the tangent (its square and normal equations are the same),
+        // about the associated point rather than its predecessor: unbiased where the edge is curved
+        residual_[k] =
+            current.normal_x[p] * (u_[i] - current.x[p]) + current.normal_y[p] * (v_[i] - current.y[p]);
+        const float blur = now.variance(x_[i], y_[i], z_[i], current.normal_x[p], current.normal_y[p]) +
+                           then.variance(edges.x[i], edges.y[i], edges.z[i], edges.image.normal_x[i],
+                                         edges.image.normal_y[i]);
+        sharpness_[k] = 1 / (1 + blur);
+        scratch_.push_back(std::abs(residual_[k]) * std::sqrt(sharpness_[k]));
+    }
+    if (!scratch_.empty()) scale_ = robustScale(scratch_);
+}
+
+float EdgeTerm::currentDepth(std::size_t point) {
+    float& measured = current_depth_[point];
+    if (measured != kUnknown) return measured;
+    Eigen::Vector2d pixel(frame_->edges.x[point], frame_->edges.y[point]);
+    if (camera_.isDistorted()) pixel = camera_.distortPixel(pixel);
+    measured = foregroundDepth(frame_->images.depth, static_cast<float>(pixel.x()),
+                               static_cast<float>(pixel.y()), edge_options_, sensor_)
+                   .depth;
+    return measured;
+}
+
+void EdgeTerm::depthResiduals() {
+    const EdgePoints3D& edges = keyframe_->edges;
+    depth_residual_.assign(matches_.size(), 0);
+    depth_weight_.assign(matches_.size(), 0);
+    if (options_.depth_weight <= 0 || frame_->images.depth.empty()) return;
+    const auto chi2 = static_cast<float>(options_.depth_chi2);
+    const auto floor2 = static_cast<float>(sensor_.depth_noise_floor * sensor_.depth_noise_floor);
+    const auto noise2 = static_cast<float>(sensor_.depth_noise * sensor_.depth_noise);
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        const auto i = static_cast<std::size_t>(matches_.reference[k]);
+        const float measured = currentDepth(static_cast<std::size_t>(matches_.current[k]));
+        if (measured <= 0) continue;
+        const float z2 = measured * measured, reference2 = edges.z[i] * edges.z[i];
+        const float variance = noise2 * (z2 * z2 + reference2 * reference2) + 2 * floor2;
+        // What the sides of the edge add in the keyframe they would add here, too
+        const float residual = z_[i] - edges.correction[i] - measured;
+        const float squared = residual * residual / variance;
+        if (squared > chi2) continue;
+        depth_residual_[k] = residual;
+        // Not by its sharpness: the depth of a surface does not blur as its edge moves (weighed by it,
+        // fr1_rpy lost a fifth)
+        depth_weight_[k] =
+            studentWeight(static_cast<float>(options_.depth_weight) * edges.weight[i] / variance, squared);
+    }
+}
+
+void EdgeTerm::weigh() {
+    weight_.assign(matches_.size(), 0);
+    inliers_ = 0;
+    const auto inverse = static_cast<float>(1 / (scale_ * scale_));
+    const auto chi2 = static_cast<float>(options_.chi2);
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        const float information = sharpness_[k] * inverse;
+        const float squared = residual_[k] * residual_[k] * information;
+        if (squared > chi2) continue;
+        ++inliers_;
+        weight_[k] = studentWeight(
+            keyframe_->edges.weight[static_cast<std::size_t>(matches_.reference[k])] * information, squared);
+    }
+}
+
+void EdgeTerm::accumulate(PoseSystem& system) {
+    const OrganizedEdges& current = frame_->edges;
+    rows_.reset(matches_.size());
+    const auto fx = static_cast<float>(ideal_.fx), fy = static_cast<float>(ideal_.fy);
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        if (weight_[k] <= 0) continue;
+        const auto i = static_cast<std::size_t>(matches_.reference[k]);
+        const auto p = static_cast<std::size_t>(matches_.current[k]);
+        const float nx = current.normal_x[p], ny = current.normal_y[p], w = weight_[k], r = residual_[k];
+        float matrix[6], vector[3];
+        liftInformation(x_[i], y_[i], z_[i], fx, fy, w * nx * nx, w * nx * ny, w * ny * ny, w * nx * r,
+                        w * ny * r, matrix, vector);
+        matrix[5] += depth_weight_[k];
+        vector[2] += depth_weight_[k] * depth_residual_[k];
+        rows_.set(k, matrix, vector, x_[i], y_[i], z_[i]);
+    }
+    system.add(rows_.sum());
+}
+
+void EdgeTerm::accumulateReadout(const Linearisation& at, PoseSystem& system) const {
+    const RowMotion& rows = at.rows;
+    const OrganizedEdges& current = frame_->edges;
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        if (weight_[k] <= 0) continue;
+        const auto i = static_cast<std::size_t>(matches_.reference[k]);
+        const auto p = static_cast<std::size_t>(matches_.current[k]);
+        const double a = ideal_.fx / static_cast<double>(z_[i]), b = ideal_.fy / static_cast<double>(z_[i]);
+        const Eigen::Vector3d point(x_[i], y_[i], z_[i]);
+        const Eigen::Vector2d normal(current.normal_x[p], current.normal_y[p]);
+        const Eigen::Vector3d by_point(
+            a * normal.x(), b * normal.y(),
+            -(a * normal.x() * point.x() + b * normal.y() * point.y()) / point.z());
+        const Eigen::Vector3d in_keyframe(keyframe_->edges.x[i], keyframe_->edges.y[i],
+                                          keyframe_->edges.z[i]);
+        const double by_current =
+            by_point.dot(rows.pointVelocity(point)) * (static_cast<double>(v_[i]) - rows.reference_row);
+        const double by_keyframe =
+            -by_point.dot(at.T_current_keyframe.linear() * keyframe_->row_motion.pointVelocity(in_keyframe)) *
+            (static_cast<double>(keyframe_->edges.image.y[i]) - rows.reference_row);
+        const double by_readout = by_current + by_keyframe;
+        const auto residual = static_cast<double>(residual_[k]);
+        Vector6d by_pose;
+        by_pose << by_point, point.cross(by_point);
+        const auto weight = static_cast<double>(weight_[k]);
+        system.hessian += weight * by_pose * by_pose.transpose();
+        system.readout_mixed += weight * by_readout * by_pose;
+        system.gradient += weight * residual * by_pose;
+        system.readout_hessian += weight * by_readout * by_readout;
+        system.readout_gradient += weight * by_readout * residual;
+    }
+}
+
+}  // namespace roevo

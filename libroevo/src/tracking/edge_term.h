@@ -1,0 +1,74 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "tracking/edge_association.h"
+#include "tracking/frame.h"
+#include "tracking/gauss_newton.h"
+#include "tracking/keyframe.h"
+
+namespace roevo {
+
+/// Organized edges of a keyframe against those of a frame, Eqs. (4)-(13): associated anew as the pose moves,
+/// with point-to-tangent residuals and those of the depth of associated points, robust scales re-estimated in
+/// every step.
+class EdgeTerm : public ResidualTerm {
+  public:
+    /// @param camera  with its lens
+    EdgeTerm(const PinholeCamera& camera, const OdometryOptions& options);
+
+    /// What is to be registered; both must outlive the use of the term. The search radius narrows down over
+    /// the first iterations.
+    void start(const Keyframe& keyframe, const Frame& frame);
+    /// Always the final radius; and the read-out time is free where asked, so that the keyframe's points move
+    /// with it.
+    void startFine(const Keyframe& keyframe, const Frame& frame, bool free_readout);
+
+    bool linearise(const Linearisation& at, PoseSystem& system) override;
+
+    /// Edge-wise association at a given pose within `radius` px: fills matches().
+    void associate(const Pose& T_current_keyframe, const RowMotion& rows, double radius);
+    /// The same within the final radius, and the weights that follow.
+    void assess(const Pose& T_current_keyframe, const RowMotion& rows);
+
+    /// Iteration from which on the radius is the final one.
+    int narrowed() const;
+    const EdgeMatches& matches() const { return matches_; }
+    int inliers() const { return inliers_; }  ///< matches that passed the chi-square test
+    double scale() const { return scale_; }   ///< robust spread of the point-to-tangent residual, px, at rest
+    /// Of the matches; 0 where one is an outlier.
+    const std::vector<float>& weights() const { return weight_; }
+
+  private:
+    void project(const Pose& pose, const RowMotion& rows);
+    void associateProjected(const Pose& T_current_keyframe, double radius);
+    void tangentResiduals(const RowMotion& rows);
+    void depthResiduals();
+    void weigh();
+    float currentDepth(std::size_t point);
+    void accumulate(PoseSystem& system);
+    void accumulateReadout(const Linearisation& at, PoseSystem& system) const;
+
+    PinholeCamera camera_, ideal_;
+    FineOptions options_;
+    EdgeOptions edge_options_;
+    SensorOptions sensor_;
+    EdgeAssociator associator_;
+    const Keyframe* keyframe_ = nullptr;
+    const Frame* frame_ = nullptr;
+    bool narrowing_ = false, free_readout_ = false;
+    Pose T_associated_;  ///< pose at which points were associated within the final radius
+    bool has_associated_ = false;
+
+    EdgeMatches matches_;
+    std::vector<float> x_, y_, z_, u_, v_;            // of all keyframe points, in the camera
+    std::vector<float> moved_x_, moved_y_, moved_z_;  // keyframe points at another read-out time
+    // of the matches; sharpness: information across an edge as a share of what it would be at rest
+    std::vector<float> residual_, sharpness_, weight_, depth_residual_, depth_weight_;
+    std::vector<float> current_depth_, scratch_;
+    InformationRows rows_;
+    double scale_ = 1;
+    int inliers_ = 0;
+};
+
+}  // namespace roevo

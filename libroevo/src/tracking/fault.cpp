@@ -1,0 +1,48 @@
+#include "tracking/fault.h"
+
+namespace roevo {
+
+std::string describe(const Fault& fault) {
+    using Kind = Fault::Kind;
+    const auto number = [&](std::size_t i) { return std::to_string(fault.numbers[i]); };
+    const auto sizes = [&] {
+        return number(0) + "x" + number(1) + " but the camera is " + number(2) + "x" + number(3);
+    };
+    switch (fault.kind) {
+        case Kind::kNone:
+            return {};
+        case Kind::kTimeNotFinite:
+            return "time stamp is not finite";
+        case Kind::kTimeRepeated:
+            return "repeated time stamp";
+        case Kind::kTimeBackward:
+            return "time stamp goes backward";
+        case Kind::kNoColour:
+            return "no colour image";
+        case Kind::kGreyType:
+            return "grey image is not 8-bit with one channel";
+        case Kind::kColourSize:
+            return "colour image is " + sizes();
+        case Kind::kDepthType:
+            return "depth image is not 32-bit float";
+        case Kind::kDepthSize:
+            return "depth image is " + sizes();
+        case Kind::kNoDepth:
+            return "no depth image";
+        case Kind::kFewPointsWithDepth:
+            return "only " + number(0) + " edge points with depth, " + number(1) + " needed";
+        case Kind::kFewPointsInView:
+            return "coarse tracking saw too few points in the image: " + number(0) + " of " + number(1);
+        case Kind::kCoarseAstray:
+            return "coarse tracking went astray: hardly any edge is where it should be";
+        case Kind::kFewInliers:
+            return "only " + number(0) + " associated edge points, " + number(1) + " needed";
+        case Kind::kFewMatched:
+            return "only " + number(0) + " % of the edges associated, " + number(1) + " % needed";
+        case Kind::kDiverged:
+            return "the pose diverged";
+    }
+    return "unknown fault";
+}
+
+}  // namespace roevo

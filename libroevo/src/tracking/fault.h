@@ -1,0 +1,39 @@
+#pragma once
+#include <array>
+#include <string>
+
+namespace roevo {
+
+/// Why a frame could not be used, tracked, or made a keyframe, with the numbers that decided.
+struct Fault {
+    enum class Kind {
+        kNone,
+        // of the input
+        kTimeNotFinite,
+        kTimeRepeated,
+        kTimeBackward,
+        kNoColour,
+        kGreyType,
+        kColourSize,  ///< numbers: width and height of the image, of the camera
+        kDepthType,
+        kDepthSize,  ///< the same
+        // of a keyframe
+        kNoDepth,
+        kFewPointsWithDepth,  ///< numbers: found, needed
+        // of tracking
+        kFewPointsInView,  ///< coarse; numbers: in view, of so many
+        kCoarseAstray,
+        kFewInliers,  ///< numbers: found, needed
+        kFewMatched,  ///< numbers: found, needed, percent of the edges
+        kDiverged
+    };
+    Kind kind = Kind::kNone;
+    std::array<int, 4> numbers{};
+
+    explicit operator bool() const { return kind != Kind::kNone; }
+};
+
+/// In words, one line; empty for none.
+std::string describe(const Fault& fault);
+
+}  // namespace roevo

@@ -1,0 +1,65 @@
+#pragma once
+#include <vector>
+
+#include "tracking/coarse_tracker.h"
+#include "tracking/edge_term.h"
+
+namespace roevo {
+
+/// Neighbouring points of an edge err together: their information counts about one independent point in so
+/// many.
+inline constexpr double kCorrelatedPoints = 5;
+
+struct FineResult {
+    bool converged = false;
+    Pose T_current_keyframe = Pose::Identity();
+    int inliers = 0;           ///< associated points that passed the chi-square test
+    double scale = 0;          ///< robust spread of the point-to-tangent residual, px, of edges at rest
+    double matched_ratio = 0;  ///< see EdgeMatches
+    Matrix6d covariance = Matrix6d::Zero();  ///< of the left perturbation (t, phi) of T_current_keyframe
+};
+
+/// Edge-wise registration: EdgeTerm joined by the photometric term and by what is likely beforehand.
+class FineTracker {
+  public:
+    /// @param camera  with its lens
+    FineTracker(const PinholeCamera& camera, const OdometryOptions& options)
+        : options_(options.fine), ideal_(camera.undistorted()), edges_(camera, options) {}
+
+    /// Minimises. What is reported but the pose and its covariance is that of the last step; assess() tells
+    /// more.
+    [[nodiscard]] FineResult track(const Keyframe& keyframe, const Frame& frame, const Pose& T_start,
+                                   const PosePrior& prior, const RollingShutter& shutter,
+                                   const Brightness& brightness);
+
+    /// Inliers, scale and matched ratio at a given pose; converged where these are enough. No covariance.
+    /// Fills matches().
+    [[nodiscard]] FineResult assess(const Keyframe& keyframe, const Frame& frame,
+                                    const Pose& T_current_keyframe, const RowMotion& rows);
+
+    /// Edge-wise association at a given pose, without refining it: fills matches().
+    void associate(const Keyframe& keyframe, const Frame& frame, const Pose& T_current_keyframe,
+                   const RowMotion& rows, double radius);
+
+    /// Adds what a frame tells of the read-out time, where that is enough. The frame is registered some more
+    /// for it, with the read-out time free: what points are associated with follows the read-out time that is
+    /// assumed, and tells only a part of what it lacks.
+    void addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe,
+                            const RollingShutter& shutter, const Frame& frame, ReadoutEstimator& estimator);
+
+    const EdgeMatches& matches() const { return edges_.matches(); }         ///< of the last call
+    const std::vector<float>& weights() const { return edges_.weights(); }  ///< of these matches, 0: outliers
+
+    /// The coarse pose or the one that is likely beforehand: where they are apart, whichever finds more
+    /// edges. Moving shadows and blur lead photometry astray before they do edges.
+    Pose chooseInitialPose(const Keyframe& keyframe, const Frame& frame, const Pose& T_coarse,
+                           const Pose& T_likely, const RollingShutter& shutter);
+
+  private:
+    FineOptions options_;
+    PinholeCamera ideal_;
+    EdgeTerm edges_;
+    PhotometricResiduals photometric_;
+};
+
+}  // namespace roevo

@@ -1,0 +1,28 @@
+#pragma once
+#include <opencv2/core/mat.hpp>
+
+#include "edges/canny.h"
+#include "edges/edge_grid.h"
+#include "edges/organized_edges.h"
+#include "roevo/camera/rgbd_frame.h"
+#include "tracking/image_pyramid.h"
+
+namespace roevo {
+
+/// All that an image pair becomes before it is tracked. Its buffers are used again for later images.
+struct Frame {
+    Frame() = default;
+    Frame(const Frame&) = delete;  // the grid points to the edges
+    Frame& operator=(const Frame&) = delete;
+
+    RgbdFrame images;      ///< copies: the caller's buffers may be used again
+    cv::Mat ideal_grey;    ///< without the lens's distortion
+    OrganizedEdges edges;  ///< ideal px
+    EdgeMask mask;         ///< pixels that the edges were made of
+    EdgeGrid grid;         ///< of the edges
+    ImagePyramid pyramid;  ///< of the ideal image
+
+    double timestamp() const { return images.timestamp; }
+};
+
+}  // namespace roevo

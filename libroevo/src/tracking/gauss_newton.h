@@ -1,0 +1,124 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "roevo/types.h"
+#include "tracking/kernels.h"
+#include "tracking/rolling_shutter.h"
+
+namespace roevo {
+
+/// What is known of a pose before looking: a Gaussian about `mean`, in the left perturbation (t, phi).
+struct PosePrior {
+    Pose mean = Pose::Identity();
+    double sigma_translation = 1;  ///< m
+    double sigma_rotation = 1;     ///< rad
+};
+
+/// What points contribute to the normal equations, laid out as the kernels want it. Keeps its memory.
+class InformationRows {
+  public:
+    /// All of `count` points contribute nothing until they are set.
+    void reset(std::size_t count);
+    /// @param matrix,vector  as in kernels::PointInformation, of a point at (x, y, z), m
+    void set(std::size_t point, const float (&matrix)[6], const float (&vector)[3], float x, float y,
+             float z) {
+        for (int a = 0; a < 6; ++a) matrix_[a][point] = matrix[a];
+        for (int a = 0; a < 3; ++a) vector_[a][point] = vector[a];
+        x_[point] = x;
+        y_[point] = y;
+        z_[point] = z;
+    }
+    kernels::NormalEquations sum() const;
+
+  private:
+    std::vector<float> matrix_[6], vector_[3], x_, y_, z_;
+};
+
+/// Symmetric 6x6 system H xi = -g of Eqs. (12), (13), in double precision, and what joins the read-out time
+/// to it where that is free.
+struct PoseSystem {
+    Matrix6d hessian = Matrix6d::Zero();
+    Vector6d gradient = Vector6d::Zero();
+    Vector6d readout_mixed = Vector6d::Zero();
+    double readout_hessian = 0, readout_gradient = 0;
+
+    void add(const kernels::NormalEquations& part);
+    /// The Gauss-Newton step (t, phi); zero when the system is not usable.
+    Vector6d solve() const;
+    /// The step (t, phi, seconds per row).
+    Eigen::Matrix<double, 7, 1> solveWithReadout() const;
+};
+
+/// Where a term is linearised.
+struct Linearisation {
+    Pose T_current_keyframe = Pose::Identity();
+    RowMotion rows;
+    int iteration = 0;
+};
+
+/// A part of what is minimised over the pose.
+class ResidualTerm {
+  public:
+    virtual ~ResidualTerm() = default;
+    /// Adds its normal equations. @return false where too little is seen to go on
+    [[nodiscard]] virtual bool linearise(const Linearisation& at, PoseSystem& system) = 0;
+    /// How well the last linearisation fits, comparable between poses.
+    virtual double cost() const { return 0; }
+    /// The last linearisation is the best so far.
+    virtual void keep() {}
+    /// What the term estimates besides the pose goes along with the step.
+    virtual void update() {}
+};
+
+/// What is likely beforehand: keeps directions solvable that the edges do not see.
+class PriorTerm : public ResidualTerm {
+  public:
+    /// @param weight  how much the rest of the system overstates its information
+    explicit PriorTerm(const PosePrior& prior, double weight = 1) : prior_(prior), weight_(weight) {}
+    bool linearise(const Linearisation& at, PoseSystem& system) override;
+
+  private:
+    PosePrior prior_;
+    double weight_;
+};
+
+/// Holds steps back: a prior about wherever the pose is.
+class DampingTerm : public ResidualTerm {
+  public:
+    DampingTerm(double sigma_translation, double sigma_rotation)
+        : sigma_translation_(sigma_translation), sigma_rotation_(sigma_rotation) {}
+    bool linearise(const Linearisation& at, PoseSystem& system) override;
+
+  private:
+    double sigma_translation_, sigma_rotation_;
+};
+
+struct GaussNewtonOptions {
+    int max_iterations = 1;
+    int settled_from = 1;       ///< iterations from which on a small step ends it
+    double still = 0.01;        ///< px of image motion: a small step
+    double focal_length = 1;    ///< px
+    double depth = 1;           ///< m, of a typical point
+    double relaxation = 1;      ///< factor on the steps from `relaxed_from` on
+    int relaxed_from = 0;       ///< iteration
+    bool keep_best = false;     ///< the pose with the least cost of the first term counts, not the last one
+    bool free_readout = false;  ///< the read-out time moves, too
+};
+
+struct GaussNewtonResult {
+    Pose T_current_keyframe = Pose::Identity();
+    double seconds_per_row = 0;
+    PoseSystem system;  ///< of the last linearisation
+    double cost = -1;   ///< of the best; negative where nothing could be linearised
+    int iterations = 0;
+    bool complete = false;  ///< no term gave up
+};
+
+/// The one Gauss-Newton loop: coarse and fine tracking and the read-out time differ by their terms.
+/// @param shutter  tells how the rows move at a pose
+[[nodiscard]] GaussNewtonResult minimise(const Pose& T_start, RollingShutter shutter,
+                                         const std::vector<ResidualTerm*>& terms,
+                                         const GaussNewtonOptions& options);
+
+}  // namespace roevo

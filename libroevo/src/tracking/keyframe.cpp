@@ -1,0 +1,46 @@
+#include "tracking/keyframe.h"
+
+namespace roevo {
+
+void Keyframe::setRowMotion(const RowMotion& rows) {
+    if (rows == row_motion) return;
+    exchangeMotion(row_motion, rows, edges.image.y, edges.size(), edges.x, edges.y, edges.z);
+    row_motion = rows;
+    for (std::size_t k = 0; k < photometric.source.size(); ++k) {
+        const auto i = static_cast<std::size_t>(photometric.source[k]);
+        photometric.x[k] = edges.x[i];
+        photometric.y[k] = edges.y[i];
+        photometric.z[k] = edges.z[i];
+    }
+}
+
+void Keyframe::count(const std::vector<std::int32_t>& looked_for, const std::vector<std::int32_t>& found) {
+    if (found.empty()) return;
+    hits.resize(found.size(), 0);
+    trials.resize(found.size(), 0);
+    for (std::size_t e = 0; e < found.size(); ++e) {
+        hits[e] += found[e];
+        trials[e] += looked_for[e];
+    }
+}
+
+std::vector<float> Keyframe::foundShares() const {
+    constexpr int kMinTrials = 10;  // of points and frames together
+    std::vector<float> shares(static_cast<std::size_t>(edges.image.numEdges()), -1);
+    for (std::size_t e = 0; e < trials.size(); ++e)
+        if (trials[e] >= kMinTrials) shares[e] = static_cast<float>(hits[e]) / static_cast<float>(trials[e]);
+    return shares;
+}
+
+void Keyframe::weaken(const std::vector<bool>& edges_to_weaken, double weight) {
+    const auto factor = static_cast<float>(weight);
+    const auto affected = [&](std::size_t point) {
+        return edges_to_weaken[static_cast<std::size_t>(edges.image.edge_of[point])];
+    };
+    for (std::size_t i = 0; i < edges.size(); ++i)
+        if (affected(i)) edges.weight[i] *= factor;
+    for (std::size_t k = 0; k < photometric.source.size(); ++k)
+        if (affected(static_cast<std::size_t>(photometric.source[k]))) photometric.weight[k] *= factor;
+}
+
+}  // namespace roevo

@@ -1,0 +1,78 @@
+#pragma once
+#include "roevo/options.h"
+#include "tracking/gauss_newton.h"
+#include "tracking/photometric.h"
+#include "tracking/rolling_shutter.h"
+
+namespace roevo {
+
+/// What is known of a frame before looking at it, all relative to a reference.
+struct Prediction {
+    Pose T_reference_camera = Pose::Identity();  ///< by constant velocity
+    Pose T_reference_last = Pose::Identity();    ///< of the frame before, measured or not
+    PosePrior prior, search_prior;               ///< about the predicted pose; about the last one, wide
+    RollingShutter shutter;
+    Brightness brightness;  ///< of the last frame, against the reference
+};
+
+/// What is known of the camera's motion before a frame is looked at: constant velocity between measured
+/// poses. Poses that were only predicted never enter. All poses are relative to a reference, which may
+/// change; the velocity is the camera's own and knows of none.
+class MotionModel {
+  public:
+    MotionModel(const MotionOptions& motion, const SensorOptions& sensor, int image_height);
+
+    /// A pose whose motion since the last one was not measured: first frame, re-anchored, or found again by a
+    /// search.
+    void anchor(double timestamp, const Pose& T_reference_camera);
+    /// A measured pose; with the one before it gives the velocity, unless their stamps nearly coincide.
+    /// @param covariance  of the pose against its reference, position then orientation
+    void measure(double timestamp, const Pose& T_reference_camera,
+                 const Matrix6d& covariance = Matrix6d::Zero());
+    /// A pose that was not measured: only a search looks around it.
+    void assume(const Pose& T_reference_camera) { T_reference_assumed_ = T_reference_camera; }
+    /// Brightness of the last frame against the reference.
+    void setBrightness(const Brightness& brightness) { brightness_ = brightness; }
+    /// The velocity is too old to be believed.
+    void forgetVelocity() { interval_ = 0; }
+    /// Poses are relative to another keyframe from now on.
+    void changeReference(const Pose& T_new_old);
+    /// Of the last frame, measured or assumed.
+    const Pose& lastPose() const { return T_reference_assumed_; }
+
+    [[nodiscard]] Prediction predict(double timestamp) const;
+
+    /// Rows of a frame whose motion is not known.
+    RowMotion stillRows() const;
+    /// Of a keyframe that is the first of its track: how its rows moved shows only in the next frame, and
+    /// taken for still it would teach that there is no read-out time. Still where the next frame is too late.
+    RowMotion firstRows(double interval, const Pose& T_keyframe_next) const;
+    double secondsPerRow() const;
+    ReadoutEstimator& readout() { return readout_; }
+
+  private:
+    /// Variances of a measured pose, per axis.
+    struct Variance {
+        double position = 0, orientation = 0;  ///< m^2, rad^2
+    };
+
+    Pose poseAt(double timestamp) const;
+    PosePrior prior(double timestamp) const;
+    PosePrior searchPrior(double timestamp) const;
+    RollingShutter shutter(double timestamp) const;
+
+    MotionOptions motion_;
+    SensorOptions sensor_;
+    int image_height_;
+    Pose T_reference_last_ = Pose::Identity();     ///< measured
+    Pose T_reference_assumed_ = Pose::Identity();  ///< or not
+    Brightness brightness_;
+    Variance last_, before_;  ///< of the last two measured poses
+    double last_timestamp_ = 0;
+    bool has_last_ = false;
+    Pose step_ = Pose::Identity();  ///< T_last_current over interval_ seconds
+    double interval_ = 0;           ///< s; 0 when no velocity is known
+    ReadoutEstimator readout_;
+};
+
+}  // namespace roevo

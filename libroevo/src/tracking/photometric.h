@@ -1,0 +1,136 @@
+#pragma once
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "roevo/types.h"
+#include "tracking/edge_points.h"
+#include "tracking/gauss_newton.h"
+#include "tracking/image_pyramid.h"
+#include "tracking/rolling_shutter.h"
+
+namespace roevo {
+
+/// Edge points of a keyframe chosen for photometric alignment, with their orientation-aligned reference
+/// patches on every pyramid level, Eq. (2).
+struct PhotometricPoints {
+    std::vector<float> x, y, z;                        ///< keyframe camera frame, m; padded
+    std::vector<float> axis_x, axis_y;                 ///< unit gradient, the patch's first axis
+    std::vector<float> weight;                         ///< w_i of Eq. (3)
+    std::vector<std::vector<kernels::Patch>> patches;  ///< [level][point]
+    std::vector<std::int32_t> source;                  ///< index of the edge point
+    bool turning = true;  ///< patches turn with the camera about its optical axis, Eq. (2)
+
+    std::size_t size() const { return axis_x.size(); }
+};
+
+/// Spreads at most `max_points` along the edges (every n-th point) and samples their patches.
+PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const ImagePyramid& pyramid,
+                                          int max_points);
+
+/// Gain and offset between keyframe and current image: I_c = gain I_r + offset.
+struct Brightness {
+    double gain = 1, offset = 0;
+};
+
+/// Residuals of one set of photometric points at one pose and level, and the weights that follow from them.
+/// Keeps its buffers.
+class PhotometricResiduals {
+  public:
+    /// Projects the points by T_current_keyframe, compares patches, and estimates the spread of the
+    /// residuals.
+    /// @param camera  ideal camera of the level
+    void evaluate(const PhotometricPoints& points, int level, const cv::Mat& image,
+                  const PinholeCamera& camera, const Pose& T_current_keyframe, const RowMotion& rows,
+                  const Brightness& brightness);
+
+    int numVisible() const { return num_visible_; }
+    double scale() const {
+        return scale_;
+    }  ///< robust spread of a patch's root mean square residual, grey levels
+    double cost() const { return cost_; }  ///< median, comparable between poses at one level
+
+    /// The brightness that fits the present alignment best (weighted linear regression).
+    Brightness fitBrightness(const PhotometricPoints& points, int level, const Brightness& current) const;
+
+    /// The normal equations of all points, their information scaled by `factor`.
+    void accumulate(const PhotometricPoints& points, int level, const PinholeCamera& camera, double factor,
+                    kernels::NormalEquations& out);
+
+  private:
+    std::vector<float> x_, y_, z_, u_, v_, axis_x_, axis_y_, weight_;
+    InformationRows rows_;
+    std::vector<kernels::PatchResidual> residuals_;
+    std::vector<float> scratch_;
+    int num_visible_ = 0;
+    float gain_ = 1;
+    double scale_ = 0, cost_ = 0;
+};
+
+/// The photometric residual of Eq. (2), with the brightness that it estimates along with the pose.
+class PhotometricTerm : public ResidualTerm {
+  public:
+    /// @param residuals  buffers
+    /// @param camera     ideal camera of the level
+    PhotometricTerm(PhotometricResiduals& residuals, const PhotometricPoints& points, int level,
+                    const cv::Mat& image, const PinholeCamera& camera, const Brightness& start)
+        : residuals_(residuals),
+          points_(points),
+          image_(image),
+          camera_(camera),
+          level_(level),
+          brightness_(start),
+          best_brightness_(start) {}
+
+    /// Too few visible points end the minimisation; 0: they never do.
+    void require(int points) { needed_ = points; }
+    /// Weighs all residuals together as `weight` times so many points (alpha of Eq. (9)); else each counts
+    /// alone.
+    void balance(double weight, std::function<std::size_t()> points) {
+        weight_ = weight;
+        counted_ = std::move(points);
+    }
+
+    bool linearise(const Linearisation& at, PoseSystem& system) override;
+    double cost() const override { return residuals_.cost(); }
+    void keep() override;
+    void update() override { brightness_ = residuals_.fitBrightness(points_, level_, brightness_); }
+
+    // Of the best pose
+    const Brightness& brightness() const { return best_brightness_; }
+    int numVisible() const { return num_visible_; }  ///< where nothing was kept: of the first
+    double residual() const { return residual_; }    ///< median of a patch, grey levels
+
+  private:
+    PhotometricResiduals& residuals_;
+    const PhotometricPoints& points_;
+    const cv::Mat& image_;
+    const PinholeCamera& camera_;
+    int level_, needed_ = 0, num_visible_ = -1;
+    Brightness brightness_, best_brightness_;
+    double residual_ = 0, weight_ = 1;
+    std::function<std::size_t()> counted_;
+};
+
+/// Rotation about the optical axis in a pose: how image directions turn from the keyframe to the current
+/// image.
+Eigen::Vector2f imageRotation(const Pose& T_current_keyframe);
+
+/// Image-plane information (2x2 symmetric m00 m01 m11 and vector v0 v1, pixels) of a point carried to three
+/// dimensions through the projection's Jacobian (Eq. (24)): writes P^T M P (xx xy xz yy yz zz) and P^T v.
+inline void liftInformation(float x, float y, float z, float fx, float fy, float m00, float m01, float m11,
+                            float v0, float v1, float matrix[6], float vector[3]) {
+    const float a = fx / z, b = fy / z, c = -a * x / z, d = -b * y / z;  // P = [a 0 c; 0 b d]
+    const float t0 = m00 * c + m01 * d, t1 = m01 * c + m11 * d;
+    matrix[0] = a * a * m00;
+    matrix[1] = a * b * m01;
+    matrix[2] = a * t0;
+    matrix[3] = b * b * m11;
+    matrix[4] = b * t1;
+    matrix[5] = c * t0 + d * t1;
+    vector[0] = a * v0;
+    vector[1] = b * v1;
+    vector[2] = c * v0 + d * v1;
+}
+
+}  // namespace roevo

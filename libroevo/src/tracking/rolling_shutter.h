@@ -1,0 +1,100 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/types.h"
+#include "tracking/kernels.h"
+
+namespace roevo {
+
+/// Mean velocity of a camera over a motion.
+struct Velocity {
+    Eigen::Vector3d linear, turn;  ///< m/s, rad/s, along the axes of the camera at the end
+};
+/// @param T_begin_end  of the camera, over `seconds`
+Velocity velocityOf(const Pose& T_begin_end, double seconds);
+
+/// How the camera moves while the rows of one image are read, in its own frame.
+struct RowMotion {
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();      ///< rad/s
+    double seconds_per_row = 0;
+    double reference_row = 0;  ///< row at whose time the pose holds, px
+
+    bool operator==(const RowMotion& other) const {
+        return velocity == other.velocity && turn == other.turn && seconds_per_row == other.seconds_per_row &&
+               reference_row == other.reference_row;
+    }
+    /// Whether anything is known of the motion.
+    bool known() const { return !velocity.isZero(0) || !turn.isZero(0); }
+    /// The same for a pyramid level, whose rows are 2^level as tall.
+    RowMotion atPyramidLevel(int level) const;
+    /// Velocity of a static point in the camera frame, m/s.
+    Eigen::Vector3d pointVelocity(const Eigen::Vector3d& point) const {
+        return -(velocity + turn.cross(point));
+    }
+    /// Where a point of the camera frame, seen on `row`, is at the time of the reference row.
+    Eigen::Vector3d toReference(const Eigen::Vector3d& point, double row) const {
+        return point - (row - reference_row) * seconds_per_row * pointVelocity(point);
+    }
+    /// What another motion's toReference() would give, of a point that this one's gave (to first order).
+    Eigen::Vector3d exchange(const Eigen::Vector3d& point, double row, const RowMotion& other) const {
+        return other.toReference(point, row) + (row - reference_row) * seconds_per_row * pointVelocity(point);
+    }
+    /// The same motion with another read-out time.
+    RowMotion at(double other_seconds_per_row) const {
+        return {velocity, turn, other_seconds_per_row, reference_row};
+    }
+};
+
+/// Moves the first `count` points, which `from` brought to the reference row, to where `to` would have
+/// brought them. A motion that would bring a point to the camera is none: such a point stays.
+void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
+                    std::size_t count, std::vector<float>& x, std::vector<float>& y, std::vector<float>& z);
+
+/// Images whose rows are read one after the other while the camera moves. The motion follows from the pose
+/// itself and the previous frame's.
+struct RollingShutter {
+    double seconds_per_row = 0;  ///< 0: all rows at once
+    double reference_row = 0;    ///< px
+    Pose T_previous_keyframe = Pose::Identity();
+    double since_previous = 0;  ///< s; 0 when there is no trusted previous pose
+
+    /// Mean motion over the interval before that, in the previous camera's axes, m/s and rad/s, and its
+    /// length, s (0: not known).
+    Eigen::Vector3d earlier_velocity = Eigen::Vector3d::Zero(), earlier_turn = Eigen::Vector3d::Zero();
+    double earlier_interval = 0;
+
+    RowMotion motion(const Pose& T_current_keyframe) const;
+};
+
+/// Rigid motion, camera and row motion for the kernels.
+kernels::Projection makeProjection(const Pose& T_current_keyframe, const PinholeCamera& camera,
+                                   const RowMotion& rows);
+
+/// Least squares for the one number that all frames share: seconds per row. Linear, because a small read-out
+/// time moves points in proportion; each frame adds what its pose leaves undetermined (Schur complement).
+class ReadoutEstimator {
+  public:
+    /// @param sigma  of the prior about zero, seconds per row
+    /// @param memory  share of the evidence that is kept from frame to frame of 30 Hz: frames tracked from
+    /// one
+    ///                keyframe share its errors, so that many of them teach hardly more than one
+    ReadoutEstimator(double sigma, double memory) : prior_(1 / (sigma * sigma)), memory_(memory) {}
+
+    /// One frame's normal equations in the pose and the read-out time, both taken from zero read-out time.
+    /// @param frames  of 30 Hz since the last one
+    void add(const Matrix6d& pose_information, const Vector6d& mixed, double own,
+             const Vector6d& pose_gradient, double own_gradient, double frames = 1);
+    double secondsPerRow() const { return vector_ / (prior_ + information_); }
+    double sigma() const;
+    /// What a frame would add to what is known, in proportion to it.
+    double worth(const Matrix6d& pose_information, const Vector6d& mixed, double own) const;
+
+  private:
+    double prior_, memory_, information_ = 0, vector_ = 0;
+};
+
+}  // namespace roevo

@@ -1,0 +1,24 @@
+#pragma once
+#include "roevo/types.h"
+
+namespace roevo {
+
+/// Pose increment of xi = (t, phi): rotation by Rodrigues' formula, Eq. (21), and the translation t as it is
+/// (the perturbation of Eq. (22), first order equal to the exponential map). Applied on the left: T <-
+/// poseIncrement(xi) * T.
+Pose poseIncrement(const Vector6d& xi);
+
+/// Rotation angle of a pose, radians.
+double rotationAngle(const Pose& pose);
+
+/// How far a point at `depth` (m) moves in the image between two poses of a camera, px, as an order of
+/// magnitude.
+double imageMotion(const Pose& a, const Pose& b, double focal_length, double depth);
+
+/// a + share * (b - a) on translation and rotation, for share of any size (prediction uses share > 1).
+Pose interpolate(const Pose& a, const Pose& b, double share);
+
+/// Matrix of the cross product.
+Eigen::Matrix3d skew(const Eigen::Vector3d& v);
+
+}  // namespace roevo

@@ -1,0 +1,155 @@
+#include "tracking/tracker.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "stopwatch.h"
+#include "tracking/camera_scale.h"
+#include "tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+int percent(double share) {
+    return static_cast<int>(std::lround(100 * share));
+}
+
+/// Why fine tracking failed.
+Fault describeFailure(const FineResult& refined, const FineOptions& options) {
+    if (refined.inliers < options.min_inliers)
+        return {Fault::Kind::kFewInliers, {refined.inliers, options.min_inliers}};
+    if (refined.matched_ratio < options.min_matched_ratio)
+        return {Fault::Kind::kFewMatched,
+                {percent(refined.matched_ratio), percent(options.min_matched_ratio)}};
+    return {Fault::Kind::kDiverged, {}};
+}
+
+}  // namespace
+
+Tracker::Tracker(const PinholeCamera& camera, const OdometryOptions& options)
+    : camera_(camera),
+      ideal_(camera.undistorted()),
+      options_(scaledTo(camera, options)),
+      coarse_(options_.coarse),
+      fine_(camera, options_) {}
+
+PhotometricPoints Tracker::choosePoints(const EdgePoints3D& edges, const Frame& frame,
+                                        const RowMotion&) const {
+    return samplePhotometricPoints(edges, frame.pyramid, options_.coarse.max_points);
+}
+
+CoarseResult Tracker::align(const Keyframe& reference, const Frame& frame, const RollingShutter& shutter,
+                            const std::vector<Pose>& guesses, const Brightness& brightness) {
+    return coarse_.track(reference, frame.pyramid, ideal_, shutter, guesses, brightness);
+}
+
+FineResult Tracker::refine(const Keyframe& reference, const Frame& frame, const Pose& T_start,
+                           const PosePrior& prior, const RollingShutter& shutter,
+                           const Brightness& brightness) {
+    return fine_.track(reference, frame, T_start, prior, shutter, brightness);
+}
+
+Tracking Tracker::track(const Keyframe& reference, const Frame& frame, const Prediction& prediction) {
+    return run(reference, frame,
+               {prediction.T_reference_camera.inverse(), prediction.T_reference_last.inverse()},
+               prediction.prior, prediction.shutter, prediction.brightness);
+}
+
+Tracking Tracker::trackFrom(const Keyframe& reference, const Frame& frame, const Prediction& prediction,
+                            const Pose& T_keyframe_camera) {
+    return run(reference, frame, {T_keyframe_camera.inverse()}, prediction.prior, prediction.shutter,
+               prediction.brightness);
+}
+
+Tracking Tracker::search(const Keyframe& reference, const Frame& frame, const Prediction& prediction,
+                         Tracking failed) {
+    if (frame.edges.numEdges() == 0) return failed;
+    Tracking found = run(reference, frame,
+                         searchAround(prediction.T_reference_last, ideal_.width / ideal_.fx / (640. / 525)),
+                         prediction.search_prior, prediction.shutter, prediction.brightness);
+    if (found.tracked) std::swap(found, failed);
+    failed.ms_coarse += found.ms_coarse;
+    failed.ms_fine += found.ms_fine;
+    failed.searched = true;
+    if (failed.tracked) failed.fault = found.fault;
+    return failed;
+}
+
+Tracking Tracker::run(const Keyframe& reference, const Frame& frame, const std::vector<Pose>& guesses,
+                      const PosePrior& prior, RollingShutter shutter, const Brightness& brightness) {
+    Tracking out;
+    out.pose.keyframe = reference.id;
+    // Two images in a row are sheared nearly alike: better both for still than one of them
+    if (!reference.row_motion.known()) shutter.seconds_per_row = 0;
+    const Stopwatch coarse_watch;
+    const CoarseResult aligned = align(reference, frame, shutter, guesses, brightness);
+    out.ms_coarse = coarse_watch.milliseconds();
+    out.brightness = aligned.brightness;
+    const Stopwatch fine_watch;
+    out.fault = options_.mode == Mode::kCoarse ? runCoarse(reference, frame, aligned, shutter, out)
+                                               : runFine(reference, frame, aligned, prior, shutter, out);
+    out.tracked = !out.fault;
+    out.rows = shutter.motion(out.pose.T_keyframe_camera.inverse());
+    out.ms_fine = fine_watch.milliseconds();
+    return out;
+}
+
+Fault Tracker::runCoarse(const Keyframe& reference, const Frame& frame, const CoarseResult& aligned,
+                         const RollingShutter& shutter, Tracking& out) {
+    if (!aligned.converged)
+        return {Fault::Kind::kFewPointsInView,
+                {aligned.num_visible, static_cast<int>(reference.photometric.size())}};
+    // Edges are associated only to know when the next keyframe is due
+    const Pose& T = aligned.T_current_keyframe;
+    fine_.associate(reference, frame, T, shutter.motion(T), options_.fine.final_radius);
+    out.matches = fine_.matches();
+    out.inliers = static_cast<int>(out.matches.size());
+    if (out.matchedRatio() < options_.fine.min_matched_ratio / 2) return {Fault::Kind::kCoarseAstray, {}};
+    out.pose.T_keyframe_camera = T.inverse();
+    out.pose.covariance =
+        kCorrelatedPoints * (aligned.system.hessian + 1e-9 * Matrix6d::Identity()).inverse();
+    return out.pose.covariance.allFinite() ? Fault() : Fault{Fault::Kind::kDiverged, {}};
+}
+
+Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const CoarseResult& aligned,
+                       const PosePrior& prior, const RollingShutter& shutter, Tracking& out) {
+    const Pose T_start =
+        fine_.chooseInitialPose(reference, frame, aligned.T_current_keyframe, prior.mean, shutter);
+    const FineResult refined = refine(reference, frame, T_start, prior, shutter, aligned.brightness);
+    const Pose& T = refined.T_current_keyframe;
+    const FineResult assessed = fine_.assess(reference, frame, T, shutter.motion(T));
+    out.matches = fine_.matches();
+    out.inliers = assessed.inliers;
+    out.found.assign(static_cast<std::size_t>(reference.edges.image.numEdges()), 0);
+    for (std::size_t k = 0; k < out.matches.size(); ++k) {
+        const auto point = static_cast<std::size_t>(out.matches.reference[k]);
+        if (fine_.weights()[k] > 0)
+            ++out.found[static_cast<std::size_t>(reference.edges.image.edge_of[point])];
+    }
+    if (!assessed.converged || !refined.converged) return describeFailure(assessed, options_.fine);
+    out.pose.T_keyframe_camera = T.inverse();
+    out.pose.covariance = refined.covariance;
+    return {};
+}
+
+void Tracker::learnReadout(const Keyframe& reference, const Frame& frame, const Tracking& tracking,
+                           const RollingShutter& shutter, ReadoutEstimator& estimator) {
+    fine_.addReadoutEvidence(reference, tracking.pose.T_keyframe_camera.inverse(), shutter, frame, estimator);
+}
+
+std::vector<Pose> searchAround(const Pose& T_keyframe_camera, double share_of_view) {
+    const double step = 3 * kDegree * share_of_view;
+    constexpr int kReach = 6;
+    std::vector<Pose> guesses;
+    for (int yaw = -kReach; yaw <= kReach; ++yaw) {
+        for (int pitch = -kReach; pitch <= kReach; ++pitch) {
+            Vector6d turn = Vector6d::Zero();
+            turn[3] = pitch * step;
+            turn[4] = yaw * step;
+            guesses.push_back(poseIncrement(turn) * T_keyframe_camera.inverse());
+        }
+    }
+    return guesses;
+}
+
+}  // namespace roevo

@@ -1,0 +1,55 @@
+#pragma once
+/// Frames of a real clip held in memory.
+
+#include <filesystem>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/trajectory_io.h"
+#include "recordings/dataset_reader.h"
+#include "support/data_folder.h"
+
+namespace roevo::testing {
+
+struct RealFrames {
+    PinholeCamera camera;
+    std::vector<RgbdFrame> frames;
+    std::vector<StampedPose> truth;
+};
+
+/// @param count  frames at most. @return nothing where there is no such clip
+inline std::optional<RealFrames> realClip(const std::string& name, std::size_t count) {
+    const std::string folder = test::dataFolder() + "/" + name;
+    if (!std::filesystem::exists(folder)) return std::nullopt;
+    const DatasetReader reader = openDataset(folder);
+    RealFrames clip;
+    clip.camera = reader.camera();
+    clip.truth = readTumTrajectory(reader.groundTruthPath());
+    for (std::size_t i = 0; i < std::min(count, reader.size()); ++i)
+        clip.frames.push_back(reader.readFrame(i));
+    return clip;
+}
+
+/// As a camera with so many times the pixels in each direction might have seen it, and its frame.
+inline PinholeCamera enlarged(const PinholeCamera& camera, int times) {
+    PinholeCamera out = camera;
+    out.width *= times;
+    out.height *= times;
+    out.fx *= times;
+    out.fy *= times;
+    out.cx = (camera.cx + 0.5) * times - 0.5;
+    out.cy = (camera.cy + 0.5) * times - 0.5;
+    return out;
+}
+inline RgbdFrame enlarged(const RgbdFrame& frame, int times) {
+    RgbdFrame out;
+    out.timestamp = frame.timestamp;
+    const auto factor = static_cast<double>(times);
+    cv::resize(frame.grey, out.grey, cv::Size(), factor, factor, cv::INTER_CUBIC);
+    cv::resize(frame.depth, out.depth, cv::Size(), factor, factor, cv::INTER_NEAREST);
+    return out;
+}
+
+}  // namespace roevo::testing

@@ -1,0 +1,119 @@
+// What final poses become of frames between keyframes.
+#include <gtest/gtest.h>
+
+#include "odometry/trajectory.h"
+#include "tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+Pose at(double x) {
+    Pose pose = Pose::Identity();
+    pose.translation().x() = x;
+    return pose;
+}
+
+RelativePose from(int keyframe, const Pose& T_keyframe_camera) {
+    return {keyframe, T_keyframe_camera, Matrix6d::Zero()};
+}
+
+int beginTrack(Trajectory& trajectory, double timestamp, const Pose& pose) {
+    return trajectory.beginTrack(timestamp, pose, Matrix6d::Zero());
+}
+
+/// Keyframe 0 at x = 0, `count` frames tracked from it that go to x = `length` in even steps, and keyframe 1
+/// there, which the map then moves by `correction` along z.
+Trajectory walk(int count, double length, double correction) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    for (int i = 0; i < count; ++i) trajectory.addFrame(0.1 * i, from(0, at(length * i / (count - 1))));
+    trajectory.addKeyframe(0.1 * (count - 1), from(0, at(length)));
+    MapUpdate update;
+    update.keyframe = 1;
+    Pose moved = at(length);
+    moved.translation().z() = correction;
+    update.poses.emplace_back(1, moved);
+    trajectory.apply(update);
+    return trajectory;
+}
+
+TEST(Trajectory, ACorrectionIsSharedOutEvenlyAlongAnEvenWalk) {
+    const auto frames = walk(11, 1.0, 0.02).frames();
+    ASSERT_EQ(frames.size(), 11U);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const Eigen::Vector3d place = frames[i].T_world_camera.translation();
+        EXPECT_NEAR(place.z(), 0.002 * static_cast<double>(i), 1e-12) << i;
+        EXPECT_NEAR(place.x(), 0.1 * static_cast<double>(i), 1e-12) << i;
+    }
+}
+
+TEST(Trajectory, FramesGoAlongWithTheirKeyframeWhenItIsTheLast) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    trajectory.addFrame(0, from(0, at(0)));
+    trajectory.addFrame(0.1, from(0, at(0.3)));
+    MapUpdate update;
+    update.poses.emplace_back(0, at(5));
+    trajectory.apply(update);
+    EXPECT_NEAR(trajectory.frames()[1].T_world_camera.translation().x(), 5.3, 1e-12);
+}
+
+TEST(Trajectory, NothingIsSharedAcrossALoss) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    trajectory.addFrame(0.1, from(0, at(0.3)));
+    beginTrack(trajectory, 0.2, at(0.4));  // re-anchored: no parent
+    MapUpdate update;
+    update.keyframe = 1;
+    update.poses.emplace_back(1, at(7));
+    trajectory.apply(update);
+    EXPECT_NEAR(trajectory.frames()[0].T_world_camera.translation().x(), 0.3, 1e-12);
+}
+
+TEST(Trajectory, ACameraThatStandsStillDoesNotJitterByItsCorrection) {
+    // Half a millimetre of tracking noise; the map moves the next keyframe by 5 mm
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    for (int i = 0; i <= 30; ++i) trajectory.addFrame(0.1 * i, from(0, at(i % 2 == 0 ? 0 : 0.0005)));
+    trajectory.addKeyframe(3, from(0, at(0)));
+    MapUpdate update;
+    update.keyframe = 1;
+    Pose moved = Pose::Identity();
+    moved.translation().z() = 0.005;
+    update.poses.emplace_back(1, moved);
+    trajectory.apply(update);
+    const auto frames = trajectory.frames();
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+        const double step =
+            frames[i].T_world_camera.translation().z() - frames[i - 1].T_world_camera.translation().z();
+        EXPECT_GT(step, -1e-4) << i << ": never back";
+        EXPECT_LT(step, 4e-4) << i << ": in small steps";
+    }
+    EXPECT_NEAR(frames.back().T_world_camera.translation().z(), 0.005, 1e-12);
+}
+
+TEST(Trajectory, PosesAreKeptAsTheyWereKnownAtFirst) {
+    const Trajectory trajectory = walk(11, 1.0, 0.02);
+    ASSERT_EQ(trajectory.live().size(), 11U);
+    EXPECT_EQ(trajectory.live().back().T_world_camera.matrix(), at(1).matrix());
+    EXPECT_EQ(trajectory.live().back().timestamp, trajectory.frames().back().timestamp);
+}
+
+TEST(Trajectory, YoungerKeyframesFollowTheOneTheyWereTrackedFrom) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    EXPECT_EQ(trajectory.addKeyframe(1, from(0, at(1))), 1);
+    EXPECT_EQ(trajectory.addKeyframe(2, from(1, at(1))), 2);
+    EXPECT_EQ(beginTrack(trajectory, 3, at(10)), 3);
+    EXPECT_EQ(trajectory.addKeyframe(4, from(3, at(1))), 4);
+    MapUpdate update;  // of keyframe 1, late: 2 to 4 are there already
+    update.keyframe = 1;
+    update.poses.emplace_back(1, at(1.5));
+    trajectory.apply(update);
+    EXPECT_NEAR(trajectory.keyframePose(2).translation().x(), 2.5, 1e-12);
+    EXPECT_NEAR(trajectory.keyframePose(3).translation().x(), 10, 1e-12) << "no map relates it to 1";
+    EXPECT_NEAR(trajectory.keyframePose(4).translation().x(), 11, 1e-12);
+}
+
+}  // namespace
+}  // namespace roevo
