@@ -133,11 +133,11 @@ class OursTimed : public TimedTracker {
   public:
     OursTimed(const StudyInput& input, const OdometryOptions& options, bool count_steps)
         : TimedTracker(input.camera, options, count_steps),
-          fine_(input.camera, options),
-          alike_(input.camera, withFine(options, alikeOptions(options.fine))),
-          alike_field_(input.camera, alikeOptions(options.fine), 0),
-          steps_(options.fine, [&](const FineOptions& fine) {
-              return FineTracker(input.camera, withFine(options, fine));
+          fine_(input.camera, options_),
+          alike_(input.camera, withFine(options_, alikeOptions(options_.fine))),
+          alike_field_(input.camera, alikeOptions(options_.fine), 0),
+          steps_(options_.fine, [&](const FineOptions& fine) {
+              return FineTracker(input.camera, withFine(options_, fine));
           }) {}
 
   protected:
@@ -171,8 +171,8 @@ class FieldTimed : public TimedTracker {
   public:
     FieldTimed(const StudyInput& input, const OdometryOptions& options, bool count_steps)
         : TimedTracker(input.camera, options, count_steps),
-          field_(input.camera, options.fine, 0),
-          steps_(options.fine,
+          field_(input.camera, options_.fine, 0),
+          steps_(options_.fine,
                  [&](const FineOptions& fine) { return DistanceFieldTracker(input.camera, fine, 0); }) {}
 
   protected:

@@ -19,7 +19,7 @@ class FieldTracker : public Tracker {
   public:
     FieldTracker(const PinholeCamera& camera, const OdometryOptions& options, bool photometric)
         : Tracker(camera, options),
-          field_(camera, options.fine, photometric ? options.fine.photometric_weight : 0) {}
+          field_(camera, options_.fine, photometric ? options_.fine.photometric_weight : 0) {}
     DistanceFieldTracker::Times takeTimes() { return field_.takeTimes(); }
 
   protected:

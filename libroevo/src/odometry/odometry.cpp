@@ -53,9 +53,9 @@ struct Odometry::Impl {
     Outcome bridge(Tracking failed);
     Outcome renewReference(Tracking tracking);
     void learn(const Tracking& tracking, const RollingShutter& shutter);
-    void settle(const Outcome& outcome);
+    void settle(const Outcome& outcome, const Matrix6d& measured);
     Fault beginTrack(const Pose& T_world_camera, const Matrix6d& covariance);
-    Fault promote(const Frame& promoted, const Tracking& tracking);
+    Fault promote(const Frame& promoted, const RelativePose& pose, const RowMotion& rows);
     void adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked);
     FrameResult report(FrameResult result, const Outcome& outcome);
     Trajectory finalPoses() const;
@@ -81,15 +81,16 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
 
     lost_frames = 0;
     learn(tracking, prediction.shutter);
+    const Matrix6d measured = tracking.pose.covariance;
     Outcome outcome;
-    if (keyframeIsDue(*reference, tracking, options.keyframe)) {
+    if (keyframeIsDue(*reference, tracking, options.keyframe))
         outcome = renewReference(std::move(tracking));  // Sec. VI
-    } else {
+    else
         outcome.tracking = std::move(tracking);
-        candidate = outcome.tracking;
-    }
-    settle(outcome);
-    return report(std::move(result), outcome);
+    settle(outcome, measured);
+    result = report(std::move(result), outcome);
+    if (!outcome.is_keyframe) candidate = std::move(outcome.tracking);
+    return result;
 }
 
 FrameResult Odometry::Impl::applyMapUpdates() {
@@ -154,17 +155,16 @@ Outcome Odometry::Impl::renewReference(Tracking tracking) {
     // still tracked well: it takes over, and this frame is tracked once more, from nearer by.
     const bool sees_less = tracking.matchedRatio() < options.keyframe.min_overlap;
     const bool takes_over = sees_less && candidate && candidate->matchedRatio() > tracking.matchedRatio();
-    const Tracking promoted = takes_over ? *candidate : tracking;
-    outcome.no_keyframe = promote(takes_over ? *frame_before : *frame, promoted);
+    const RelativePose promoted = takes_over ? candidate->pose : tracking.pose;
+    outcome.no_keyframe = takes_over ? promote(*frame_before, promoted, candidate->rows)
+                                     : promote(*frame, promoted, tracking.rows);
     outcome.new_keyframe = !outcome.no_keyframe;
     outcome.tracking = std::move(tracking);
-    if (outcome.no_keyframe) {
-        candidate = outcome.tracking;
-        return outcome;
-    }
-    outcome.tracking.pose = changeReference(outcome.tracking.pose, promoted.pose, reference->id);
-    if (!takes_over) {
-        outcome.tracking.pose.covariance.setZero();  // it is the reference now
+    if (outcome.no_keyframe) return outcome;
+    outcome.tracking.pose = changeReference(outcome.tracking.pose, promoted, reference->id);
+    outcome.is_keyframe = !takes_over;
+    if (outcome.is_keyframe) {
+        outcome.tracking.pose.covariance.setZero();
         return outcome;
     }
     const Prediction prediction = motion.predict(frame->timestamp());
@@ -178,7 +178,6 @@ Outcome Odometry::Impl::renewReference(Tracking tracking) {
         again.fault = outcome.tracking.fault;
         outcome.tracking = std::move(again);
     }
-    candidate = outcome.tracking;
     return outcome;
 }
 
@@ -196,12 +195,13 @@ void Odometry::Impl::learn(const Tracking& tracking, const RollingShutter& shutt
 }
 
 /// A tracked pose is what the next one is predicted from.
-void Odometry::Impl::settle(const Outcome& outcome) {
+/// @param measured  its covariance, which a keyframe no longer has relative to itself
+void Odometry::Impl::settle(const Outcome& outcome, const Matrix6d& measured) {
     const RelativePose& pose = outcome.tracking.pose;
     if (outcome.tracking.searched)
         motion.anchor(frame->timestamp(), pose.T_keyframe_camera);
     else
-        motion.measure(frame->timestamp(), pose.T_keyframe_camera, pose.covariance);
+        motion.measure(frame->timestamp(), pose.T_keyframe_camera, measured);
 }
 
 Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance) {
@@ -215,13 +215,12 @@ Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& cov
     return {};
 }
 
-Fault Odometry::Impl::promote(const Frame& promoted, const Tracking& tracking) {
+Fault Odometry::Impl::promote(const Frame& promoted, const RelativePose& pose, const RowMotion& rows) {
     auto fresh = std::make_unique<Keyframe>();
-    if (const Fault fault = makeKeyframe(promoted, tracking.rows, camera, scaled, *tracker, *fresh))
-        return fault;
-    fresh->id = trajectory.addKeyframe(promoted.timestamp(), tracking.pose);
-    motion.changeReference(tracking.pose.T_keyframe_camera.inverse());
-    adopt(std::move(fresh), promoted, tracking.pose);
+    if (const Fault fault = makeKeyframe(promoted, rows, camera, scaled, *tracker, *fresh)) return fault;
+    fresh->id = trajectory.addKeyframe(promoted.timestamp(), pose);
+    motion.changeReference(pose.T_keyframe_camera.inverse());
+    adopt(std::move(fresh), promoted, pose);
     return {};
 }
 

@@ -27,18 +27,23 @@ EdgeTerm::EdgeTerm(const PinholeCamera& camera, const OdometryOptions& options)
       sensor_(options.sensor),
       associator_(options.fine) {}
 
-void EdgeTerm::start(const Keyframe& keyframe, const Frame& frame) {
+void EdgeTerm::look(const Keyframe& keyframe, const Frame& frame) {
     keyframe_ = &keyframe;
     frame_ = &frame;
-    narrowing_ = true;
     free_readout_ = has_associated_ = false;
+}
+
+void EdgeTerm::start(const Keyframe& keyframe, const Frame& frame) {
+    look(keyframe, frame);
+    narrowing_ = true;
     current_depth_.assign(frame.edges.size(), kUnknown);
 }
 
-void EdgeTerm::startFine(const Keyframe& keyframe, const Frame& frame, bool free_readout) {
-    start(keyframe, frame);
+void EdgeTerm::startReadout(const Keyframe& keyframe, const Frame& frame, const EdgeMatches& matches) {
+    look(keyframe, frame);
     narrowing_ = false;
-    free_readout_ = free_readout;
+    free_readout_ = has_associated_ = true;
+    matches_ = matches;
 }
 
 int EdgeTerm::narrowed() const {
@@ -49,14 +54,15 @@ bool EdgeTerm::linearise(const Linearisation& at, PoseSystem& system) {
     const double share = narrowing_ ? std::min(1.0, static_cast<double>(at.iteration) / narrowed()) : 1;
     const double radius = options_.search_radius + share * (options_.final_radius - options_.search_radius);
     project(at.T_current_keyframe, at.rows);
-    const double moved = has_associated_ ? imageMotion(T_associated_, at.T_current_keyframe, ideal_.fx,
-                                                       keyframe_->typicalDepth())
-                                         : 0;
-    if (!has_associated_ || moved > kKeptMotion || free_readout_) {
+    const auto moved = [&] {
+        return imageMotion(T_associated_, at.T_current_keyframe, ideal_.fx, keyframe_->typicalDepth());
+    };
+    if (!has_associated_ || (!free_readout_ && moved() > kKeptMotion)) {
         associateProjected(at.T_current_keyframe, radius);
         has_associated_ = share >= 1;
         T_associated_ = at.T_current_keyframe;
     }
+    if (free_readout_) has_associated_ = false;  // associations follow the read-out time that is assumed
     if (static_cast<int>(matches_.size()) < options_.min_inliers) return false;
     tangentResiduals(at.rows);
     weigh();

@@ -20,9 +20,11 @@ class EdgeTerm : public ResidualTerm {
     /// What is to be registered; both must outlive the use of the term. The search radius narrows down over
     /// the first iterations.
     void start(const Keyframe& keyframe, const Frame& frame);
-    /// Always the final radius; and the read-out time is free where asked, so that the keyframe's points move
-    /// with it.
-    void startFine(const Keyframe& keyframe, const Frame& frame, bool free_readout);
+    /// With the read-out time free, so that the keyframe's points move with it, and always the final radius.
+    /// @param matches  at the pose that is linearised first
+    void startReadout(const Keyframe& keyframe, const Frame& frame, const EdgeMatches& matches);
+    /// For associate() and assess() alone.
+    void look(const Keyframe& keyframe, const Frame& frame);
 
     bool linearise(const Linearisation& at, PoseSystem& system) override;
 

@@ -39,7 +39,7 @@ class ReadoutPriorTerm : public ResidualTerm {
 
 void FineTracker::associate(const Keyframe& keyframe, const Frame& frame, const Pose& T_current_keyframe,
                             const RowMotion& rows, double radius) {
-    edges_.start(keyframe, frame);
+    edges_.look(keyframe, frame);
     edges_.associate(T_current_keyframe, rows, radius);
 }
 
@@ -87,7 +87,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
 
 FineResult FineTracker::assess(const Keyframe& keyframe, const Frame& frame, const Pose& T_current_keyframe,
                                const RowMotion& rows) {
-    edges_.start(keyframe, frame);
+    edges_.look(keyframe, frame);
     edges_.assess(T_current_keyframe, rows);
     FineResult result;
     result.T_current_keyframe = T_current_keyframe;
@@ -101,9 +101,9 @@ FineResult FineTracker::assess(const Keyframe& keyframe, const Frame& frame, con
 }
 
 void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe,
-                                     const RollingShutter& shutter, const Frame& frame,
-                                     ReadoutEstimator& estimator) {
-    edges_.startFine(keyframe, frame, true);
+                                     const EdgeMatches& matches, const RollingShutter& shutter,
+                                     const Frame& frame, ReadoutEstimator& estimator) {
+    edges_.startReadout(keyframe, frame, matches);
     ReadoutPriorTerm about(shutter.seconds_per_row, kFreedom / ideal_.height);
     const auto linearisedAt = [&](const Pose& pose, const RollingShutter& rows, PoseSystem& system) {
         system.hessian.diagonal().array() += kCaution * 1e-6;

@@ -44,8 +44,10 @@ class FineTracker {
     /// Adds what a frame tells of the read-out time, where that is enough. The frame is registered some more
     /// for it, with the read-out time free: what points are associated with follows the read-out time that is
     /// assumed, and tells only a part of what it lacks.
+    /// @param matches  at that pose
     void addReadoutEvidence(const Keyframe& keyframe, const Pose& T_current_keyframe,
-                            const RollingShutter& shutter, const Frame& frame, ReadoutEstimator& estimator);
+                            const EdgeMatches& matches, const RollingShutter& shutter, const Frame& frame,
+                            ReadoutEstimator& estimator);
 
     const EdgeMatches& matches() const { return edges_.matches(); }         ///< of the last call
     const std::vector<float>& weights() const { return edges_.weights(); }  ///< of these matches, 0: outliers

@@ -134,7 +134,8 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
 
 void Tracker::learnReadout(const Keyframe& reference, const Frame& frame, const Tracking& tracking,
                            const RollingShutter& shutter, ReadoutEstimator& estimator) {
-    fine_.addReadoutEvidence(reference, tracking.pose.T_keyframe_camera.inverse(), shutter, frame, estimator);
+    fine_.addReadoutEvidence(reference, tracking.pose.T_keyframe_camera.inverse(), tracking.matches, shutter,
+                             frame, estimator);
 }
 
 std::vector<Pose> searchAround(const Pose& T_keyframe_camera, double share_of_view) {
