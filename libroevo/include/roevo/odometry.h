@@ -34,6 +34,11 @@ class Odometry {
     /// The poses as they were known when their frames were processed.
     std::vector<StampedPose> liveTrajectory() const;
 
+    /// Covariance of the motion between two frames of liveTrajectory(), given by their places in it: of
+    /// T_from_to, position (m), then orientation (rad), along the axes of the second camera. Infinite where
+    /// tracking was begun anew between them.
+    Matrix6d motionCovariance(std::size_t from, std::size_t to) const;
+
     std::vector<KeyframeInfo> keyframes() const;
 
     /// The 3-D edges in the world: fused over all keyframes in mode ba, else the keyframes' own.

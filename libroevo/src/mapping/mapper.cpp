@@ -98,7 +98,7 @@ void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
     job.keyframe.parent = fresh.tracked.keyframe;
     job.keyframe.begins_track = fresh.tracked.keyframe < 0;
     job.keyframe.T_parent_camera = fresh.tracked.T_keyframe_camera;
-    if (!job.keyframe.begins_track) job.keyframe.parent_information = fresh.tracked.covariance.inverse();
+    if (!job.keyframe.begins_track) job.keyframe.parent_information = fresh.tracked.covariance().inverse();
     if (fresh.previous != nullptr) {
         job.previous = fresh.previous->id;
         job.found = fresh.previous->foundShares();

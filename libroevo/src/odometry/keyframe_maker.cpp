@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "tracking/se3.h"
 
@@ -25,6 +26,33 @@ Fault makeKeyframe(const Frame& frame, const RowMotion& rows, const PinholeCamer
     keyframe.photometric = tracker.choosePoints(keyframe.edges, frame, rows);
     keyframe.median_depth = static_cast<double>(keyframe.edges.medianDepth());
     return {};
+}
+
+void numberEdges(Keyframe& keyframe, const Keyframe* before, const EdgeMatches& matches, std::int32_t& next) {
+    const EdgePoints3D& edges = keyframe.edges;
+    // Of each of the frame's points: the reference's edge that it was matched with
+    std::vector<std::int32_t> matched;
+    for (std::size_t k = 0; before != nullptr && k < matches.size(); ++k) {
+        const auto point = static_cast<std::size_t>(matches.current[k]);
+        if (point >= matched.size()) matched.resize(point + 1, -1);
+        matched[point] = before->edges.image.edge_of[static_cast<std::size_t>(matches.reference[k])];
+    }
+    std::map<std::int32_t, int> votes;
+    keyframe.clusters.clear();
+    for (int e = 0; e < edges.image.numEdges(); ++e) {
+        votes.clear();
+        const auto first = static_cast<std::size_t>(edges.image.begin[static_cast<std::size_t>(e)]);
+        const auto end = static_cast<std::size_t>(edges.image.begin[static_cast<std::size_t>(e) + 1]);
+        for (std::size_t i = first; i < end; ++i) {
+            const auto source = static_cast<std::size_t>(edges.source[i]);
+            if (source < matched.size() && matched[source] >= 0) ++votes[matched[source]];
+        }
+        const auto most = std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
+            return a.second < b.second;
+        });
+        keyframe.clusters.push_back(
+            most == votes.end() ? next++ : before->clusters[static_cast<std::size_t>(most->first)]);
+    }
 }
 
 EdgeMap ownEdges(const Keyframe& kf, const RgbdFrame& frame, const PinholeCamera& camera) {

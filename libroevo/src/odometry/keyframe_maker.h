@@ -14,6 +14,12 @@ namespace roevo {
 [[nodiscard]] Fault makeKeyframe(const Frame& frame, const RowMotion& rows, const PinholeCamera& camera,
                                  const OdometryOptions& options, const Tracker& tracker, Keyframe& keyframe);
 
+/// Numbers the edges of a new keyframe: those that were tracked as edges of the one before are the same.
+/// @param before   nullptr: there is none
+/// @param matches  of the frame that becomes the keyframe
+/// @param next     next number that is free
+void numberEdges(Keyframe& keyframe, const Keyframe* before, const EdgeMatches& matches, std::int32_t& next);
+
 /// The keyframe's edges in its own frame, coloured from its image.
 EdgeMap ownEdges(const Keyframe& keyframe, const RgbdFrame& frame, const PinholeCamera& camera);
 

@@ -44,6 +44,7 @@ struct Odometry::Impl {
     std::unique_ptr<Keyframe> reference;
     std::optional<Tracking> candidate;  // of the frame before, if it can still become a keyframe
     double last_timestamp = -std::numeric_limits<double>::infinity();
+    std::int32_t next_cluster = 0;
     int lost_frames = 0;
     double lost_since = 0;  // s
 
@@ -55,7 +56,7 @@ struct Odometry::Impl {
     void learn(const Tracking& tracking, const RollingShutter& shutter);
     void settle(const Outcome& outcome, const Matrix6d& measured);
     Fault beginTrack(const Pose& T_world_camera, const Matrix6d& covariance);
-    Fault promote(const Frame& promoted, const RelativePose& pose, const RowMotion& rows);
+    Fault promote(const Frame& promoted, const Tracking& tracked);
     void adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked);
     FrameResult report(FrameResult result, const Outcome& outcome);
     Trajectory finalPoses() const;
@@ -81,7 +82,7 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
 
     lost_frames = 0;
     learn(tracking, prediction.shutter);
-    const Matrix6d measured = tracking.pose.covariance;
+    const Matrix6d measured = tracking.pose.covariance();
     Outcome outcome;
     if (keyframeIsDue(*reference, tracking, options.keyframe))
         outcome = renewReference(std::move(tracking));  // Sec. VI
@@ -96,7 +97,7 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
 FrameResult Odometry::Impl::applyMapUpdates() {
     FrameResult result;
     for (MapUpdate& update : mapper->due(last_timestamp, result.ms.waiting)) {
-        const RelativePose last{reference->id, motion.lastPose(), Matrix6d::Zero()};
+        const RelativePose last{reference->id, motion.lastPose(), {}};
         const Pose before = trajectory.worldPose(last);
         trajectory.apply(update);
         const Pose after = trajectory.worldPose(last);
@@ -137,13 +138,13 @@ Outcome Odometry::Impl::bridge(Tracking failed) {
         motion.forgetVelocity();
     // A lost pose is worth little: say so, growing with every frame
     RelativePose& pose = failed.pose;
-    pose = {reference->id, motion.lastPose(), lost_frames * 1e-2 * Matrix6d::Identity()};
+    pose = {reference->id, motion.lastPose(), {lost_frames * 1e-2 * Matrix6d::Identity(), {}}};
     outcome.status = bridging ? FrameStatus::kPredicted : FrameStatus::kLost;
     if (!bridging && !beginTrack(trajectory.worldPose(pose), trajectory.worldCovariance(pose))) {
         outcome.status = FrameStatus::kInitialised;
         outcome.new_keyframe = true;
         lost_frames = 0;
-        pose = {reference->id, Pose::Identity(), Matrix6d::Zero()};
+        pose = {reference->id, Pose::Identity(), {}};
     }
     outcome.tracking = std::move(failed);
     return outcome;
@@ -156,15 +157,14 @@ Outcome Odometry::Impl::renewReference(Tracking tracking) {
     const bool sees_less = tracking.matchedRatio() < options.keyframe.min_overlap;
     const bool takes_over = sees_less && candidate && candidate->matchedRatio() > tracking.matchedRatio();
     const RelativePose promoted = takes_over ? candidate->pose : tracking.pose;
-    outcome.no_keyframe = takes_over ? promote(*frame_before, promoted, candidate->rows)
-                                     : promote(*frame, promoted, tracking.rows);
+    outcome.no_keyframe = takes_over ? promote(*frame_before, *candidate) : promote(*frame, tracking);
     outcome.new_keyframe = !outcome.no_keyframe;
     outcome.tracking = std::move(tracking);
     if (outcome.no_keyframe) return outcome;
     outcome.tracking.pose = changeReference(outcome.tracking.pose, promoted, reference->id);
     outcome.is_keyframe = !takes_over;
     if (outcome.is_keyframe) {
-        outcome.tracking.pose.covariance.setZero();
+        outcome.tracking.pose.uncertainty = PoseUncertainty();
         return outcome;
     }
     const Prediction prediction = motion.predict(frame->timestamp());
@@ -208,6 +208,7 @@ Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& cov
     auto fresh = std::make_unique<Keyframe>();
     if (const Fault fault = makeKeyframe(*frame, motion.stillRows(), camera, scaled, *tracker, *fresh))
         return fault;
+    numberEdges(*fresh, nullptr, {}, next_cluster);
     fresh->id = trajectory.beginTrack(frame->timestamp(), T_world_camera, covariance);
     motion.anchor(frame->timestamp(), Pose::Identity());
     motion.setBrightness(Brightness());
@@ -215,10 +216,13 @@ Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& cov
     return {};
 }
 
-Fault Odometry::Impl::promote(const Frame& promoted, const RelativePose& pose, const RowMotion& rows) {
+Fault Odometry::Impl::promote(const Frame& promoted, const Tracking& tracked) {
     auto fresh = std::make_unique<Keyframe>();
-    if (const Fault fault = makeKeyframe(promoted, rows, camera, scaled, *tracker, *fresh)) return fault;
-    fresh->id = trajectory.addKeyframe(promoted.timestamp(), pose);
+    if (const Fault fault = makeKeyframe(promoted, tracked.rows, camera, scaled, *tracker, *fresh))
+        return fault;
+    const RelativePose pose = tracked.pose;  // the tracking may be the candidate, which adopt() drops
+    numberEdges(*fresh, reference.get(), tracked.matches, next_cluster);
+    fresh->id = trajectory.addKeyframe(promoted.timestamp(), pose, fresh->clusters);
     motion.changeReference(pose.T_keyframe_camera.inverse());
     adopt(std::move(fresh), promoted, pose);
     return {};
@@ -287,6 +291,9 @@ std::vector<StampedPose> Odometry::trajectory() const {
 }
 std::vector<StampedPose> Odometry::liveTrajectory() const {
     return impl_->trajectory.live();
+}
+Matrix6d Odometry::motionCovariance(std::size_t from, std::size_t to) const {
+    return impl_->trajectory.motionCovariance(from, to);
 }
 std::vector<KeyframeInfo> Odometry::keyframes() const {
     return impl_->finalPoses().keyframes();

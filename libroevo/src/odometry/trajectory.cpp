@@ -1,6 +1,7 @@
 #include "trajectory.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "tracking/se3.h"
 
@@ -8,7 +9,28 @@ namespace roevo {
 namespace {
 
 constexpr double kStill = 0.02;      // m; less change of view than this is hardly any
+constexpr std::size_t kRecentFrames = 128;  // of which it is kept which edges their errors come from
 constexpr double kTypicalDepth = 2;  // m; at this depth a turn by 1 rad changes a view like so many metres
+
+/// Turns a covariance of position and orientation.
+Matrix6d rotated(const Eigen::Matrix3d& R) {
+    Matrix6d both = Matrix6d::Zero();
+    both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
+    return both;
+}
+
+/// Puts what these clusters do to what is independent.
+template <class Chosen>
+void forget(PoseUncertainty& uncertainty, Chosen&& chosen) {
+    auto& edges = uncertainty.influences;
+    const auto gone = std::stable_partition(edges.begin(), edges.end(), [&](const EdgeInfluence& edge) {
+        return !chosen(edge.cluster);
+    });
+    for (auto it = gone; it != edges.end(); ++it)
+        uncertainty.independent += it->moved * it->moved.transpose();
+    edges.erase(gone, edges.end());
+    if (edges.empty()) edges.shrink_to_fit();
+}
 
 double changeOfView(const Pose& motion) {
     return motion.translation().norm() + kTypicalDepth * rotationAngle(motion);
@@ -17,25 +39,38 @@ double changeOfView(const Pose& motion) {
 }  // namespace
 
 int Trajectory::beginTrack(double timestamp, const Pose& T_world_camera, const Matrix6d& covariance) {
+    const Matrix6d to_camera = rotated(T_world_camera.linear().transpose());
+    links_.push_back({-1, T_world_camera, {to_camera * covariance * to_camera.transpose(), {}}});
+    in_world_.push_back(links_.back().uncertainty);
     const int id = static_cast<int>(keyframes_.size());
     keyframes_.push_back({id, timestamp, T_world_camera});
-    covariances_.push_back(covariance);
-    links_.push_back({-1, T_world_camera});
     return id;
 }
 
-int Trajectory::addKeyframe(double timestamp, const RelativePose& pose) {
+int Trajectory::addKeyframe(double timestamp, const RelativePose& pose,
+                            const std::vector<std::int32_t>& clusters) {
+    RelativePose in_world = inWorld(pose);
+    forget(in_world.uncertainty, [&](std::int32_t cluster) {
+        return std::find(clusters.begin(), clusters.end(), cluster) == clusters.end();
+    });
+    forget(in_world_.back(), [](std::int32_t) { return true; });
+    in_world_.push_back(std::move(in_world.uncertainty));
+    links_.push_back(pose);
     const int id = static_cast<int>(keyframes_.size());
-    const Pose T_world_camera = worldPose(pose);
-    covariances_.push_back(worldCovariance(pose));
-    keyframes_.push_back({id, timestamp, T_world_camera});
-    links_.push_back({pose.keyframe, pose.T_keyframe_camera});
+    keyframes_.push_back({id, timestamp, in_world.T_keyframe_camera});
     return id;
 }
 
 void Trajectory::addFrame(double timestamp, const RelativePose& pose) {
-    frames_.push_back({timestamp, {pose.keyframe, pose.T_keyframe_camera}});
+    frames_.push_back({timestamp, pose});
     live_.push_back({timestamp, worldPose(pose)});
+    if (frames_.size() <= kRecentFrames) return;
+    forget(frames_[frames_.size() - kRecentFrames - 1].pose.uncertainty, [](std::int32_t) { return true; });
+}
+
+RelativePose Trajectory::inWorld(const RelativePose& pose) const {
+    return compose({-1, keyframePose(pose.keyframe), in_world_[static_cast<std::size_t>(pose.keyframe)]},
+                   pose);
 }
 
 Pose Trajectory::worldPose(const RelativePose& pose) const {
@@ -43,17 +78,21 @@ Pose Trajectory::worldPose(const RelativePose& pose) const {
 }
 
 Matrix6d Trajectory::worldCovariance(const RelativePose& pose) const {
-    const Eigen::Matrix3d R = worldPose(pose).linear();
-    Matrix6d to_world = Matrix6d::Zero();
-    to_world.topLeftCorner<3, 3>() = R;
-    to_world.bottomRightCorner<3, 3>() = R;
-    // An error of the keyframe's orientation moves what is far from it
-    Matrix6d from_keyframe = Matrix6d::Identity();
-    from_keyframe.topRightCorner<3, 3>() =
-        -skew(keyframePose(pose.keyframe).linear() * pose.T_keyframe_camera.translation());
-    const Matrix6d& of_keyframe = covariances_[static_cast<std::size_t>(pose.keyframe)];
-    return from_keyframe * of_keyframe * from_keyframe.transpose() +
-           to_world * pose.covariance * to_world.transpose();
+    const RelativePose in_world = inWorld(pose);
+    const Matrix6d to_world = rotated(in_world.T_keyframe_camera.linear());
+    return to_world * in_world.covariance() * to_world.transpose();
+}
+
+Matrix6d Trajectory::motionCovariance(std::size_t from, std::size_t to) const {
+    const RelativePose& first = frames_.at(from).pose;
+    RelativePose last = frames_.at(to).pose;
+    while (last.keyframe > first.keyframe) {
+        const RelativePose& link = links_[static_cast<std::size_t>(last.keyframe)];
+        if (link.keyframe < 0) break;
+        last = compose(link, last);
+    }
+    if (last.keyframe != first.keyframe) return Matrix6d::Constant(std::numeric_limits<double>::infinity());
+    return changeReference(last, first, -1).covariance();
 }
 
 void Trajectory::apply(const MapUpdate& update) {
@@ -61,21 +100,21 @@ void Trajectory::apply(const MapUpdate& update) {
         keyframes_[static_cast<std::size_t>(id)].T_world_camera = pose;
     for (auto id = static_cast<std::size_t>(update.keyframe) + 1; id < keyframes_.size(); ++id) {
         if (links_[id].keyframe < 0) continue;
-        keyframes_[id].T_world_camera = keyframePose(links_[id].keyframe) * links_[id].T_parent_camera;
+        keyframes_[id].T_world_camera = keyframePose(links_[id].keyframe) * links_[id].T_keyframe_camera;
     }
 }
 
 Pose Trajectory::finalPose(const Frame& frame) const {
-    const Link& link = frame.link;
-    const Pose from_parent = keyframePose(link.keyframe) * link.T_parent_camera;
+    const RelativePose& link = frame.pose;
+    const Pose from_parent = worldPose(link);
     const auto next = static_cast<std::size_t>(link.keyframe) + 1;
     if (next >= links_.size() || links_[next].keyframe != link.keyframe) return from_parent;
-    const Pose T_next_camera = links_[next].T_parent_camera.inverse() * link.T_parent_camera;
+    const Pose T_next_camera = links_[next].T_keyframe_camera.inverse() * link.T_keyframe_camera;
     const Pose from_next = keyframes_[next].T_world_camera * T_next_camera;
     // Where the camera hardly moves, changes are noise of tracking, and time shares better
     const double begin = keyframes_[next - 1].timestamp, end = keyframes_[next].timestamp;
     const double passed = end > begin ? std::clamp((frame.timestamp - begin) / (end - begin), 0.0, 1.0) : 1;
-    const double since = changeOfView(link.T_parent_camera) + kStill * passed;
+    const double since = changeOfView(link.T_keyframe_camera) + kStill * passed;
     const double left = changeOfView(T_next_camera) + kStill * (1 - passed);
     return interpolate(from_parent, from_next, since / (since + left));
 }

@@ -14,7 +14,8 @@ class Trajectory {
     /// A keyframe that was tracked from none: the first, or re-anchored. @return its id
     int beginTrack(double timestamp, const Pose& T_world_camera, const Matrix6d& covariance);
     /// @param pose  relative to the keyframe that it was tracked from. @return its id
-    int addKeyframe(double timestamp, const RelativePose& pose);
+    /// @param clusters  of its edges; what other edges did to its pose is from now on independent
+    int addKeyframe(double timestamp, const RelativePose& pose, const std::vector<std::int32_t>& clusters);
     void addFrame(double timestamp, const RelativePose& pose);
 
     /// Moves the keyframes as the map has it; younger ones follow the one that they were tracked from.
@@ -23,6 +24,10 @@ class Trajectory {
     Pose worldPose(const RelativePose& pose) const;
     /// As FrameResult::covariance.
     Matrix6d worldCovariance(const RelativePose& pose) const;
+    /// Of the motion from one frame to another (their indices in the order of addFrame()): of T_from_to,
+    /// position, then orientation, along the axes of the second camera. Not finite where they are in different
+    /// tracks.
+    Matrix6d motionCovariance(std::size_t from, std::size_t to) const;
 
     const std::vector<KeyframeInfo>& keyframes() const { return keyframes_; }
     const Pose& keyframePose(int id) const { return keyframes_[static_cast<std::size_t>(id)].T_world_camera; }
@@ -34,19 +39,16 @@ class Trajectory {
     const std::vector<StampedPose>& live() const { return live_; }
 
   private:
-    struct Link {
-        int keyframe = -1;  ///< that the pose is relative to, -1: the world
-        Pose T_parent_camera = Pose::Identity();
-    };
     struct Frame {
         double timestamp = 0;
-        Link link;
+        RelativePose pose;
     };
+    RelativePose inWorld(const RelativePose& pose) const;
     Pose finalPose(const Frame& frame) const;
 
     std::vector<KeyframeInfo> keyframes_;
-    std::vector<Matrix6d> covariances_;  ///< of the keyframes, in the world
-    std::vector<Link> links_;            ///< of the keyframes
+    std::vector<PoseUncertainty> in_world_;  ///< of the keyframes; influences of the newest alone
+    std::vector<RelativePose> links_;  ///< of the keyframes, to the ones before; -1: to the world
     std::vector<Frame> frames_;
     std::vector<StampedPose> live_;
 };

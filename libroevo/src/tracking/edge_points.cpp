@@ -72,6 +72,7 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
                     out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
                     out.correction.push_back(z[k] - patch_z[k]);
                     out.occluding.push_back(occluding[k]);
+                    out.source.push_back(static_cast<std::int32_t>(i));
                 }
                 out.image.finishEdge();
             }

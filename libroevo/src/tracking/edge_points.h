@@ -19,6 +19,7 @@ struct EdgePoints3D {
     std::vector<float> correction;        ///< m that EdgeSides added to the depth of the patch
     std::vector<float> weight;            ///< w_s(depth), Eq. (20)
     std::vector<std::uint8_t> occluding;  ///< 1 where the point borders a background behind it
+    std::vector<std::int32_t> source;     ///< index of the point among those of the image
 
     std::size_t size() const { return image.size(); }
     float medianDepth() const;  ///< m; 0 when empty

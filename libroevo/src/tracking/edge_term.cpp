@@ -178,6 +178,7 @@ void EdgeTerm::weigh() {
     inliers_ = 0;
     const auto inverse = static_cast<float>(1 / (scale_ * scale_));
     const auto chi2 = static_cast<float>(options_.chi2);
+    double weights = 0, slopes = 0;
     for (std::size_t k = 0; k < matches_.size(); ++k) {
         const float information = sharpness_[k] * inverse;
         const float squared = residual_[k] * residual_[k] * information;
@@ -185,7 +186,10 @@ void EdgeTerm::weigh() {
         ++inliers_;
         weight_[k] = studentWeight(
             keyframe_->edges.weight[static_cast<std::size_t>(matches_.reference[k])] * information, squared);
+        weights += static_cast<double>(weight_[k]);
+        slopes += static_cast<double>(weight_[k] * studentSlope(squared));
     }
+    slope_ = weights > 0 ? std::max(slopes / weights, kLeastSlope) : 1;
 }
 
 void EdgeTerm::accumulate(PoseSystem& system) {
@@ -205,6 +209,13 @@ void EdgeTerm::accumulate(PoseSystem& system) {
         rows_.set(k, matrix, vector, x_[i], y_[i], z_[i]);
     }
     system.add(rows_.sum());
+}
+
+void EdgeTerm::addTo(EdgeClusters& clusters) const {
+    rows_.addTo(clusters, matches_.size(), [&](std::size_t k) {
+        const auto point = static_cast<std::size_t>(matches_.reference[k]);
+        return static_cast<std::size_t>(keyframe_->edges.image.edge_of[point]);
+    });
 }
 
 void EdgeTerm::accumulateReadout(const Linearisation& at, PoseSystem& system) const {

@@ -27,6 +27,7 @@ class EdgeTerm : public ResidualTerm {
     void look(const Keyframe& keyframe, const Frame& frame);
 
     bool linearise(const Linearisation& at, PoseSystem& system) override;
+    void addTo(EdgeClusters& clusters) const override;
 
     /// Edge-wise association at a given pose within `radius` px: fills matches().
     void associate(const Pose& T_current_keyframe, const RowMotion& rows, double radius);
@@ -38,6 +39,7 @@ class EdgeTerm : public ResidualTerm {
     const EdgeMatches& matches() const { return matches_; }
     int inliers() const { return inliers_; }  ///< matches that passed the chi-square test
     double scale() const { return scale_; }   ///< robust spread of the point-to-tangent residual, px, at rest
+    double slope() const { return slope_; }   ///< see studentSlope(): mean over the inliers by their weights
     /// Of the matches; 0 where one is an outlier.
     const std::vector<float>& weights() const { return weight_; }
 
@@ -69,7 +71,7 @@ class EdgeTerm : public ResidualTerm {
     std::vector<float> residual_, sharpness_, weight_, depth_residual_, depth_weight_;
     std::vector<float> current_depth_, scratch_;
     InformationRows rows_;
-    double scale_ = 1;
+    double scale_ = 1, slope_ = 1;
     int inliers_ = 0;
 };
 

@@ -79,8 +79,13 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
     result.inliers = edges_.inliers();
     result.scale = edges_.scale();
     result.matched_ratio = matches().matchedRatio();
-    result.covariance = kCorrelatedPoints * found.system.hessian.inverse();
-    result.converged = found.T_current_keyframe.isFinite() && result.covariance.allFinite();
+    if (found.complete) {
+        clusters_.start(keyframe.clusters);
+        for (const ResidualTerm* term : terms) term->addTo(clusters_);
+        result.uncertainty = clusters_.uncertainty(found.system, edges_.slope());
+    }
+    result.converged =
+        found.complete && found.T_current_keyframe.isFinite() && result.uncertainty.covariance().allFinite();
     if (!found.T_current_keyframe.isFinite()) result.T_current_keyframe = T_start;
     return result;
 }

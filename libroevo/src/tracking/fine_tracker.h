@@ -16,7 +16,7 @@ struct FineResult {
     int inliers = 0;           ///< associated points that passed the chi-square test
     double scale = 0;          ///< robust spread of the point-to-tangent residual, px, of edges at rest
     double matched_ratio = 0;  ///< see EdgeMatches
-    Matrix6d covariance = Matrix6d::Zero();  ///< of the left perturbation (t, phi) of T_current_keyframe
+    PoseUncertainty uncertainty;  ///< of the left perturbation (t, phi) of T_current_keyframe
 };
 
 /// Edge-wise registration: EdgeTerm joined by the photometric term and by what is likely beforehand.
@@ -62,6 +62,7 @@ class FineTracker {
     PinholeCamera ideal_;
     EdgeTerm edges_;
     PhotometricResiduals photometric_;
+    EdgeClusters clusters_;
 };
 
 }  // namespace roevo

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "roevo/types.h"
+#include "tracking/edge_clusters.h"
 #include "tracking/kernels.h"
 #include "tracking/rolling_shutter.h"
 
@@ -30,6 +31,18 @@ class InformationRows {
         z_[point] = z;
     }
     kernels::NormalEquations sum() const;
+    /// Adds each of them to its edge.
+    /// @param edge_of(point)  index of its edge
+    template <class EdgeOf>
+    void addTo(EdgeClusters& clusters, std::size_t count, EdgeOf&& edge_of) const {
+        for (std::size_t i = 0; i < count; ++i) {
+            float matrix[6], vector[3];
+            for (int a = 0; a < 6; ++a) matrix[a] = matrix_[a][i];
+            for (int a = 0; a < 3; ++a) vector[a] = vector_[a][i];
+            if (matrix[0] + matrix[3] + matrix[5] > 0)
+                clusters.add(edge_of(i), matrix, vector, x_[i], y_[i], z_[i]);
+        }
+    }
 
   private:
     std::vector<float> matrix_[6], vector_[3], x_, y_, z_;
@@ -65,6 +78,8 @@ class ResidualTerm {
     [[nodiscard]] virtual bool linearise(const Linearisation& at, PoseSystem& system) = 0;
     /// How well the last linearisation fits, comparable between poses.
     virtual double cost() const { return 0; }
+    /// Adds what each of the keyframe's edges contributed to the last linearisation.
+    virtual void addTo(EdgeClusters&) const {}
     /// The last linearisation is the best so far.
     virtual void keep() {}
     /// What the term estimates besides the pose goes along with the step.

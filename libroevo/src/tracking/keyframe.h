@@ -17,6 +17,8 @@ struct Keyframe {
     PhotometricPoints photometric;
     RowMotion row_motion;     ///< that `edges` were lifted with
     double median_depth = 0;  ///< m
+    /// Of each edge: a number that it shares with the edges of earlier keyframes that it was tracked as.
+    std::vector<std::int32_t> clusters;
     /// Of each edge: points of it that frames found, and that they looked for.
     std::vector<std::int32_t> hits, trials;
 

@@ -61,6 +61,7 @@ PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const Image
     const std::size_t padded = kernels::paddedSize(chosen.size());
     for (const std::size_t i : chosen) {
         points.source.push_back(static_cast<std::int32_t>(i));
+        points.edge_of.push_back(edges.image.edge_of[i]);
         points.x.push_back(edges.x[i]);
         points.y.push_back(edges.y[i]);
         points.z.push_back(edges.z[i]);
@@ -134,10 +135,14 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
     scale_ = std::max(kFloor, std::sqrt(static_cast<double>(*middle) / kernels::kPatchSize));
     cost_ = std::sqrt(static_cast<double>(*middle) / kernels::kPatchSize);
     const auto inverse = static_cast<float>(1 / (scale_ * scale_ * kernels::kPatchSize));
+    double weights = 0, slopes = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const float squared = residuals_[i].squared * inverse;
         weight_[i] = residuals_[i].squared < 0 ? 0 : studentWeight(points.weight[i], squared);
+        weights += static_cast<double>(weight_[i]);
+        slopes += static_cast<double>(weight_[i] * studentSlope(squared));
     }
+    slope_ = weights > 0 ? std::max(slopes / weights, kLeastSlope) : 1;
 }
 
 Brightness PhotometricResiduals::fitBrightness(const PhotometricPoints& points, int level,

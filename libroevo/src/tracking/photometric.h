@@ -19,6 +19,7 @@ struct PhotometricPoints {
     std::vector<float> weight;                         ///< w_i of Eq. (3)
     std::vector<std::vector<kernels::Patch>> patches;  ///< [level][point]
     std::vector<std::int32_t> source;                  ///< index of the edge point
+    std::vector<std::int32_t> edge_of;                 ///< index of its edge
     bool turning = true;  ///< patches turn with the camera about its optical axis, Eq. (2)
 
     std::size_t size() const { return axis_x.size(); }
@@ -48,6 +49,7 @@ class PhotometricResiduals {
     double scale() const {
         return scale_;
     }  ///< robust spread of a patch's root mean square residual, grey levels
+    double slope() const { return slope_; }  ///< see studentSlope(): mean over the points by their weights
     double cost() const { return cost_; }  ///< median, comparable between poses at one level
 
     /// The brightness that fits the present alignment best (weighted linear regression).
@@ -56,6 +58,11 @@ class PhotometricResiduals {
     /// The normal equations of all points, their information scaled by `factor`.
     void accumulate(const PhotometricPoints& points, int level, const PinholeCamera& camera, double factor,
                     kernels::NormalEquations& out);
+    /// Adds the points of the last normal equations to their edges.
+    void addTo(EdgeClusters& clusters, const PhotometricPoints& points) const {
+        rows_.addTo(clusters, points.size(),
+                    [&](std::size_t i) { return static_cast<std::size_t>(points.edge_of[i]); });
+    }
 
   private:
     std::vector<float> x_, y_, z_, u_, v_, axis_x_, axis_y_, weight_;
@@ -64,7 +71,7 @@ class PhotometricResiduals {
     std::vector<float> scratch_;
     int num_visible_ = 0;
     float gain_ = 1;
-    double scale_ = 0, cost_ = 0;
+    double scale_ = 0, cost_ = 0, slope_ = 1;
 };
 
 /// The photometric residual of Eq. (2), with the brightness that it estimates along with the pose.
@@ -93,6 +100,7 @@ class PhotometricTerm : public ResidualTerm {
 
     bool linearise(const Linearisation& at, PoseSystem& system) override;
     double cost() const override { return residuals_.cost(); }
+    void addTo(EdgeClusters& clusters) const override { residuals_.addTo(clusters, points_); }
     void keep() override;
     void update() override { brightness_ = residuals_.fitBrightness(points_, level_, brightness_); }
 

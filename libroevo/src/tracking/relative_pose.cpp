@@ -4,18 +4,48 @@
 
 namespace roevo {
 
-RelativePose changeReference(const RelativePose& pose, const RelativePose& new_keyframe, int id) {
-    RelativePose out;
-    out.keyframe = id;
-    out.T_keyframe_camera = new_keyframe.T_keyframe_camera.inverse() * pose.T_keyframe_camera;
-    // An error of the new keyframe's pose moves the camera the other way; of its orientation, the more the
-    // further off
-    const Eigen::Matrix3d R = out.T_keyframe_camera.linear().transpose();
+namespace {
+
+/// How an error of the frame that a pose is relative to, along that frame's axes, moves the camera, along its
+/// own: an error of the orientation the more the further off.
+Matrix6d carriedTo(const Pose& T_reference_camera) {
+    const Eigen::Matrix3d R = T_reference_camera.linear().transpose();
     Matrix6d carried = Matrix6d::Zero();
     carried.topLeftCorner<3, 3>() = carried.bottomRightCorner<3, 3>() = R;
-    carried.topRightCorner<3, 3>() = -R * skew(out.T_keyframe_camera.translation());
-    out.covariance = pose.covariance + carried * new_keyframe.covariance * carried.transpose();
+    carried.topRightCorner<3, 3>() = -R * skew(T_reference_camera.translation());
+    return carried;
+}
+
+/// @param sign  of the reference's errors in the pose
+PoseUncertainty sum(const PoseUncertainty& reference, const Matrix6d& carried, double sign,
+                    const PoseUncertainty& own) {
+    PoseUncertainty out;
+    out.independent = own.independent + carried * reference.independent * carried.transpose();
+    auto a = reference.influences.begin();
+    auto b = own.influences.begin();
+    while (a != reference.influences.end() || b != own.influences.end()) {
+        const bool first = a != reference.influences.end() &&
+                           (b == own.influences.end() || a->cluster <= b->cluster);
+        const bool second = b != own.influences.end() &&
+                            (a == reference.influences.end() || b->cluster <= a->cluster);
+        EdgeInfluence both{first ? a->cluster : b->cluster, Vector6d::Zero()};
+        if (first) both.moved += sign * (carried * (a++)->moved);
+        if (second) both.moved += (b++)->moved;
+        out.influences.push_back(both);
+    }
     return out;
+}
+
+}  // namespace
+
+RelativePose compose(const RelativePose& keyframe, const RelativePose& camera) {
+    return {keyframe.keyframe, keyframe.T_keyframe_camera * camera.T_keyframe_camera,
+            sum(keyframe.uncertainty, carriedTo(camera.T_keyframe_camera), 1, camera.uncertainty)};
+}
+
+RelativePose changeReference(const RelativePose& pose, const RelativePose& new_keyframe, int id) {
+    const Pose T = new_keyframe.T_keyframe_camera.inverse() * pose.T_keyframe_camera;
+    return {id, T, sum(new_keyframe.uncertainty, carriedTo(T), -1, pose.uncertainty)};
 }
 
 }  // namespace roevo

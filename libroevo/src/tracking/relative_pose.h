@@ -1,5 +1,6 @@
 #pragma once
 #include "roevo/types.h"
+#include "tracking/edge_clusters.h"
 
 namespace roevo {
 
@@ -7,12 +8,16 @@ namespace roevo {
 struct RelativePose {
     int keyframe = -1;
     Pose T_keyframe_camera = Pose::Identity();
-    Matrix6d covariance = Matrix6d::Zero();  ///< position, then orientation, along the camera's axes
+    PoseUncertainty uncertainty;  ///< position, then orientation, along the camera's axes
+
+    Matrix6d covariance() const { return uncertainty.covariance(); }
 };
 
-/// The same pose relative to another keyframe, whose own pose against the first one is known. The errors of
-/// both add up, though they share those of the first keyframe: what comes out is too large rather than too
-/// small.
+/// A pose relative to a keyframe whose own pose is relative to another: the errors of both add up.
+RelativePose compose(const RelativePose& keyframe, const RelativePose& camera);
+
+/// The same pose relative to another keyframe, whose own pose against the first one is known. What edges do
+/// to both cancels; the rest of the errors adds up.
 RelativePose changeReference(const RelativePose& pose, const RelativePose& new_keyframe, int id);
 
 }  // namespace roevo

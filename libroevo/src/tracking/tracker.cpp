@@ -106,9 +106,8 @@ Fault Tracker::runCoarse(const Keyframe& reference, const Frame& frame, const Co
     out.inliers = static_cast<int>(out.matches.size());
     if (out.matchedRatio() < options_.fine.min_matched_ratio / 2) return {Fault::Kind::kCoarseAstray, {}};
     out.pose.T_keyframe_camera = T.inverse();
-    out.pose.covariance =
-        kCorrelatedPoints * (aligned.system.hessian + 1e-9 * Matrix6d::Identity()).inverse();
-    return out.pose.covariance.allFinite() ? Fault() : Fault{Fault::Kind::kDiverged, {}};
+    out.pose.uncertainty = coarse_.uncertainty(reference, aligned);
+    return out.pose.covariance().allFinite() ? Fault() : Fault{Fault::Kind::kDiverged, {}};
 }
 
 Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const CoarseResult& aligned,
@@ -128,7 +127,7 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
     }
     if (!assessed.converged || !refined.converged) return describeFailure(assessed, options_.fine);
     out.pose.T_keyframe_camera = T.inverse();
-    out.pose.covariance = refined.covariance;
+    out.pose.uncertainty = refined.uncertainty;
     return {};
 }
 

@@ -1,0 +1,53 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "roevo/types.h"
+
+namespace roevo {
+
+struct PoseSystem;
+
+/// What one edge does to a pose: by how much that would move if the edge were left out.
+struct EdgeInfluence {
+    std::int32_t cluster = 0;  ///< see Keyframe::clusters
+    Vector6d moved = Vector6d::Zero();
+};
+
+/// What is not known of a pose: `independent`, and what edges do to it. The same edge in the scene errs alike
+/// in all keyframes that see it, so that influences of one cluster add up before they are squared.
+struct PoseUncertainty {
+    Matrix6d independent = Matrix6d::Zero();
+    std::vector<EdgeInfluence> influences;  ///< in the order of clusters, each once
+
+    Matrix6d covariance() const;
+};
+
+/// What each edge adds to the normal equations of a pose. The points of an edge err together (its depth in
+/// the keyframe, its association, the lens), so that edges are what is independent, not their points.
+class EdgeClusters {
+  public:
+    /// @param cluster_of  of each edge (see Keyframe::clusters); must outlive the use
+    void start(const std::vector<std::int32_t>& cluster_of);
+    /// @param matrix,vector  as in kernels::PointInformation, of a point at (x, y, z), m
+    void add(std::size_t edge, const float (&matrix)[6], const float (&vector)[3], float x, float y, float z);
+
+    /// Of the pose that solves the system: as of independent points, and what the pose would move by if any
+    /// one edge were left out (the jackknife over clusters, which is the sandwich estimator with its
+    /// small-sample correction). What nothing but a prior tells has the prior's variance.
+    /// @param slope  of all residuals' pull (see studentSlope()): weights alone overstate the Hessian
+    PoseUncertainty uncertainty(const PoseSystem& system, double slope) const;
+
+  private:
+    struct Sum {
+        std::int32_t cluster = 0;
+        bool used = false;
+        Matrix6d hessian = Matrix6d::Zero();
+        Vector6d gradient = Vector6d::Zero();
+    };
+    std::vector<Sum> sums_;               // in the order of clusters
+    std::vector<std::int32_t> slot_of_;   // of each edge: its cluster's place in sums_
+};
+
+}  // namespace roevo
