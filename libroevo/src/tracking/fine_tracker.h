@@ -6,8 +6,7 @@
 
 namespace roevo {
 
-/// Neighbouring points of an edge err together: their information counts about one independent point in so
-/// many.
+/// Neighbouring points of an edge err together: this many of them tell as much as one independent point.
 inline constexpr double kCorrelatedPoints = 5;
 
 struct FineResult {
