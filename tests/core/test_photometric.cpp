@@ -35,19 +35,12 @@ struct World {
                                      static_cast<float>(gradient.gx.at<std::int16_t>(v, u)) / magnitude,
                                      static_cast<float>(gradient.gy.at<std::int16_t>(v, u)) / magnitude,
                                      magnitude / 8);
-                const Eigen::Vector3d p =
-                    kCamera.backProject(u, v, plane.depth(kCamera, Pose::Identity(), u, v));
-                edges.x.push_back(static_cast<float>(p.x()));
-                edges.y.push_back(static_cast<float>(p.y()));
-                edges.z.push_back(static_cast<float>(p.z()));
+                edges.points.add(kCamera.backProject(u, v, plane.depth(kCamera, Pose::Identity(), u, v)));
                 edges.weight.push_back(1);
             }
             edges.image.finishEdge();
         }
-        const std::size_t padded = kernels::paddedSize(edges.size());
-        edges.x.resize(padded, 0);
-        edges.y.resize(padded, 0);
-        edges.z.resize(padded, 1);
+        edges.points.pad();
         points = samplePhotometricPoints(edges, pyramid, 100000);
     }
 };
