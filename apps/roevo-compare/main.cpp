@@ -51,9 +51,9 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--config", a.config, "Options of ROEVO (.ini), see config_ini/roevo.ini");
     app.add_option("--set", a.sets, "section.key=value: one option on top of the config; may be repeated")
         ->allow_extra_args(false);
-    app.add_option("--first", a.first, "Process at most so many frames of each recording")
+    app.add_option("--first", a.first, "Process at most this many frames of each recording")
         ->check(CLI::NonNegativeNumber);
-    app.add_option("--skip", a.skip, "Leave out so many frames at the start of each recording")
+    app.add_option("--skip", a.skip, "Leave out this many frames at the start of each recording")
         ->check(CLI::NonNegativeNumber);
     app.add_option("--sensor-label", a.sensor_label, "Rawlogs with several cameras: which one");
     app.add_option("--timeout", a.timeout, "Seconds after which a run is ended as a failure")
@@ -63,7 +63,7 @@ void addOptions(CLI::App& app, Arguments& a) {
                  "failures, too; made anew are those that were killed from outside (signals 1, 2, 9, 15) and "
                  "those whose core other programs had for more than 5 % of the time");
     app.add_option("--jobs", a.jobs,
-                   "So many runs side by side, each on a core of its own (times are noisier then)")
+                   "This many runs side by side, each on a core of its own (times are noisier then)")
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
     app.add_flag("--quiet", a.quiet, "Print errors only");

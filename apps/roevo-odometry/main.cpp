@@ -49,9 +49,9 @@ int run(int argc, char** argv) {
         "--ground-truth", settings.ground_truth,
         "TUM trajectory to compare with (default: <stem>_groundtruth.txt beside a rawlog, groundtruth.txt "
         "in a folder)");
-    app.add_option("--first", settings.first, "Process at most so many frames")
+    app.add_option("--first", settings.first, "Process at most this many frames")
         ->check(CLI::NonNegativeNumber);
-    app.add_option("--skip", settings.skip, "Leave out so many frames at the start")
+    app.add_option("--skip", settings.skip, "Leave out this many frames at the start")
         ->check(CLI::NonNegativeNumber);
     app.add_option("--sensor-label", settings.sensor_label, "Rawlogs with several cameras: which one");
     app.add_flag("--realtime", settings.realtime,

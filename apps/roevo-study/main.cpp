@@ -130,9 +130,9 @@ int run(int argc, char** argv) {
         "--no-ground-truth", settings.ignore_ground_truth,
         "Do without, even where some is beside a recording: repeatability is then judged by the odometry's "
         "own poses");
-    app.add_option("--first", settings.first, "Use at most so many frames of each recording")
+    app.add_option("--first", settings.first, "Use at most this many frames of each recording")
         ->check(CLI::NonNegativeNumber);
-    app.add_option("--skip", settings.skip, "Leave out so many frames at the start of each")
+    app.add_option("--skip", settings.skip, "Leave out this many frames at the start of each")
         ->check(CLI::NonNegativeNumber);
     app.add_option("--sensor-label", settings.sensor_label, "Rawlogs with several cameras: which one");
     app.footer(kFooter);

@@ -121,8 +121,7 @@ EdgePoints3D liftPixels(const std::vector<cv::Point>& pixels, const Gradient& gr
     EdgePoints3D out;
     out.image.clear();
     for (const cv::Point& pixel : pixels) {
-        Eigen::Vector2d raw(pixel.x, pixel.y);
-        if (camera.isDistorted()) raw = camera.distortPixel(raw);
+        const Eigen::Vector2d raw = camera.distortPixel(Eigen::Vector2d(pixel.x, pixel.y));
         const EdgeDepth found = foregroundDepth(depth, static_cast<float>(raw.x()),
                                                 static_cast<float>(raw.y()), edge_options, sensor);
         if (found.depth == 0) continue;
@@ -130,18 +129,13 @@ EdgePoints3D liftPixels(const std::vector<cv::Point>& pixels, const Gradient& gr
                            gradient.magnitude.at<float>(pixel) / 8);
         const Eigen::Vector3d p =
             rows.toReference(camera.backProject(pixel.x, pixel.y, static_cast<double>(found.depth)), pixel.y);
-        out.x.push_back(static_cast<float>(p.x()));
-        out.y.push_back(static_cast<float>(p.y()));
-        out.z.push_back(static_cast<float>(p.z()));
+        out.points.add(p);
         out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
         out.correction.push_back(0);
         out.occluding.push_back(found.occluding ? 1 : 0);
     }
     out.image.finishEdge();
-    const std::size_t padded = kernels::paddedSize(out.size());
-    out.x.resize(padded, 0);
-    out.y.resize(padded, 0);
-    out.z.resize(padded, 1);
+    out.points.pad();
     return out;
 }
 

@@ -7,7 +7,7 @@
 
 namespace roevo {
 
-/// Ends after so many frames.
+/// Ends after this many frames.
 std::unique_ptr<FrameSource> firstFrames(std::unique_ptr<FrameSource> source, std::size_t count);
 
 /// Notes what is wrong with a recording once it has been read to its end.

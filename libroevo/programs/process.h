@@ -22,7 +22,7 @@ class ChildProcess {
   public:
     /// @param command    path of the program, then its arguments
     /// @param core       processor that it may use; -1: any
-    /// @param timeout_s  it is ended after so many seconds
+    /// @param timeout_s  s, after which it is ended
     /// @throws std::runtime_error when the system cannot make another process
     ChildProcess(const std::vector<std::string>& command, int core, double timeout_s);
     ~ChildProcess();

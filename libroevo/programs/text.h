@@ -17,7 +17,7 @@ std::string markdownText(const std::string& text);
 /// Text or the value of an attribute in HTML and SVG.
 std::string htmlText(const std::string& text);
 
-/// A number with so many decimals; a dash when there is none, or when it is not finite.
+/// A number with this many decimals; a dash when there is none, or when it is not finite.
 std::string shownNumber(std::optional<double> value, int decimals);
 
 /// The shortest digits that give the same number again, and nothing when there is none or it is not finite.
@@ -35,7 +35,7 @@ std::string stampText(double timestamp);
 /// Number of characters of a text in UTF-8.
 std::size_t countCharacters(const std::string& text);
 
-/// At most so many characters, the rest an ellipsis.
+/// At most this many characters, the rest an ellipsis.
 std::string shortened(const std::string& text, std::size_t limit);
 
 /// All of `text` with `from` replaced by `to`.

@@ -70,9 +70,9 @@ Keyframe onePoint(const Eigen::Vector3d& p, float weight) {
     keyframe.edges.image.clear();
     keyframe.edges.image.addPoint(0, 0, 1, 0, 10);
     keyframe.edges.image.finishEdge();
-    keyframe.edges.x.assign(kernels::kLanes, static_cast<float>(p.x()));
-    keyframe.edges.y.assign(kernels::kLanes, static_cast<float>(p.y()));
-    keyframe.edges.z.assign(kernels::kLanes, static_cast<float>(p.z()));
+    keyframe.edges.points.x.assign(kernels::kLanes, static_cast<float>(p.x()));
+    keyframe.edges.points.y.assign(kernels::kLanes, static_cast<float>(p.y()));
+    keyframe.edges.points.z.assign(kernels::kLanes, static_cast<float>(p.z()));
     keyframe.edges.weight.assign(1, weight);
     keyframe.median_depth = p.z();
     return keyframe;
@@ -90,7 +90,7 @@ TEST(DistanceFieldTracker, ResidualIsDifferentiatedRight) {
                                     std::floor(uniform(random, 10, 230)) + uniform(random, 0.2, 0.8));
         const Eigen::Vector3d in_camera = kCamera.backProject(pixel.x(), pixel.y(), uniform(random, 0.4, 8));
         const Keyframe keyframe = onePoint(pose.inverse() * in_camera, 0.7F);
-        const Eigen::Vector3d stored(keyframe.edges.x[0], keyframe.edges.y[0], keyframe.edges.z[0]);
+        const Eigen::Vector3d stored = keyframe.edges.points.at(0);
         const auto residual = [&](const Pose& at) {
             const Eigen::Vector2d p = kCamera.project(at * stored);
             // In double precision, so that differences of nearly equal numbers are good for something

@@ -158,10 +158,10 @@ TEST(PointSelection, PixelsAreLiftedToWhereTheyAre) {
         liftPixels(pixels, gradient, frame.depth, camera, RowMotion(), options.edges, options.sensor);
     ASSERT_GT(points.size(), 200U);
     EXPECT_LE(points.size(), pixels.size());
-    EXPECT_EQ(points.x.size() % kernels::kLanes, 0U);
+    EXPECT_EQ(points.points.x.size() % kernels::kLanes, 0U);
     EXPECT_EQ(points.weight.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const Eigen::Vector2d seen = camera.project({points.x[i], points.y[i], points.z[i]});
+        const Eigen::Vector2d seen = camera.project(points.points.at(i));
         EXPECT_NEAR(seen.x(), points.image.x[i], 1e-3);
         EXPECT_NEAR(seen.y(), points.image.y[i], 1e-3);
         EXPECT_EQ(points.image.gradient_x[i], 1);
@@ -208,7 +208,7 @@ TEST(CoarsePoints, OnlyOrientedPatchesTurnWithTheCamera) {
         if (kind != CoarsePoints::kOrganized) continue;
         const PhotometricPoints oriented =
             samplePhotometricPoints(lifted, frame.pyramid, options.coarse.max_points);
-        EXPECT_EQ(points.x, oriented.x) << "the same places as with oriented patches";
+        EXPECT_EQ(points.points.x, oriented.points.x) << "the same places as with oriented patches";
         EXPECT_EQ(points.weight, oriented.weight);
     }
 }

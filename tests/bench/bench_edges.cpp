@@ -70,7 +70,7 @@ void edgeDepth(benchmark::State& state) {
     for (auto _ : state) {
         const EdgePoints3D lifted = liftEdges(room().edges, room().frames.front().depth, room().camera,
                                               RowMotion(), options.edges, options.sensor);
-        benchmark::DoNotOptimize(lifted.x.data());
+        benchmark::DoNotOptimize(lifted.points.x.data());
     }
 }
 BENCHMARK(edgeDepth)->Unit(benchmark::kMicrosecond);

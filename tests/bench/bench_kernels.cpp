@@ -34,11 +34,12 @@ void kernelProject(benchmark::State& state) {
     const kernels::Table* table = chosenTable(state);
     if (table == nullptr) return;
     const EdgePoints3D& points = room().points;
-    const std::size_t n = points.x.size();
+    const std::size_t n = points.points.x.size();
     Projected out(n);
     const kernels::Projection motion = makeProjection(smallMotion(), room().camera, RowMotion());
     for (auto _ : state) {
-        table->project(motion, points.x.data(), points.y.data(), points.z.data(), n, out.view());
+        table->project(motion, points.points.x.data(), points.points.y.data(), points.points.z.data(), n,
+                       out.view());
         benchmark::ClobberMemory();
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(n));
@@ -50,9 +51,9 @@ void kernelPatches(benchmark::State& state) {
     if (table == nullptr) return;
     const PhotometricPoints& points = room().photometric;
     const std::size_t n = points.size();
-    Projected at(points.x.size());
-    table->project(makeProjection(smallMotion(), room().camera, RowMotion()), points.x.data(),
-                   points.y.data(), points.z.data(), points.x.size(), at.view());
+    Projected at(points.points.x.size());
+    table->project(makeProjection(smallMotion(), room().camera, RowMotion()), points.points.x.data(),
+                   points.points.y.data(), points.points.z.data(), points.points.x.size(), at.view());
     const cv::Mat& grey = room().frames.front().grey;
     const kernels::ImageView image{grey.ptr<std::uint8_t>(), static_cast<std::ptrdiff_t>(grey.step),
                                    grey.cols, grey.rows};
@@ -70,11 +71,12 @@ void kernelAccumulate(benchmark::State& state) {
     const kernels::Table* table = chosenTable(state);
     if (table == nullptr) return;
     const EdgePoints3D& points = room().points;
-    const std::size_t n = points.x.size();
+    const std::size_t n = points.points.x.size();
     // The time does not depend on the values, as long as none is denormal
     std::vector<std::vector<float>> values;
     for (int i = 0; i < 9; ++i) values.emplace_back(n, 1.0F + 0.1F * static_cast<float>(i));
-    kernels::PointInformation rows{points.x.data(), points.y.data(), points.z.data(), {}, {}};
+    kernels::PointInformation rows{
+        points.points.x.data(), points.points.y.data(), points.points.z.data(), {}, {}};
     for (std::size_t i = 0; i < 6; ++i) rows.matrix[i] = values[i].data();
     for (std::size_t i = 0; i < 3; ++i) rows.vector[i] = values[6 + i].data();
     kernels::NormalEquations out{};

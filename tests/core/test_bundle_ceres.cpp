@@ -34,9 +34,9 @@ struct CeresObservation {
 /// that has a sigma of blur_time, and to a third of a pixel besides.
 double sharpnessOf(const MapKeyframe& keyframe, std::size_t i, const SensorOptions& sensor) {
     constexpr double kStep = 1e-5;  // s
-    const Eigen::Vector3d velocity = keyframe.row_motion.pointVelocity(keyframe.point(i));
-    const Eigen::Vector2d moved = mappingCamera().project(keyframe.point(i) + kStep * velocity) -
-                                  mappingCamera().project(keyframe.point(i) - kStep * velocity);
+    const Eigen::Vector3d velocity = keyframe.row_motion.pointVelocity(keyframe.points.at(i));
+    const Eigen::Vector2d moved = mappingCamera().project(keyframe.points.at(i) + kStep * velocity) -
+                                  mappingCamera().project(keyframe.points.at(i) - kStep * velocity);
     const double speed = (moved.x() * static_cast<double>(keyframe.image.normal_x[i]) +
                           moved.y() * static_cast<double>(keyframe.image.normal_y[i])) /
                          (2 * kStep);
@@ -89,7 +89,7 @@ std::vector<Eigen::Vector3d> solveWithCeres(const std::vector<WindowKeyframe>& w
             const MapKeyframe& keyframe = *window[slot].keyframe;
             const double trust =
                 std::sqrt(static_cast<double>(keyframe.weight[i]) * sharpnessOf(keyframe, i, sensor));
-            const double depth = keyframe.z[i];
+            const double depth = keyframe.points.z[i];
             // A millimetre is the least deviation of a depth
             const double sigma = std::hypot(sensor.depth_noise * depth * depth, 1e-3);
             problem.AddResidualBlock(
@@ -142,7 +142,7 @@ TEST_F(BundleOracle, AgreesWithCeresOnNoisyKeyframes) {
                 const double error = bias + 0.003 * normal(random);
                 keyframe.image.x[i] += static_cast<float>(error) * keyframe.image.normal_x[i];
                 keyframe.image.y[i] += static_cast<float>(error) * keyframe.image.normal_y[i];
-                keyframe.z[i] += static_cast<float>(2e-4 * normal(random));
+                keyframe.points.z[i] += static_cast<float>(2e-4 * normal(random));
                 keyframe.weight[i] = static_cast<float>(uniform(random, 0.2, 1));
             }
         }

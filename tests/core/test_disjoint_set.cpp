@@ -54,7 +54,6 @@ TEST(DisjointSet, AgreesWithANaiveModelOnRandomUnions) {
             }
         }
         EXPECT_EQ(representatives.size(), apart);
-        EXPECT_EQ(sets.size(), size);
     }
 }
 
@@ -93,18 +92,6 @@ TEST(DisjointSet, ALongChainIsFollowedToItsEnd) {
     for (std::size_t k = 1; k < kSize; ++k) ASSERT_TRUE(sets.unite(k - 1, k));
     EXPECT_EQ(sets.find(0), sets.find(kSize - 1));
     EXPECT_FALSE(sets.unite(0, kSize - 1));
-}
-
-TEST(DisjointSet, ResetForgetsUnionsAndMayChangeTheSize) {
-    DisjointSet sets(4);
-    sets.unite(0, 1);
-    sets.unite(2, 3);
-    sets.unite(1, 2);
-    sets.reset(6);
-    ASSERT_EQ(sets.size(), 6U);
-    for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(sets.find(k), k);
-    sets.reset(0);
-    EXPECT_EQ(sets.size(), 0U);
 }
 
 }  // namespace

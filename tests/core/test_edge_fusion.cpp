@@ -108,8 +108,9 @@ class EdgeFusion : public ::testing::Test {
                      ++k) {
                     const Observation& seen = edges_.observations[k];
                     const WindowKeyframe& view = window_[at(seen.slot)];
-                    ASSERT_LT(distanceTo(curve, view.T_world_camera * view.keyframe->point(at(seen.point))),
-                              1e-5);
+                    ASSERT_LT(
+                        distanceTo(curve, view.T_world_camera * view.keyframe->points.at(at(seen.point))),
+                        1e-5);
                 }
             }
         }
@@ -150,7 +151,7 @@ TEST_F(EdgeFusion, AnObservationIsAPointOfTheSamePlace) {
                  ++k) {
                 const Observation& seen = edges_.observations[k];
                 const WindowKeyframe& view = window_[at(seen.slot)];
-                const Eigen::Vector3d shown = view.T_world_camera * view.keyframe->point(at(seen.point));
+                const Eigen::Vector3d shown = view.T_world_camera * view.keyframe->points.at(at(seen.point));
                 ASSERT_LT((shown - edges_.points[p]).norm(), 0.6 * spacing)
                     << "half a step and the curve's bend";
             }

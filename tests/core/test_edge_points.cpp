@@ -39,13 +39,13 @@ TEST(LiftEdges, PointsProjectBackOntoTheirPixels) {
     const cv::Mat depth(120, 160, CV_32FC1, cv::Scalar(1.75F));
     const EdgePoints3D lifted = lift(uprightLine(50.25F, 20, 60), depth);
     ASSERT_EQ(lifted.size(), 41U);
-    EXPECT_EQ(lifted.x.size(), kernels::paddedSize(41));
+    EXPECT_EQ(lifted.points.x.size(), kernels::paddedSize(41));
     EXPECT_EQ(lifted.image.numEdges(), 1);
     for (std::size_t i = 0; i < lifted.size(); ++i) {
-        const Eigen::Vector2d pixel = kCamera.project({lifted.x[i], lifted.y[i], lifted.z[i]});
+        const Eigen::Vector2d pixel = kCamera.project(lifted.points.at(i));
         EXPECT_NEAR(pixel.x(), 50.25, 1e-4);
         EXPECT_NEAR(pixel.y(), 20 + static_cast<double>(i), 1e-4);
-        EXPECT_FLOAT_EQ(lifted.z[i], 1.75F);
+        EXPECT_FLOAT_EQ(lifted.points.z[i], 1.75F);
         EXPECT_FLOAT_EQ(lifted.weight[i], static_cast<float>(depthWeight(1.75, SensorOptions())));
         EXPECT_EQ(lifted.occluding[i], 0);
     }
@@ -59,7 +59,7 @@ TEST(LiftEdges, SplitsWhereTheDepthJumps) {
     const EdgePoints3D lifted = lift(uprightLine(50, 20, 60), depth);
     ASSERT_EQ(lifted.image.numEdges(), 2);
     for (std::size_t i = 0; i < lifted.size(); ++i) {
-        EXPECT_FLOAT_EQ(lifted.z[i], lifted.image.edge_of[i] == 0 ? 1.5F : 2.5F);
+        EXPECT_FLOAT_EQ(lifted.points.z[i], lifted.image.edge_of[i] == 0 ? 1.5F : 2.5F);
     }
 }
 
@@ -89,7 +89,7 @@ TEST(LiftEdges, DepthIsLookedUpWhereTheLensSawIt) {
     depth.colRange(column - 3, column + 4).setTo(1.0F);  // what the lens sees there
     const EdgePoints3D lifted = lift(uprightLine(20, 56, 64), depth, camera);
     ASSERT_GT(lifted.size(), 5U);
-    for (std::size_t i = 0; i < lifted.size(); ++i) EXPECT_FLOAT_EQ(lifted.z[i], 1.0F);
+    for (std::size_t i = 0; i < lifted.size(); ++i) EXPECT_FLOAT_EQ(lifted.points.z[i], 1.0F);
 }
 
 TEST(LiftEdges, RowsAreBroughtToTheReferenceRow) {
@@ -104,8 +104,8 @@ TEST(LiftEdges, RowsAreBroughtToTheReferenceRow) {
     // Ten rows later the camera is 5 mm further to the right, so the point lay 5 mm further right of it at
     // the time of the reference row
     const double still = kCamera.backProject(50, 50, 2).x();
-    EXPECT_NEAR(lifted.x[30], still + 10 * 1e-3 * 0.5, 1e-5);
-    EXPECT_NEAR(lifted.x[20], still, 1e-5);
+    EXPECT_NEAR(lifted.points.x[30], still + 10 * 1e-3 * 0.5, 1e-5);
+    EXPECT_NEAR(lifted.points.x[20], still, 1e-5);
 }
 
 }  // namespace

@@ -19,9 +19,8 @@ Keyframe keyframeOfTwoEdges() {
         keyframe.edges.weight.push_back(0.5F + at);
         keyframe.photometric.source.push_back(i);
         keyframe.photometric.weight.push_back(0.25F + at);
-        for (auto* set : {&keyframe.edges.x, &keyframe.photometric.x}) set->push_back(at);
-        for (auto* set : {&keyframe.edges.y, &keyframe.photometric.y}) set->push_back(2 * at);
-        for (auto* set : {&keyframe.edges.z, &keyframe.photometric.z}) set->push_back(3 + at);
+        for (auto* points : {&keyframe.edges.points, &keyframe.photometric.points})
+            points->add(at, 2 * at, 3 + at);
     }
     return keyframe;
 }
@@ -34,7 +33,7 @@ TEST(KeyframeChanges, OnlyTheNamedEdgesCountForLess) {
         const float factor = i < 6 ? 1 : 0.3F;
         EXPECT_FLOAT_EQ(keyframe.edges.weight[i], before.edges.weight[i] * factor) << i;
         EXPECT_FLOAT_EQ(keyframe.photometric.weight[i], before.photometric.weight[i] * factor) << i;
-        EXPECT_EQ(keyframe.edges.z[i], before.edges.z[i]) << i;
+        EXPECT_EQ(keyframe.edges.points.z[i], before.edges.points.z[i]) << i;
     }
 }
 
@@ -56,14 +55,13 @@ TEST(KeyframeChanges, PhotometricPointsMoveWithTheEdgesThatTheyCameFrom) {
     EXPECT_EQ(keyframe.row_motion, rows);
     for (std::size_t i = 0; i < before.edges.size(); ++i) {
         const Eigen::Vector3d p =
-            rows.toReference(Eigen::Vector3d(before.edges.x[i], before.edges.y[i], before.edges.z[i]),
-                             static_cast<double>(before.edges.image.y[i]));
-        EXPECT_NEAR(keyframe.edges.x[i], p.x(), 1e-5);
-        EXPECT_EQ(keyframe.photometric.x[i], keyframe.edges.x[i]);
-        EXPECT_EQ(keyframe.photometric.z[i], keyframe.edges.z[i]);
+            rows.toReference(before.edges.points.at(i), static_cast<double>(before.edges.image.y[i]));
+        EXPECT_NEAR(keyframe.edges.points.x[i], p.x(), 1e-5);
+        EXPECT_EQ(keyframe.photometric.points.x[i], keyframe.edges.points.x[i]);
+        EXPECT_EQ(keyframe.photometric.points.z[i], keyframe.edges.points.z[i]);
     }
     keyframe.setRowMotion(before.row_motion);
-    EXPECT_NEAR(keyframe.edges.x[5], before.edges.x[5], 1e-4);
+    EXPECT_NEAR(keyframe.edges.points.x[5], before.edges.points.x[5], 1e-4);
 }
 
 TEST(KeyframeChanges, SharesOfWhatWasFoundNeedEnoughTrials) {

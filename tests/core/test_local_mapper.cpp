@@ -222,7 +222,7 @@ TEST_F(Mapper, ATrackThatBeganAnewIsNotRelatedToTheOldOne) {
         const MapUpdate update = mapper.insert(keyframe);
         EXPECT_EQ(reasonOf(update), "");
         for (const auto& [id, pose] : update.poses)
-            EXPECT_GT(id, 4) << "the first of the track holds the gauge";
+            EXPECT_GT(id, 4) << "the first of the track fixes the gauge";
     }
     for (int k = 0; k < 4; ++k)
         EXPECT_EQ(mapper.keyframes().at(k).T_world_camera.matrix(), before.at(k).T_world_camera.matrix());

@@ -22,7 +22,7 @@ MapKeyframe someKeyframe() {
     for (std::size_t i = 0; i < keyframe.size(); ++i) {
         keyframe.colours[i] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i / 7), 9};
         keyframe.weight[i] =
-            static_cast<float>(depthWeight(static_cast<double>(keyframe.z[i]), SensorOptions()));
+            static_cast<float>(depthWeight(static_cast<double>(keyframe.points.z[i]), SensorOptions()));
     }
     compact(keyframe);
     return keyframe;
@@ -57,17 +57,18 @@ TEST(MapKeyframe, PointsGoWhereAnotherMotionOfTheRowsPutsThemAndBack) {
     double furthest = 0;
     for (std::size_t i = 0; i < keyframe.size(); ++i) {
         const Eigen::Vector3d expected =
-            rows.toReference(original.point(i), static_cast<double>(original.image.y[i]));
-        EXPECT_LT((keyframe.point(i) - expected).norm(), 1e-5);
+            rows.toReference(original.points.at(i), static_cast<double>(original.image.y[i]));
+        EXPECT_LT((keyframe.points.at(i) - expected).norm(), 1e-5);
         const Eigen::Vector2d pixel = camera.project(expected);
         EXPECT_NEAR(keyframe.image.x[i], pixel.x(), 0.01);
         EXPECT_NEAR(keyframe.image.y[i], pixel.y(), 0.01);
-        furthest = std::max(furthest, (expected - original.point(i)).norm());
+        furthest = std::max(furthest, (expected - original.points.at(i)).norm());
     }
     EXPECT_GT(furthest, 0.003);
     setRowMotion(keyframe, original.row_motion, camera);
     for (std::size_t i = 0; i < keyframe.size(); ++i)
-        EXPECT_LT((keyframe.point(i) - original.point(i)).norm(), 0.03 * furthest) << "to first order";
+        EXPECT_LT((keyframe.points.at(i) - original.points.at(i)).norm(), 0.03 * furthest)
+            << "to first order";
 }
 
 TEST(PackedKeyframe, PointsComeBackFarBelowTheNoise) {
@@ -85,10 +86,10 @@ TEST(PackedKeyframe, PointsComeBackFarBelowTheNoise) {
         EXPECT_NEAR(keyframe.image.y[i], original.image.y[i], 0.01);
         EXPECT_NEAR(keyframe.image.normal_x[i], original.image.normal_x[i], 1e-4);
         EXPECT_NEAR(keyframe.image.normal_y[i], original.image.normal_y[i], 1e-4);
-        const double z = static_cast<double>(original.z[i]);
-        EXPECT_NEAR(static_cast<double>(keyframe.z[i]), z, 2e-5 * z * z)
+        const double z = static_cast<double>(original.points.z[i]);
+        EXPECT_NEAR(static_cast<double>(keyframe.points.z[i]), z, 2e-5 * z * z)
             << "depth noise is 1e-3 z^2 and more";
-        EXPECT_LT((keyframe.point(i) - original.point(i)).norm(), 3e-5 * z * z + 2e-5 * z);
+        EXPECT_LT((keyframe.points.at(i) - original.points.at(i)).norm(), 3e-5 * z * z + 2e-5 * z);
         EXPECT_NEAR(keyframe.weight[i], original.weight[i], 1e-3);
         EXPECT_NEAR(keyframe.slope[i], original.slope[i], 1e-4);
         EXPECT_EQ(keyframe.colours[i], original.colours[i]);
@@ -99,10 +100,10 @@ TEST(PackedKeyframe, WhatTheKernelsReadBeyondTheEndIsPaddedAsInANewKeyframe) {
     const MapKeyframe original = someKeyframe();
     MapKeyframe keyframe;
     PackedKeyframe(original).unpackInto(keyframe, mappingCamera(), SensorOptions());
-    ASSERT_EQ(keyframe.z.size(), kernels::paddedSize(original.size()));
-    for (std::size_t i = keyframe.size(); i < keyframe.z.size(); ++i) {
-        EXPECT_EQ(keyframe.x[i], 0);
-        EXPECT_EQ(keyframe.z[i], 1) << "never divided by zero";
+    ASSERT_EQ(keyframe.points.z.size(), kernels::paddedSize(original.size()));
+    for (std::size_t i = keyframe.size(); i < keyframe.points.z.size(); ++i) {
+        EXPECT_EQ(keyframe.points.x[i], 0);
+        EXPECT_EQ(keyframe.points.z[i], 1) << "never divided by zero";
     }
 }
 

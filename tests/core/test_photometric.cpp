@@ -35,19 +35,12 @@ struct World {
                                      static_cast<float>(gradient.gx.at<std::int16_t>(v, u)) / magnitude,
                                      static_cast<float>(gradient.gy.at<std::int16_t>(v, u)) / magnitude,
                                      magnitude / 8);
-                const Eigen::Vector3d p =
-                    kCamera.backProject(u, v, plane.depth(kCamera, Pose::Identity(), u, v));
-                edges.x.push_back(static_cast<float>(p.x()));
-                edges.y.push_back(static_cast<float>(p.y()));
-                edges.z.push_back(static_cast<float>(p.z()));
+                edges.points.add(kCamera.backProject(u, v, plane.depth(kCamera, Pose::Identity(), u, v)));
                 edges.weight.push_back(1);
             }
             edges.image.finishEdge();
         }
-        const std::size_t padded = kernels::paddedSize(edges.size());
-        edges.x.resize(padded, 0);
-        edges.y.resize(padded, 0);
-        edges.z.resize(padded, 1);
+        edges.points.pad();
         points = samplePhotometricPoints(edges, pyramid, 100000);
     }
 };
@@ -145,11 +138,10 @@ class HeldCost {
 
   private:
     std::vector<kernels::PatchResidual> patchesAt(const Pose& pose) const {
-        const std::size_t n = points_.size(), padded = points_.x.size();
-        std::vector<float> x(padded), y(padded), z(padded), u(padded), v(padded), axis_x(n), axis_y(n);
-        kernels::best().project(makeProjection(pose, kCamera, RowMotion()), points_.x.data(),
-                                points_.y.data(), points_.z.data(), padded,
-                                {x.data(), y.data(), z.data(), u.data(), v.data()});
+        const std::size_t n = points_.size();
+        std::vector<float> axis_x(n), axis_y(n);
+        ProjectedPoints3 projected;
+        project(points_.points, pose, kCamera, RowMotion(), projected);
         const Eigen::Vector2f turn = imageRotation(pose);
         for (std::size_t i = 0; i < n; ++i) {
             axis_x[i] = turn.x() * points_.axis_x[i] - turn.y() * points_.axis_y[i];
@@ -158,8 +150,8 @@ class HeldCost {
         std::vector<kernels::PatchResidual> patches(n);
         kernels::best().patches(
             {image_.ptr<std::uint8_t>(), static_cast<std::ptrdiff_t>(image_.step), image_.cols, image_.rows},
-            points_.patches[0].data(), u.data(), v.data(), axis_x.data(), axis_y.data(), n,
-            static_cast<float>(brightness_.gain), static_cast<float>(brightness_.offset), patches.data());
+            points_.patches[0].data(), projected.u.data(), projected.v.data(), axis_x.data(), axis_y.data(),
+            n, static_cast<float>(brightness_.gain), static_cast<float>(brightness_.offset), patches.data());
         return patches;
     }
 
@@ -336,7 +328,7 @@ TEST(Photometric, SamplingSpreadsOverTheEdgesAndKeepsItsLimit) {
                   static_cast<std::size_t>(limit) + static_cast<std::size_t>(world.edges.image.numEdges()));
         EXPECT_GE(some.size(),
                   std::min<std::size_t>(static_cast<std::size_t>(limit) / 2, world.edges.size()));
-        EXPECT_EQ(some.x.size() % kernels::kLanes, 0U);
+        EXPECT_EQ(some.points.size() % kernels::kLanes, 0U);
         EXPECT_EQ(some.patches.size(), 3U);
     }
     EXPECT_EQ(samplePhotometricPoints(EdgePoints3D(), world.pyramid, 100).size(), 0U);

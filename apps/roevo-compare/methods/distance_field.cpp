@@ -68,23 +68,19 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
                                            const PinholeCamera& camera, const Pose& T_current_keyframe,
                                            const RowMotion& rows, double radius) {
     const EdgePoints3D& edges = keyframe.edges;
-    const std::size_t all = edges.x.size();
-    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(all);
-    kernels::best().project(makeProjection(T_current_keyframe, camera, rows), edges.x.data(), edges.y.data(),
-                            edges.z.data(), all, {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
-
+    project(edges.points, T_current_keyframe, camera, rows, projected_);
     near_.clear();
     for (auto* array : {&gradient_u_, &gradient_v_, &residual_}) array->clear();
     visible_ = 0;
     const float margin = EdgeMask::kBorder;  // the mask is empty there, and its edges are not where they seem
     const float max_u = static_cast<float>(camera.width) - 1 - margin,
                 max_v = static_cast<float>(camera.height) - 1 - margin;
-    const auto limit = static_cast<std::size_t>(options_.max_points);
-    const std::size_t stride = std::max<std::size_t>(1, (edges.size() + limit - 1) / limit);
+    const std::size_t stride = strideFor(edges.size(), options_.max_points);
     for (std::size_t i = stride / 2; i < edges.size(); i += stride) {
-        if (!(u_[i] >= margin && v_[i] >= margin && u_[i] <= max_u && v_[i] <= max_v)) continue;
+        const float u = projected_.u[i], v = projected_.v[i];
+        if (!(u >= margin && v >= margin && u <= max_u && v <= max_v)) continue;
         ++visible_;
-        const DistanceField::Sample sample = field.at(u_[i], v_[i]);
+        const DistanceField::Sample sample = field.at(u, v);
         if (!(static_cast<double>(sample.distance) <= radius)) continue;
         near_.push_back(i);
         residual_.push_back(sample.distance);
@@ -109,9 +105,10 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
         const float w = studentWeight(edges.weight[i] * inverse, squared);
         const float du = gradient_u_[k], dv = gradient_v_[k];
         float matrix[6], vector[3];
-        liftInformation(x_[i], y_[i], z_[i], fx, fy, w * du * du, w * du * dv, w * dv * dv, w * du * r,
-                        w * dv * r, matrix, vector);
-        rows_.set(k, matrix, vector, x_[i], y_[i], z_[i]);
+        const float x = projected_.x[i], y = projected_.y[i], z = projected_.z[i];
+        liftInformation(x, y, z, fx, fy, w * du * du, w * du * dv, w * dv * dv, w * du * r, w * dv * r,
+                        matrix, vector);
+        rows_.set(k, matrix, vector, x, y, z);
     }
     system.add(rows_.sum());
     return system;

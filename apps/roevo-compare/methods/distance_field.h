@@ -68,8 +68,8 @@ class DistanceFieldTracker {
     DistanceField field_;
     double field_timestamp_ = std::numeric_limits<double>::quiet_NaN();  ///< s, frame of the field; NaN: none
     PhotometricResiduals photometric_;
-    std::vector<float> x_, y_, z_, u_, v_;  // of all keyframe points
-    std::vector<std::size_t> near_;         // points that count
+    ProjectedPoints3 projected_;     // all keyframe points
+    std::vector<std::size_t> near_;  // points that count
     std::vector<float> gradient_u_, gradient_v_, residual_, magnitudes_;
     InformationRows rows_;
     double scale_ = 1;

@@ -28,20 +28,18 @@ bool surfaceSeen(const cv::Mat& depth, const Eigen::Vector2d& pixel, double z) {
 class TrueCurve {
   public:
     TrueCurve(const OrganizedEdges& edges, const TrueView& view, std::size_t edge) : view_(view) {
-        const int first = edges.begin[edge], last = edges.begin[edge + 1] - 1;
-        for (int i = first; i <= last; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            if (view.visible[at] == 0) continue;
-            points_.push_back(at);
-            const auto before = static_cast<std::size_t>(std::max(first, i - kTangentSpan));
-            const auto after = static_cast<std::size_t>(std::min(last, i + kTangentSpan));
-            const float tx = view.u[after] - view.u[before], ty = view.v[after] - view.v[before];
+        const IndexRange own = edges.pointsOf(edge);
+        for (std::size_t i = own.first; i < own.end; ++i) {
+            if (view.visible[i] == 0) continue;
+            points_.push_back(i);
+            const auto [before, end] = own.around(i, kTangentSpan);
+            const float tx = view.u[end - 1] - view.u[before], ty = view.v[end - 1] - view.v[before];
             const float length = std::hypot(tx, ty);
             normals_.push_back(length > 0 ? cv::Point2f(-ty / length, tx / length) : cv::Point2f(0, 0));
-            left_ = std::min(left_, view.u[at]);
-            right_ = std::max(right_, view.u[at]);
-            top_ = std::min(top_, view.v[at]);
-            bottom_ = std::max(bottom_, view.v[at]);
+            left_ = std::min(left_, view.u[i]);
+            right_ = std::max(right_, view.u[i]);
+            top_ = std::min(top_, view.v[i]);
+            bottom_ = std::max(bottom_, view.v[i]);
         }
     }
     bool empty() const { return points_.empty(); }
@@ -132,9 +130,8 @@ Verdict judgeEdges(const OrganizedEdges& reference, const TrueView& view, const 
         if (curve.empty()) continue;
         std::size_t near = 0, right = 0;
         for (const int partner : links[e]) {
-            const auto other = static_cast<std::size_t>(partner);
-            for (auto i = static_cast<std::size_t>(current.begin[other]);
-                 i < static_cast<std::size_t>(current.begin[other + 1]); ++i) {
+            const auto [first, end] = current.pointsOf(partner);
+            for (std::size_t i = first; i < end; ++i) {
                 const auto distance = curve.normalDistance(current.x[i], current.y[i]);
                 if (!distance) continue;
                 ++near;

@@ -9,7 +9,7 @@
 
 namespace roevo {
 
-/// An association is right when it is within so many pixels of where the feature truly is.
+/// An association is right when it is within this many pixels of where the feature truly is.
 inline constexpr float kTolerance = 3;
 /// What an edge is associated with farther away (px) than this confuses nobody.
 inline constexpr float kNeighbourhood = 30;

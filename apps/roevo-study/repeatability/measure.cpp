@@ -17,9 +17,7 @@ constexpr double kSameTime = 1e-6;   // s
 
 std::vector<Eigen::Vector3d> pointsOf(const EdgePoints3D& edges) {
     std::vector<Eigen::Vector3d> points;
-    for (std::size_t i = 0; i < edges.size(); ++i)
-        points.emplace_back(static_cast<double>(edges.x[i]), static_cast<double>(edges.y[i]),
-                            static_cast<double>(edges.z[i]));
+    for (std::size_t i = 0; i < edges.size(); ++i) points.push_back(edges.points.at(i));
     return points;
 }
 

@@ -66,11 +66,8 @@ EdgeLinks associateEdges(const FeatureFrame& from, const FeatureFrame& current, 
                          const PinholeCamera& camera, const OdometryOptions& options) {
     const EdgePoints3D& edges = from.lifted;
     const Pose T_current_from = current.T_world_search.inverse() * from.T_world_search;
-    const std::size_t padded = edges.x.size();
-    std::vector<float> x(padded), y(padded), z(padded), u(padded), v(padded);
-    kernels::best().project(makeProjection(T_current_from, camera.undistorted(), RowMotion()), edges.x.data(),
-                            edges.y.data(), edges.z.data(), padded,
-                            {x.data(), y.data(), z.data(), u.data(), v.data()});
+    ProjectedPoints3 projected;
+    project(edges.points, T_current_from, camera.undistorted(), RowMotion(), projected);
     FineOptions fine = options.fine;
     if (rule == EdgeRule::kNearest) {
         fine.normal_angle_deg = kAnyDirection;
@@ -79,7 +76,7 @@ EdgeLinks associateEdges(const FeatureFrame& from, const FeatureFrame& current, 
     }
     EdgeAssociator associator(fine);
     EdgeMatches matches;
-    associator.associate(edges.image, u.data(), v.data(), imageRotation(T_current_from),
+    associator.associate(edges.image, projected.u.data(), projected.v.data(), imageRotation(T_current_from),
                          options.edges.tangent_span, current.lifted.image, current.lifted_grid, camera.width,
                          camera.height, fine.final_radius, matches);
     EdgeLinks links(static_cast<std::size_t>(edges.image.numEdges()));

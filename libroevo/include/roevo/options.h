@@ -107,7 +107,7 @@ struct MappingOptions {
     double min_seen = 0.5;         ///< share of the keyframes that look at an edge's place and must see it
     int min_looks = 3;             ///< fewer such keyframes cannot judge
     bool reuse_keyframes = true;   ///< old keyframes that look at the same place take part again
-    int max_reused = 4;            ///< so many of them
+    int max_reused = 4;            ///< at most this many of them
     bool deterministic = true;     ///< the tracker waits for the map; else it takes what is ready
     int latency = 4;               ///< frames after which the mapping of a keyframe takes effect
     double pseudo_weight = 0.3;    ///< what pseudo-edges of the keyframe still count in tracking

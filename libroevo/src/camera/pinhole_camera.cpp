@@ -1,15 +1,13 @@
 #include "roevo/camera/pinhole_camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
 namespace roevo {
 
 bool PinholeCamera::isDistorted() const {
-    for (const double k : distortion) {
-        if (k != 0) return true;
-    }
-    return false;
+    return std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0; });
 }
 
 PinholeCamera PinholeCamera::undistorted() const {
@@ -31,6 +29,7 @@ PinholeCamera PinholeCamera::atPyramidLevel(int level) const {
 }
 
 Eigen::Vector2d PinholeCamera::distortPixel(const Eigen::Vector2d& ideal) const {
+    if (!isDistorted()) return ideal;
     const auto& [k1, k2, p1, p2, k3] = distortion;
     const double x = (ideal.x() - cx) / fx, y = (ideal.y() - cy) / fy;
     const double r2 = x * x + y * y;

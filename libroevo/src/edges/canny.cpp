@@ -20,21 +20,14 @@ struct Neighbours {
 };
 
 inline Neighbours alongGradient(const float* magnitude, std::ptrdiff_t stride, int gx, int gy) {
-    const int ax = std::abs(gx), ay = std::abs(gy);
-    if (ax >= ay) {
-        const float slope = static_cast<float>(gy) / static_cast<float>(gx);
-        const float share = std::abs(slope);
-        const std::ptrdiff_t side = slope >= 0 ? stride : -stride;
-        const float after = magnitude[1] + share * (magnitude[1 + side] - magnitude[1]);
-        const float before = magnitude[-1] + share * (magnitude[-1 - side] - magnitude[-1]);
-        return {before, after, 1, slope};
-    }
-    const float slope = static_cast<float>(gx) / static_cast<float>(gy);
-    const float share = std::abs(slope);
-    const std::ptrdiff_t side = slope >= 0 ? 1 : -1;
-    const float after = magnitude[stride] + share * (magnitude[stride + side] - magnitude[stride]);
-    const float before = magnitude[-stride] + share * (magnitude[-stride - side] - magnitude[-stride]);
-    return {before, after, slope, 1};
+    const bool by_column = std::abs(gx) >= std::abs(gy);
+    const auto x = static_cast<float>(gx), y = static_cast<float>(gy);
+    const float slope = by_column ? y / x : x / y, share = std::abs(slope);
+    const std::ptrdiff_t step = by_column ? 1 : stride, across = by_column ? stride : 1;
+    const std::ptrdiff_t side = slope >= 0 ? across : -across;
+    const float after = magnitude[step] + share * (magnitude[step + side] - magnitude[step]);
+    const float before = magnitude[-step] + share * (magnitude[-step - side] - magnitude[-step]);
+    return by_column ? Neighbours{before, after, 1, slope} : Neighbours{before, after, slope, 1};
 }
 
 /// Non-maximum suppression: the same interpolation as above, multiplied out and without branches, because the
@@ -57,18 +50,10 @@ bool anyAbove(const float* values, int count, float limit) {
     return found != 0;
 }
 
-}  // namespace
-
-void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
-    const int width = gradient.magnitude.cols, height = gradient.magnitude.rows;
-    const auto low_f = static_cast<float>(low), high_f = static_cast<float>(high);
+/// Marks ridges of at least `low` in the mask, strong ones from `high` on as edges, and lists these.
+void markRidges(const Gradient& gradient, float low, float high, EdgeMask& out) {
     constexpr int kBorder = EdgeMask::kBorder;
-    out.mask.create(height, width, CV_8UC1);
-    out.mask.setTo(kNone);
-    out.pixels.clear();
-    if (width <= 2 * kBorder || height <= 2 * kBorder) return;
-
-    auto& stack = out.pixels;  // strong pixels, then all that they reach
+    const int width = gradient.magnitude.cols, height = gradient.magnitude.rows;
     const auto stride = static_cast<std::ptrdiff_t>(gradient.magnitude.step1());
     for (int y = kBorder; y < height - kBorder; ++y) {
         const auto* magnitude = gradient.magnitude.ptr<float>(y);
@@ -77,13 +62,13 @@ void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
         auto* mask = out.mask.ptr<std::uint8_t>(y);
         for (int first = kBorder; first < width - kBorder; first += kBlock) {
             const int end = std::min(first + kBlock, width - kBorder);
-            if (!anyAbove(magnitude + first, end - first, low_f)) continue;
+            if (!anyAbove(magnitude + first, end - first, low)) continue;
             // Collected without branches: where an image has edges, nobody can predict them
             std::array<int, kBlock> at;
             std::size_t candidates = 0, ridges = 0;
             for (int x = first; x < end; ++x) {
                 at[candidates] = x;
-                candidates += magnitude[x] >= low_f ? 1 : 0;
+                candidates += magnitude[x] >= low ? 1 : 0;
             }
             for (std::size_t i = 0; i < candidates; ++i) {
                 const int x = at[i];
@@ -92,28 +77,36 @@ void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
             }
             for (std::size_t i = 0; i < ridges; ++i) {
                 const int x = at[i];
-                const bool strong = magnitude[x] >= high_f;
+                const bool strong = magnitude[x] >= high;
                 mask[x] = strong ? kEdge : kWeak;
-                if (strong) stack.push_back(y * width + x);
+                if (strong) out.pixels.push_back(y * width + x);
             }
         }
     }
+}
 
-    auto* mask = out.mask.ptr<std::uint8_t>();  // freshly created: continuous
-    for (std::size_t i = 0; i < stack.size(); ++i) {
-        const std::int32_t centre = stack[i];
+/// Hysteresis: weak pixels that the listed ones reach become edges, too.
+void followWeak(EdgeMask& out) {
+    auto* mask = out.mask.ptr<std::uint8_t>();
+    const int width = out.mask.cols;
+    for (std::size_t i = 0; i < out.pixels.size(); ++i) {
+        const std::int32_t centre = out.pixels[i];
         for (int dy = -1; dy <= 1; ++dy) {
             for (int dx = -1; dx <= 1; ++dx) {
                 const std::int32_t neighbour = centre + dy * width + dx;
                 if (mask[neighbour] != kWeak) continue;
                 mask[neighbour] = kEdge;
-                stack.push_back(neighbour);
+                out.pixels.push_back(neighbour);
             }
         }
     }
-    // Raster order, and weak pixels that nothing reached dropped; eight pixels at a time, because few hold
-    // any
+}
+
+/// Lists the edge pixels in raster order and drops weak pixels that nothing reached; eight pixels at a time,
+/// because few are either.
+void listInRasterOrder(EdgeMask& out) {
     out.pixels.clear();
+    auto* mask = out.mask.ptr<std::uint8_t>();
     const auto total = static_cast<std::int32_t>(out.mask.total());
     for (std::int32_t p = 0; p < total; p += 8) {
         std::uint64_t eight = 0;
@@ -125,6 +118,19 @@ void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
             if (mask[q] != 0) out.pixels.push_back(q);
         }
     }
+}
+
+}  // namespace
+
+void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
+    const cv::Size size = gradient.magnitude.size();
+    out.mask.create(size, CV_8UC1);  // continuous
+    out.mask.setTo(kNone);
+    out.pixels.clear();
+    if (std::min(size.width, size.height) <= 2 * EdgeMask::kBorder) return;
+    markRidges(gradient, static_cast<float>(low), static_cast<float>(high), out);
+    followWeak(out);
+    listInRasterOrder(out);
 }
 
 cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y) {

@@ -16,7 +16,7 @@ constexpr double kAgree = 2;              ///< sigmas of the shorter line
 constexpr double kWindow = 20;            ///< points before and after that help
 constexpr double kLeast = 4;              ///< of them at an end of the edge
 constexpr double kMinSamples = 12;        ///< of a side
-constexpr double kCorrelated = 4;         ///< neighbouring depths err together: one in so many is independent
+constexpr double kCorrelated = 4;         ///< neighbouring depths err together: this many tell as much as one
 constexpr double kLeastVariance = 1e-10;  ///< relative: 1e-5 of the depth
 /// Squared standard errors at which a correction counts half. 1 to 4 are about as good.
 constexpr double kDoubt = 2;
@@ -61,14 +61,6 @@ void EdgeSides::Sums::add(double distance, double value, double weight) {
     ss += weight * distance * distance;
     sq += weight * distance * value;
     qq += weight * value * value;
-}
-
-EdgeSides::Sums EdgeSides::Sums::operator-(const Sums& other) const {
-    return {count - other.count, s - other.s, q - other.q, ss - other.ss, sq - other.sq, qq - other.qq};
-}
-
-EdgeSides::Side EdgeSides::Side::operator-(const Side& other) const {
-    return {close - other.close, wide - other.wide, seen - other.seen, behind - other.behind};
 }
 
 bool EdgeSides::Side::isBackground(double least) const {

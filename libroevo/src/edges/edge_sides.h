@@ -34,7 +34,9 @@ class EdgeSides {
     struct Sums {
         double count = 0, s = 0, q = 0, ss = 0, sq = 0, qq = 0;
         void add(double distance, double value, double weight);
-        Sums operator-(const Sums& other) const;
+        Sums operator-(const Sums& o) const {
+            return {count - o.count, s - o.s, q - o.q, ss - o.ss, sq - o.sq, qq - o.qq};
+        }
     };
     /// What the normals of an edge's points pass on one side.
     struct Side {
@@ -42,8 +44,10 @@ class EdgeSides {
         Sums wide;          ///< further ones too, where the other side is background
         double seen = 0;    ///< weight of all close samples, on whatever surface
         double behind = 0;  ///< of those of them that are background
-        Side operator-(const Side& other) const;
-        bool isBackground(double least) const;  ///< by samples of at least so much weight
+        Side operator-(const Side& o) const {
+            return {close - o.close, wide - o.wide, seen - o.seen, behind - o.behind};
+        }
+        bool isBackground(double least) const;  ///< by samples of at least this weight
     };
     struct Strip {
         Side plus, minus;  ///< along the normal, and against it

@@ -1,8 +1,5 @@
 #include "edges/organized_edges.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace roevo {
 
 void OrganizedEdges::clear() {
@@ -28,27 +25,18 @@ void OrganizedEdges::finishEdge() {
 void computeNormals(OrganizedEdges& edges, int span) {
     edges.normal_x.resize(edges.size());
     edges.normal_y.resize(edges.size());
+    const auto reach = static_cast<std::size_t>(span);
     for (int e = 0; e < edges.numEdges(); ++e) {
-        const int first = edges.begin[static_cast<std::size_t>(e)];
-        const int last = edges.begin[static_cast<std::size_t>(e) + 1] - 1;
-        for (int i = first; i <= last; ++i) {
-            const auto before = static_cast<std::size_t>(std::max(first, i - span));
-            const auto after = static_cast<std::size_t>(std::min(last, i + span));
-            const auto at = static_cast<std::size_t>(i);
-            const float vx = edges.x[after] - edges.x[before], vy = edges.y[after] - edges.y[before];
-            const float length = std::sqrt(vx * vx + vy * vy);
-            if (!(length > 0)) {  // an edge of one point, or one that turns back on itself
-                edges.normal_x[at] = edges.gradient_x[at];
-                edges.normal_y[at] = edges.gradient_y[at];
+        const IndexRange own = edges.pointsOf(e);
+        for (std::size_t i = own.first; i < own.end; ++i) {
+            const auto [before, end] = own.around(i, reach);
+            const float gx = edges.gradient_x[i], gy = edges.gradient_y[i];
+            float &nx = edges.normal_x[i], &ny = edges.normal_y[i];
+            if (edgeNormal(edges.x[end - 1] - edges.x[before], edges.y[end - 1] - edges.y[before], gx, gy, nx,
+                           ny))
                 continue;
-            }
-            float mx = -vy / length, my = vx / length;                        // Eq. (4)
-            if (mx * edges.gradient_x[at] + my * edges.gradient_y[at] < 0) {  // Eqs. (5), (6)
-                mx = -mx;
-                my = -my;
-            }
-            edges.normal_x[at] = mx;
-            edges.normal_y[at] = my;
+            nx = gx;  // an edge of one point, or one that turns back on itself
+            ny = gy;
         }
     }
 }

@@ -1,9 +1,28 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace roevo {
+
+/// Half open.
+struct IndexRange {
+    std::size_t first = 0, end = 0;
+    std::size_t size() const { return end - first; }
+    /// Those at most `reach` places before and after `i`, which is one of them.
+    IndexRange around(std::size_t i, std::size_t reach) const {
+        return {i - std::min(reach, i - first), std::min(end, i + reach + 1)};
+    }
+};
+
+/// Range number `i`, of any integer type, where `begin` has the first of each and one past the last.
+template <class Index>
+IndexRange rangeOf(const std::vector<std::int32_t>& begin, Index i) {
+    const auto at = static_cast<std::size_t>(i);
+    return {static_cast<std::size_t>(begin[at]), static_cast<std::size_t>(begin[at + 1])};
+}
 
 /// Organized edges of one image: ordered chains of sub-pixel points, stored as structure of arrays with edges
 /// as spans over them. All arrays of points have size() entries; points of an edge are consecutive and in
@@ -14,16 +33,40 @@ struct OrganizedEdges {
     std::vector<float> normal_x, normal_y;      ///< unit edge normal on the gradient's side, Eqs. (4)-(6)
     std::vector<float> strength;                ///< gradient magnitude, grey levels per pixel
     std::vector<std::int32_t> edge_of;          ///< index of the edge that the point belongs to
-    std::vector<std::int32_t>
-        begin;  ///< first point of each edge, plus one past the end: numEdges() + 1 entries
+    std::vector<std::int32_t> begin;            ///< first point of each edge, plus one past the end
 
     std::size_t size() const { return x.size(); }
     int numEdges() const { return begin.empty() ? 0 : static_cast<int>(begin.size()) - 1; }
+    template <class Index>
+    IndexRange pointsOf(Index edge) const {
+        return rangeOf(begin, edge);
+    }
     void clear();
     /// Adds a point to the edge being built; finishEdge() closes it.
     void addPoint(float px, float py, float gx, float gy, float magnitude);
     void finishEdge();
 };
+
+/// Unit normal to a chord (u, v) of an edge, px, on the side of the image gradient, Eqs. (4)-(6).
+/// @return false where the chord has no length
+inline bool edgeNormal(float u, float v, float gradient_x, float gradient_y, float& normal_x,
+                       float& normal_y) {
+    const float length = std::sqrt(u * u + v * v);
+    if (!(length > 0)) return false;
+    normal_x = -v / length;  // Eq. (4)
+    normal_y = u / length;
+    if (normal_x * gradient_x + normal_y * gradient_y < 0) {  // Eqs. (5), (6)
+        normal_x = -normal_x;
+        normal_y = -normal_y;
+    }
+    return true;
+}
+
+/// The n with which every n-th of `count` points makes no more than `most`.
+inline std::size_t strideFor(std::size_t count, int most) {
+    const auto limit = static_cast<std::size_t>(std::max(1, most));
+    return std::max<std::size_t>(1, (count + limit - 1) / limit);
+}
 
 /// Fills normal_x, normal_y (Eqs. (4)-(6)): orthogonal to the chord between the points `span` places before
 /// and after (clamped to the edge's ends), on the side of the image gradient.

@@ -27,14 +27,14 @@ void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& win
     Matrix6d to_centre = Matrix6d::Identity();
     to_centre.topRightCorner<3, 3>() = -skew(window[to].T_world_camera.translation() - origin);
     const Matrix6d own = to_centre.transpose() * prior.information * to_centre;
-    const Vector6d pull = to_centre.transpose() * prior.information * error;
+    const Vector6d own_gradient = to_centre.transpose() * prior.information * error;
     if (col >= 0) {
         hessian.block<6, 6>(col, col) += own;
-        gradient.segment<6>(col) += pull;
+        gradient.segment<6>(col) += own_gradient;
     }
     if (row >= 0) {
         hessian.block<6, 6>(row, row) += own;
-        gradient.segment<6>(row) -= pull;
+        gradient.segment<6>(row) -= own_gradient;
     }
     if (row >= 0 && col >= 0) hessian.block<6, 6>(std::min(row, col), std::max(row, col)) -= own;
 }

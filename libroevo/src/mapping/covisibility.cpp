@@ -9,7 +9,7 @@ namespace roevo {
 
 namespace {
 
-/// Map keyframes hold every n-th point, so that fewer of them must agree.
+/// Map keyframes keep every n-th point only, so that fewer of them must agree.
 FineOptions forThinned(FineOptions options) {
     options.min_votes = 2;
     options.max_points = std::numeric_limits<int>::max();
@@ -25,20 +25,18 @@ void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<con
                                const PinholeCamera& camera, double radius) {
     auto& of_current = links_[current.id];
     std::vector<char> associated(static_cast<std::size_t>(current.image.numEdges()), 0);
-    const std::size_t padded = current.x.size();
-    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
     constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
     for (const MapKeyframe* other : others) {
         const Pose T_other_current = other->T_world_camera.inverse() * current.T_world_camera;
-        kernels::best().project(makeProjection(T_other_current, camera, RowMotion()), current.x.data(),
-                                current.y.data(), current.z.data(), padded,
-                                {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+        project(current.points, T_other_current, camera, RowMotion(), projected_);
         for (std::size_t i = 0; i < current.size(); ++i) {
-            if (associated[static_cast<std::size_t>(current.image.edge_of[i])] != 0) u_[i] = kNowhere;
+            if (associated[static_cast<std::size_t>(current.image.edge_of[i])] != 0)
+                projected_.u[i] = kNowhere;
         }
         grid_.build(other->image, camera.width, camera.height);
-        associator_.associate(current.image, u_.data(), v_.data(), imageRotation(T_other_current), span_,
-                              other->image, grid_, camera.width, camera.height, radius, matches_);
+        associator_.associate(current.image, projected_.u.data(), projected_.v.data(),
+                              imageRotation(T_other_current), span_, other->image, grid_, camera.width,
+                              camera.height, radius, matches_);
         Links found{other->id, {}};
         std::vector<Link>& links = found.links;
         // Pairs come in the order of the current edges

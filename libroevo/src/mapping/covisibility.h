@@ -48,7 +48,7 @@ class CovisibilityGraph {
     std::map<int, std::vector<Links>> links_;  // by the newer keyframe
     EdgeGrid grid_;
     EdgeMatches matches_;
-    std::vector<float> x_, y_, z_, u_, v_;
+    ProjectedPoints3 projected_;
 };
 
 }  // namespace roevo

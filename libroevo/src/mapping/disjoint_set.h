@@ -9,15 +9,10 @@ namespace roevo {
 /// Disjoint sets over 0..size-1, with union by size and path halving.
 class DisjointSet {
   public:
-    explicit DisjointSet(std::size_t size = 0) { reset(size); }
-
     /// `size` sets of one element each.
-    void reset(std::size_t size) {
-        parent_.resize(size);
+    explicit DisjointSet(std::size_t size) : parent_(size), members_(size, 1) {
         std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-        members_.assign(size, 1);
     }
-    std::size_t size() const { return parent_.size(); }
 
     /// The element that stands for the set of `element`.
     std::size_t find(std::size_t element) {

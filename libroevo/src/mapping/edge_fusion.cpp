@@ -33,15 +33,15 @@ void EdgeFuser::fuse(const std::vector<WindowKeyframe>& window, const std::vecto
     }
     std::vector<std::vector<Member>> members(static_cast<std::size_t>(count));
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
-        const auto& begin = window[slot].keyframe->image.begin;
-        for (std::size_t e = 0; e + 1 < begin.size(); ++e) {
+        for (std::size_t e = 0; e < clusters[slot].size(); ++e) {
+            const IndexRange own = window[slot].keyframe->image.pointsOf(e);
             members[static_cast<std::size_t>(clusters[slot][e])].push_back(
-                {static_cast<int>(slot), begin[e], begin[e + 1] - begin[e]});
+                {static_cast<std::int32_t>(slot), static_cast<std::int32_t>(own.first),
+                 static_cast<std::int32_t>(own.size())});
         }
     }
     for (int cluster = 0; cluster < count; ++cluster) {
-        auto& of_cluster = members[static_cast<std::size_t>(cluster)];
-        fuseCluster(window, cluster, of_cluster, out);
+        fuseCluster(window, cluster, members[static_cast<std::size_t>(cluster)], out);
     }
 }
 
@@ -88,35 +88,22 @@ void EdgeFuser::keepChain(std::size_t slots, int cluster, FusedEdges& out) {
 }
 
 std::size_t EdgeFuser::nearest(const Eigen::Vector3d& p, std::size_t from, bool search_all) const {
-    const auto squared = [&](std::size_t i) { return (chain_[i].position - p).squaredNorm(); };
     std::size_t best = from;
-    double best_squared = squared(from);
-    if (search_all) {
-        for (std::size_t i = 0; i < chain_.size(); ++i) {
-            const double d = squared(i);
-            if (d < best_squared) {
-                best_squared = d;
-                best = i;
-            }
+    double best_squared = (chain_[from].position - p).squaredNorm();
+    const auto look = [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i <= last; ++i) {
+            const double squared = (chain_[i].position - p).squaredNorm();
+            if (!(squared < best_squared)) continue;
+            best_squared = squared;
+            best = i;
         }
-        return best;
-    }
+    };
+    if (search_all) look(0, chain_.size() - 1);
     // Both edges are in order: the next point's neighbour is near the last one's
     constexpr std::size_t kLook = 4;
-    for (bool moved = true; moved;) {
-        moved = false;
-        const std::size_t low = best > kLook ? best - kLook : 0;
-        const std::size_t high = std::min(chain_.size() - 1, best + kLook);
-        const std::size_t centre = best;
-        for (std::size_t i = low; i <= high; ++i) {
-            if (i == centre) continue;
-            const double d = squared(i);
-            if (d < best_squared) {
-                best_squared = d;
-                best = i;
-                moved = true;
-            }
-        }
+    for (std::size_t centre = chain_.size(); !search_all && centre != best;) {
+        centre = best;
+        look(centre > kLook ? centre - kLook : 0, std::min(chain_.size() - 1, centre + kLook));
     }
     return best;
 }
@@ -163,7 +150,7 @@ void EdgeFuser::merge(const std::vector<WindowKeyframe>& window, const Member& m
     };
     points_.clear();
     for (std::size_t i = 0; i < count; ++i)
-        points_.push_back(view.T_world_camera * keyframe.point(first + i));
+        points_.push_back(view.T_world_camera * keyframe.points.at(first + i));
     if (chain_.empty()) {
         for (std::size_t i = 0; i < count; ++i) {
             chain_.push_back({points_[i], -1});

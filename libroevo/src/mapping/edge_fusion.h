@@ -12,18 +12,12 @@ namespace roevo {
 struct WindowKeyframe {
     const MapKeyframe* keyframe = nullptr;
     Pose T_world_camera = Pose::Identity();  ///< current estimate
-    bool fixed = false;                      ///< holds the gauge: not refined
+    bool fixed = false;                      ///< fixes the gauge: not refined
 };
 
 /// Point `point` of window keyframe `slot` shows a fused point.
 struct Observation {
     std::int32_t slot = 0, point = 0;
-};
-
-/// Half open.
-struct IndexRange {
-    std::size_t first = 0, end = 0;
-    std::size_t size() const { return end - first; }
 };
 
 /// Edges of the world, each fused from a cluster of keyframe edges. Points of an edge are consecutive and in
@@ -38,13 +32,8 @@ struct FusedEdges {
     std::vector<EdgeVerdict> verdicts;   ///< of each edge
 
     int numEdges() const { return static_cast<int>(begin.size()) - 1; }
-    IndexRange pointsOf(std::size_t edge) const {
-        return {static_cast<std::size_t>(begin[edge]), static_cast<std::size_t>(begin[edge + 1])};
-    }
-    IndexRange observationsOf(std::size_t point) const {
-        return {static_cast<std::size_t>(observation_begin[point]),
-                static_cast<std::size_t>(observation_begin[point + 1])};
-    }
+    IndexRange pointsOf(std::size_t edge) const { return rangeOf(begin, edge); }
+    IndexRange observationsOf(std::size_t point) const { return rangeOf(observation_begin, point); }
     /// Of all its points.
     IndexRange observationsOfEdge(std::size_t edge) const {
         const IndexRange own = pointsOf(edge);

@@ -73,15 +73,15 @@ EdgeMap edgesAsSeen(const MapContents& contents, const SensorOptions& sensor) {
     for (const auto& [id, keyframe] : contents.keyframes) {
         const std::vector<int>& clusters = contents.clusters[k++];
         const auto verdicts = contents.verdicts.find(id);
-        for (std::size_t e = 0; e + 1 < keyframe.image.begin.size(); ++e) {
+        for (std::size_t e = 0; e < clusters.size(); ++e) {
             MapEdge edge;
             edge.keyframe_id = id;
             edge.cluster = clusters[e];
             if (verdicts != contents.verdicts.end()) edge.verdict = verdicts->second[e];
             points.clear();
-            for (auto i = static_cast<std::size_t>(keyframe.image.begin[e]);
-                 i < static_cast<std::size_t>(keyframe.image.begin[e + 1]); ++i) {
-                points.push_back(keyframe.T_world_camera * keyframe.point(i));
+            const auto [first, end] = keyframe.image.pointsOf(e);
+            for (std::size_t i = first; i < end; ++i) {
+                points.push_back(keyframe.T_world_camera * keyframe.points.at(i));
                 edge.colours.push_back(keyframe.colours[i]);
             }
             smoothDepthAlong(points, keyframe.T_world_camera, sensor);

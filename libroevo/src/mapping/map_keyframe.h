@@ -19,21 +19,17 @@ struct MapKeyframe {
     /// relates it and those that follow to none of them.
     bool begins_track = false;
     Matrix6d parent_information =
-        Matrix6d::Zero();        ///< of T_parent_camera: position, then orientation, along the camera's axes
-    OrganizedEdges image;        ///< where the points would be seen at the reference row's time, ideal px
-    std::vector<float> x, y, z;  ///< camera frame, m; padded for the kernels
-    std::vector<float> weight;   ///< w_s(depth), Eq. (20)
-    std::vector<float>
-        slope;  ///< change of depth along the edge, in the direction (-normal_y, normal_x), m/px
-    std::vector<Rgb> colours;  ///< of each point
-    std::vector<float> found;  ///< of each edge: share of the frames after it that found it; < 0: not known
-    double median_depth = 0;   ///< m
-    RowMotion row_motion;      ///< that the points were moved with
+        Matrix6d::Zero();       ///< of T_parent_camera: position, then orientation, along the camera's axes
+    OrganizedEdges image;       ///< where the points would be seen at the reference row's time, ideal px
+    Points3 points;             ///< camera frame, m; padded
+    std::vector<float> weight;  ///< w_s(depth), Eq. (20)
+    std::vector<float> slope;   ///< of depth along the edge towards (-normal_y, normal_x), m/px
+    std::vector<Rgb> colours;   ///< of each point
+    std::vector<float> found;   ///< of each edge: share of the frames after it that found it; < 0: not known
+    double median_depth = 0;    ///< m
+    RowMotion row_motion;       ///< that the points were moved with
 
     std::size_t size() const { return image.size(); }
-    Eigen::Vector3d point(std::size_t i) const {
-        return {static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
-    }
 };
 
 /// Fills slope: a line through the depths of the points up to 4 places before and after.

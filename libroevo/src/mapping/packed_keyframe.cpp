@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "tracking/edge_points.h"
-#include "tracking/kernels.h"
 
 namespace roevo {
 
@@ -29,7 +28,7 @@ PackedKeyframe::PackedKeyframe(const MapKeyframe& keyframe)
       colours_(keyframe.colours),
       begin_(keyframe.image.begin) {
     std::vector<float> values(keyframe.size());
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1 / keyframe.z[i];
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1 / keyframe.points.z[i];
     inverse_depth_ = QuantizedArray(values, values.size());
     for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = std::atan2(keyframe.image.normal_y[i], keyframe.image.normal_x[i]);
@@ -44,8 +43,8 @@ void PackedKeyframe::unpackInto(MapKeyframe& keyframe, const PinholeCamera& came
     OrganizedEdges& image = keyframe.image;
     for (auto* array : {&image.x, &image.y, &image.normal_x, &image.normal_y, &keyframe.weight})
         array->resize(size);
-    for (auto* array : {&keyframe.x, &keyframe.y, &keyframe.z}) array->assign(kernels::paddedSize(size), 0);
-    std::fill(keyframe.z.begin(), keyframe.z.end(), 1.0f);
+    keyframe.points = Points3();
+    keyframe.points.reserve(size);
     image.edge_of.resize(size);
     for (std::size_t i = 0; i < size; ++i) {
         image.x[i] = u_.at(i);
@@ -53,23 +52,25 @@ void PackedKeyframe::unpackInto(MapKeyframe& keyframe, const PinholeCamera& came
         const float angle = normal_angle_.at(i), z = 1 / inverse_depth_.at(i);
         image.normal_x[i] = std::cos(angle);
         image.normal_y[i] = std::sin(angle);
-        keyframe.x[i] = (image.x[i] - static_cast<float>(camera.cx)) / static_cast<float>(camera.fx) * z;
-        keyframe.y[i] = (image.y[i] - static_cast<float>(camera.cy)) / static_cast<float>(camera.fy) * z;
-        keyframe.z[i] = z;
+        keyframe.points.add((image.x[i] - static_cast<float>(camera.cx)) / static_cast<float>(camera.fx) * z,
+                            (image.y[i] - static_cast<float>(camera.cy)) / static_cast<float>(camera.fy) * z,
+                            z);
         keyframe.weight[i] = static_cast<float>(depthWeight(static_cast<double>(z), sensor));
     }
+    keyframe.points.pad();
     image.begin = begin_;
-    for (std::size_t e = 0; e + 1 < begin_.size(); ++e)
-        std::fill(image.edge_of.begin() + begin_[e], image.edge_of.begin() + begin_[e + 1],
-                  static_cast<std::int32_t>(e));
+    for (int e = 0; e < image.numEdges(); ++e) {
+        const auto [first, end] = image.pointsOf(e);
+        std::fill(image.edge_of.data() + first, image.edge_of.data() + end, e);
+    }
     keyframe.colours = colours_;
     computeSlopes(keyframe);
 }
 
 void dropPoints(MapKeyframe& keyframe) {
     keyframe.image = OrganizedEdges();
-    for (auto* array : {&keyframe.x, &keyframe.y, &keyframe.z, &keyframe.weight, &keyframe.slope})
-        std::vector<float>().swap(*array);
+    keyframe.points = Points3();
+    for (auto* array : {&keyframe.weight, &keyframe.slope}) std::vector<float>().swap(*array);
     std::vector<Rgb>().swap(keyframe.colours);
 }
 

@@ -12,7 +12,7 @@ namespace roevo {
 class QuantizedArray {
   public:
     QuantizedArray() = default;
-    /// @param count  so many of the values, from the first
+    /// @param count  how many of the values, from the first on
     QuantizedArray(const std::vector<float>& values, std::size_t count);
 
     float at(std::size_t i) const { return first_ + step_ * static_cast<float>(steps_[i]); }

@@ -4,28 +4,28 @@
 #include <cmath>
 
 #include "point_buckets.h"
+#include "tracking/robust.h"
 
 namespace roevo {
 namespace {
 
 constexpr double kNearest = 0.05;       ///< m; nearer points cannot be projected
 constexpr double kFarOff = 100;         ///< px, for a point that cannot be projected
-constexpr double kLookShare = 0.7;      ///< a keyframe looks at an edge when so much of it is in its image
-constexpr double kSeeShare = 0.3;       ///< and sees it when so much of that is observed
+constexpr double kLookShare = 0.7;      ///< a keyframe looks at an edge when this share of it is in its image
+constexpr double kSeeShare = 0.3;       ///< and sees it when this share of that is observed
 constexpr std::size_t kMostLooks = 12;  ///< points of an edge that are looked for, evenly along it
-/// An edge is in an image when so much of it has an edge point within so many pixels and about its direction.
+/// An edge is in an image when this share of it has an edge point near it and about in its direction:
 constexpr double kImageShare = 0.5;
-constexpr float kLookRadius = 3, kLookSine = 0.35F;  // the radius in pixels of a 640x480 Kinect
-constexpr std::size_t kTangentSpan = 3;              ///< points to each side that a tangent is taken between
-constexpr double kFrameEvidence = 3;                 ///< keyframes that all frames since a keyframe count as
+constexpr float kLookRadius = 3;         ///< within this radius, px of a 640x480 Kinect
+constexpr float kLookSine = 0.35F;       ///< and turned by no more than this, sine of the angle
+constexpr std::size_t kTangentSpan = 3;  ///< points to each side that a tangent is taken between
+constexpr double kFrameEvidence = 3;     ///< keyframes that all frames since a keyframe count as
 
 double tangentResidual(const PinholeCamera& camera, const MapKeyframe& keyframe, std::size_t i,
                        const Eigen::Vector3d& in_camera) {
-    const Eigen::Vector2d pixel = camera.project(in_camera);
-    return static_cast<double>(keyframe.image.normal_x[i]) *
-               (pixel.x() - static_cast<double>(keyframe.image.x[i])) +
-           static_cast<double>(keyframe.image.normal_y[i]) *
-               (pixel.y() - static_cast<double>(keyframe.image.y[i]));  // Eq. (7)
+    const Eigen::Vector2d normal(keyframe.image.normal_x[i], keyframe.image.normal_y[i]),
+        seen(keyframe.image.x[i], keyframe.image.y[i]);
+    return normal.dot(camera.project(in_camera) - seen);  // Eq. (7)
 }
 
 }  // namespace
@@ -124,13 +124,9 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
         for (std::size_t p = first; p < end; ++p) {
             if (edges.observationsOf(p).size() >= 2) spreads.push_back(spreadOf(window, edges, p));
         }
-        if (!spreads.empty()) {
-            const auto middle = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
-            std::nth_element(spreads.begin(), middle, spreads.end());
-            if (*middle > options_.max_spread * scale) {
-                verdict = EdgeVerdict::kSpread;
-                continue;
-            }
+        if (!spreads.empty() && medianOf(spreads) > options_.max_spread * scale) {
+            verdict = EdgeVerdict::kSpread;
+            continue;
         }
         const Looks looks = countLooks(window, edges, edge);
         const double found = foundShare(window, edges, edge);

@@ -28,20 +28,10 @@ cv::Mat1b maskAround(const OrganizedEdges& edges, const PinholeCamera& camera, i
     return mask;
 }
 
-Rgb colourAt(const RgbdFrame& frame, int u, int v) {
-    if (frame.colour.type() == CV_8UC3 && frame.colour.size() == frame.grey.size()) {
-        const auto& bgr = frame.colour.at<cv::Vec3b>(v, u);
-        return {bgr[2], bgr[1], bgr[0]};
-    }
-    const auto level = frame.grey.at<std::uint8_t>(v, u);
-    return {level, level, level};
-}
-
 /// The pixel (u, v) of the ideal camera with the nearest pixel of the real one; false where that has no
 /// depth.
 bool sample(const RgbdFrame& frame, const PinholeCamera& camera, int u, int v, ColouredPoint& out) {
-    const Eigen::Vector2d ideal(u, v);
-    const Eigen::Vector2d real = camera.isDistorted() ? camera.distortPixel(ideal) : ideal;
+    const Eigen::Vector2d real = camera.distortPixel(Eigen::Vector2d(u, v));
     if (!(real.x() > -0.5 && real.x() < camera.width - 0.5 && real.y() > -0.5 &&
           real.y() < camera.height - 0.5))
         return false;
@@ -54,6 +44,15 @@ bool sample(const RgbdFrame& frame, const PinholeCamera& camera, int u, int v, C
 }
 
 }  // namespace
+
+Rgb colourAt(const RgbdFrame& frame, int u, int v) {
+    if (frame.colour.type() == CV_8UC3 && frame.colour.size() == frame.grey.size()) {
+        const auto& bgr = frame.colour.at<cv::Vec3b>(v, u);
+        return {bgr[2], bgr[1], bgr[0]};
+    }
+    const auto level = frame.grey.at<std::uint8_t>(v, u);
+    return {level, level, level};
+}
 
 std::vector<ColouredPoint> sampleSemiDense(const OrganizedEdges& edges, const RgbdFrame& frame,
                                            const PinholeCamera& camera, int radius_px, int max_points) {

@@ -12,22 +12,22 @@ namespace {
 
 constexpr double kNoScale = 2.0;       ///< px of spread where nothing is seen
 constexpr double kNearest = 0.05;      ///< m; nearer points cannot be projected
-constexpr std::size_t kScaleStep = 3;  ///< one point in so many is enough for a median
+constexpr std::size_t kScaleStep = 3;  ///< every third point is enough for a median
 /// Points that make the Hessian; there are more than it needs. All make the gradient, so that nothing but the
 /// step to the optimum is approximate.
 constexpr std::size_t kHessianPoints = 1500;
 constexpr std::int32_t kAnySlot = -1;
-/// Of a point along its edge, as a share of what is known across: normals and slopes differ by noise, and
-/// points that follow them slide. 1 and 0.001 are about as good.
-constexpr double kHold = 0.1;
-constexpr double kWeakHold = 1e-6;  ///< of a point in directions in which nothing is known
+/// Damping of a point's step along its edge, relative to the information across it: normals and slopes differ
+/// by noise, and points that follow them slide. 1 and 0.001 are about as good.
+constexpr double kDampingAlong = 0.1;
+constexpr double kDamping = 1e-6;  ///< the same in all directions, for those in which nothing is known
 
 }  // namespace
 
 void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const FusedEdges& edges) {
     points_.clear();
     begin_.assign(1, 0);
-    sights_.clear();
+    observations_.clear();
     blurs_.clear();
     for (const WindowKeyframe& view : window)
         blurs_.emplace_back(view.keyframe->row_motion, camera_, sensor_.blur_time);
@@ -46,20 +46,21 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
                 const double x = static_cast<double>(keyframe.image.x[i]) - camera_.cx;
                 const double y = static_cast<double>(keyframe.image.y[i]) - camera_.cy;
                 const float blur = blurs_[static_cast<std::size_t>(slot)].variance(
-                    keyframe.x[i], keyframe.y[i], keyframe.z[i], keyframe.image.normal_x[i],
-                    keyframe.image.normal_y[i]);
+                    keyframe.points.x[i], keyframe.points.y[i], keyframe.points.z[i],
+                    keyframe.image.normal_x[i], keyframe.image.normal_y[i]);
                 const auto trust = static_cast<double>(keyframe.weight[i] / (1 + blur));
-                const auto depth = static_cast<double>(keyframe.z[i]);
+                const auto depth = static_cast<double>(keyframe.points.z[i]);
                 const double sigma = sensor_.depthSigma(depth);
-                sights_.push_back({camera_.fx * nx, camera_.fy * ny, nx * x + ny * y, -camera_.fx * ny,
-                                   camera_.fy * nx, nx * y - ny * x, depth,
-                                   static_cast<double>(keyframe.slope[i]), trust, 1 / (sigma * sigma), slot});
+                observations_.push_back({camera_.fx * nx, camera_.fy * ny, nx * x + ny * y, -camera_.fx * ny,
+                                         camera_.fy * nx, nx * y - ny * x, depth,
+                                         static_cast<double>(keyframe.slope[i]), trust, 1 / (sigma * sigma),
+                                         slot});
             }
             points_.push_back(static_cast<std::int32_t>(p));
-            begin_.push_back(static_cast<std::int32_t>(sights_.size()));
+            begin_.push_back(static_cast<std::int32_t>(observations_.size()));
         }
     }
-    residuals_.resize(sights_.size());
+    residuals_.resize(observations_.size());
     const std::size_t slots = window.size();
     origin_ = slots == 0 ? Eigen::Vector3d::Zero() : Eigen::Vector3d(window[0].T_world_camera.translation());
     rows_.assign(slots, -1);
@@ -73,7 +74,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     gradient.resize(num_rows_);
     blocks_.resize(slots * slots);
     gradients_.resize(slots);
-    shares_.resize(slots);
+    point_blocks_.resize(slots);
     scales_.resize(slots);
 }
 
@@ -82,8 +83,8 @@ void WindowEquations::evaluate(const std::vector<WindowKeyframe>& window,
     for (std::size_t p = 0; p < points_.size(); ++p) {
         const Eigen::Vector3d& point = points[static_cast<std::size_t>(points_[p])];
         for (auto k = static_cast<std::size_t>(begin_[p]); k < static_cast<std::size_t>(begin_[p + 1]); ++k) {
-            const Sight& sight = sights_[k];
-            const Pose& T = window[static_cast<std::size_t>(sight.slot)].T_world_camera;
+            const LineObservation& seen = observations_[k];
+            const Pose& T = window[static_cast<std::size_t>(seen.slot)].T_world_camera;
             const Eigen::Vector3d q = T.linear().transpose() * (point - T.translation());
             Residual& out = residuals_[k];
             if (!(q.z() > kNearest)) {
@@ -91,10 +92,10 @@ void WindowEquations::evaluate(const std::vector<WindowKeyframe>& window,
                 continue;
             }
             const double inverse = 1 / q.z();
-            const double along = (sight.along_a * q.x() + sight.along_b * q.y()) * inverse - sight.along_c;
+            const double along = (seen.along_a * q.x() + seen.along_b * q.y()) * inverse - seen.along_c;
             out = {q.x(), q.y(), inverse,
-                   (sight.across_a * q.x() + sight.across_b * q.y()) * inverse - sight.across_c,
-                   q.z() - sight.depth - sight.slope * along};
+                   (seen.across_a * q.x() + seen.across_b * q.y()) * inverse - seen.across_c,
+                   q.z() - seen.depth - seen.slope * along};
         }
     }
     spreads(least_scale);
@@ -115,7 +116,7 @@ double WindowEquations::spread(std::int32_t slot, double least_scale) {
     scratch_.clear();
     for (std::size_t p = 0; p < points_.size(); p += kScaleStep) {
         for (auto k = static_cast<std::size_t>(begin_[p]); k < static_cast<std::size_t>(begin_[p + 1]); ++k) {
-            if (residuals_[k].inverse_z < 0 || (slot != kAnySlot && sights_[k].slot != slot)) continue;
+            if (residuals_[k].inverse_z < 0 || (slot != kAnySlot && observations_[k].slot != slot)) continue;
             scratch_.push_back(static_cast<float>(std::abs(residuals_[k].across)));
         }
     }
@@ -133,13 +134,14 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
         direction_.setZero();
         for (auto k = static_cast<std::size_t>(begin_[p]); k < static_cast<std::size_t>(begin_[p + 1]); ++k) {
             if (residuals_[k].inverse_z < 0) continue;
-            const auto slot = static_cast<std::size_t>(sights_[k].slot);
-            if (!addSight(sights_[k], residuals_[k], window[slot].T_world_camera.linear())) continue;
+            const auto slot = static_cast<std::size_t>(observations_[k].slot);
+            if (!addObservation(observations_[k], residuals_[k], window[slot].T_world_camera.linear()))
+                continue;
             ++inliers[slot];
             ++count;
         }
         if (count >= 2) addPoint(points[static_cast<std::size_t>(points_[p])], p % stride == 0);
-        for (const std::int32_t slot : touched_) shares_[static_cast<std::size_t>(slot)].used = false;
+        for (const std::int32_t slot : touched_) point_blocks_[static_cast<std::size_t>(slot)].used = false;
     }
     for (std::size_t a = 0; a < rows_.size(); ++a) {
         if (rows_[a] < 0) continue;
@@ -153,56 +155,58 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
     }
 }
 
-bool WindowEquations::addSight(const Sight& sight, const Residual& residual, const Eigen::Matrix3d& R) {
-    const double spread = scales_[static_cast<std::size_t>(sight.slot)];
+bool WindowEquations::addObservation(const LineObservation& seen, const Residual& residual,
+                                     const Eigen::Matrix3d& R) {
+    const double spread = scales_[static_cast<std::size_t>(seen.slot)];
     const double variance = spread * spread, squared = residual.across * residual.across;
     if (squared > options_.chi2 * variance) return false;
-    Share& share = shares_[static_cast<std::size_t>(sight.slot)];
-    if (!share.used) {
-        share.used = true;
-        share.information.setZero();
-        share.pull.setZero();
-        touched_.push_back(sight.slot);
+    InformationBlock& block = point_blocks_[static_cast<std::size_t>(seen.slot)];
+    if (!block.used) {
+        block.used = true;
+        block.information.setZero();
+        block.gradient.setZero();
+        touched_.push_back(seen.slot);
     }
     const double z = residual.inverse_z;
-    const double weight = studentWeight(sight.weight, squared, variance);
+    const double weight = studentWeight(seen.weight, squared, variance);
     const Eigen::Vector3d across =
-        R * Eigen::Vector3d(z * sight.across_a, z * sight.across_b, -z * (residual.across + sight.across_c));
+        R * Eigen::Vector3d(z * seen.across_a, z * seen.across_b, -z * (residual.across + seen.across_c));
     const Eigen::Vector3d weighted = weight * across;
-    share.information.noalias() += weighted * across.transpose();
-    share.pull += residual.across * weighted;
-    const double depth_squared = residual.depth * residual.depth * sight.depth_information;
+    block.information.noalias() += weighted * across.transpose();
+    block.gradient += residual.across * weighted;
+    const double depth_squared = residual.depth * residual.depth * seen.depth_information;
     if (!(depth_squared <= options_.depth_chi2)) return true;
-    const double slope = sight.slope * z;
-    const double along = (sight.along_a * residual.x + sight.along_b * residual.y) * z;
+    const double slope = seen.slope * z;
+    const double along = (seen.along_a * residual.x + seen.along_b * residual.y) * z;
     const Eigen::Vector3d depth =
-        R * Eigen::Vector3d(-slope * sight.along_a, -slope * sight.along_b, 1 + slope * along);
+        R * Eigen::Vector3d(-slope * seen.along_a, -slope * seen.along_b, 1 + slope * along);
     const double depth_weight =
-        studentWeight(options_.depth_weight * sight.weight * sight.depth_information, depth_squared);
+        studentWeight(options_.depth_weight * seen.weight * seen.depth_information, depth_squared);
     const Eigen::Vector3d weighted_depth = depth_weight * depth;
-    share.information.noalias() += weighted_depth * depth.transpose();
-    share.pull += residual.depth * weighted_depth;
+    block.information.noalias() += weighted_depth * depth.transpose();
+    block.gradient += residual.depth * weighted_depth;
     direction_ += weighted.cross(depth);
     return true;
 }
 
 void WindowEquations::addPoint(Eigen::Vector3d& point, bool to_hessian) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+    Eigen::Vector3d point_gradient = Eigen::Vector3d::Zero();
     for (const std::int32_t slot : touched_) {
-        information += shares_[static_cast<std::size_t>(slot)].information;
-        pull += shares_[static_cast<std::size_t>(slot)].pull;
+        information += point_blocks_[static_cast<std::size_t>(slot)].information;
+        point_gradient += point_blocks_[static_cast<std::size_t>(slot)].gradient;
     }
     const double trace = information.trace(), length = direction_.squaredNorm();
-    information.diagonal().array() += kWeakHold * trace;
-    if (length > 0) information.noalias() += (kHold * trace / length * direction_) * direction_.transpose();
+    information.diagonal().array() += kDamping * trace;
+    if (length > 0)
+        information.noalias() += (kDampingAlong * trace / length * direction_) * direction_.transpose();
     const Eigen::Matrix3d inverse = information.inverse();
-    const Eigen::Vector3d step = -inverse * pull;
+    const Eigen::Vector3d step = -inverse * point_gradient;
     point += step;
     for (const std::int32_t slot : touched_) {
         const auto s = static_cast<std::size_t>(slot);
         if (rows_[s] < 0) continue;
-        const Eigen::Vector3d b = shares_[s].pull + shares_[s].information * step;
+        const Eigen::Vector3d b = point_blocks_[s].gradient + point_blocks_[s].information * step;
         gradients_[s].head<3>() -= b;
         gradients_[s].tail<3>() -= (point - origin_).cross(b);
     }
@@ -214,22 +218,22 @@ void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Ma
     const Eigen::Matrix3d P = skew(point - origin_);
     for (const std::int32_t slot : touched_) {
         if (rows_[static_cast<std::size_t>(slot)] < 0) continue;
-        Share& share = shares_[static_cast<std::size_t>(slot)];
-        share.coupling.topRows<3>() = share.information;
-        share.coupling.bottomRows<3>().noalias() = P * share.information;
-        Block& own = block(slot, slot);
-        own.leftCols<3>() += share.coupling;
-        own.rightCols<3>().noalias() -= share.coupling * P;
+        InformationBlock& own = point_blocks_[static_cast<std::size_t>(slot)];
+        own.coupling.topRows<3>() = own.information;
+        own.coupling.bottomRows<3>().noalias() = P * own.information;
+        Block& diagonal = block(slot, slot);
+        diagonal.leftCols<3>() += own.coupling;
+        diagonal.rightCols<3>().noalias() -= own.coupling * P;
     }
     if (!options_.joint_refinement) return;
     for (std::size_t a = 0; a < touched_.size(); ++a) {
         if (rows_[static_cast<std::size_t>(touched_[a])] < 0) continue;
         const Eigen::Matrix<double, 6, 3> through =
-            shares_[static_cast<std::size_t>(touched_[a])].coupling * inverse;
+            point_blocks_[static_cast<std::size_t>(touched_[a])].coupling * inverse;
         for (std::size_t c = a; c < touched_.size(); ++c) {
             if (rows_[static_cast<std::size_t>(touched_[c])] < 0) continue;
             block(touched_[a], touched_[c]).noalias() -=
-                through * shares_[static_cast<std::size_t>(touched_[c])].coupling.transpose();
+                through * point_blocks_[static_cast<std::size_t>(touched_[c])].coupling.transpose();
         }
     }
 }

@@ -12,7 +12,7 @@ namespace roevo {
 ///
 /// A keyframe sees the line of an edge, not a point on it: a fused point that lies further along the edge
 /// than the observation is compared with the tangent there, in the image (Eq. (7)) and in depth. Neither
-/// residual changes when the point moves along the edge, so points are held in that direction.
+/// residual changes when the point moves along the edge, so its step is damped in that direction.
 class WindowEquations {
   public:
     WindowEquations(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera)
@@ -44,7 +44,7 @@ class WindowEquations {
 
   private:
     /// An observation: residual = (a X + b Y) / Z - c across the edge, and the same along it.
-    struct Sight {
+    struct LineObservation {
         double across_a, across_b, across_c, along_a, along_b, along_c;
         double depth, slope;               ///< m; m per px along the edge
         double weight, depth_information;  ///< 1/m^2
@@ -57,9 +57,9 @@ class WindowEquations {
     /// What a keyframe's observations of one point add up to, in the world's axes. The pose's part follows,
     /// because moving the camera is moving the point the other way: with G = [I; [P]x], P the point,
     /// H_pose = G A G^T, H_pose,point = -G A, g_pose = -G b.
-    struct Share {
+    struct InformationBlock {
         Eigen::Matrix3d information;  ///< A
-        Eigen::Vector3d pull;         ///< b
+        Eigen::Vector3d gradient;     ///< b
         Eigen::Matrix<double, 6, 3> coupling;
         bool used = false;
     };
@@ -68,7 +68,7 @@ class WindowEquations {
 
     void spreads(double least_scale);
     double spread(std::int32_t slot, double least_scale);
-    bool addSight(const Sight& sight, const Residual& residual, const Eigen::Matrix3d& R);
+    bool addObservation(const LineObservation& seen, const Residual& residual, const Eigen::Matrix3d& R);
     void addPoint(Eigen::Vector3d& point, bool to_hessian);
     void addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse);
     Block& block(std::int32_t row_slot, std::int32_t column_slot) {
@@ -79,8 +79,8 @@ class WindowEquations {
     MappingOptions options_;
     SensorOptions sensor_;
     PinholeCamera camera_;
-    std::vector<std::int32_t> points_, begin_;  ///< points that take part; first sight of each
-    std::vector<Sight> sights_;
+    std::vector<std::int32_t> points_, begin_;  ///< points that take part; first observation of each
+    std::vector<LineObservation> observations_;
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
     std::vector<MotionBlur> blurs_;  ///< of each slot
     std::vector<Residual> residuals_;
@@ -91,9 +91,10 @@ class WindowEquations {
     std::vector<Block, Eigen::aligned_allocator<Block>> blocks_;
     std::vector<Vector6, Eigen::aligned_allocator<Vector6>> gradients_;
     // Of the point that is being added
-    std::vector<Share, Eigen::aligned_allocator<Share>> shares_;  ///< of each keyframe
-    std::vector<std::int32_t> touched_;                           ///< keyframes that have a share
-    Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();         ///< of the edge, not normalised
+    std::vector<InformationBlock, Eigen::aligned_allocator<InformationBlock>>
+        point_blocks_;                                     ///< of each keyframe
+    std::vector<std::int32_t> touched_;                    ///< slots of keyframes that observe it
+    Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();  ///< of the edge, not normalised
 };
 
 }  // namespace roevo

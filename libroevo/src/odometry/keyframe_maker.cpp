@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "mapping/semi_dense.h"
 #include "tracking/se3.h"
 
 namespace roevo {
@@ -41,15 +42,13 @@ void numberEdges(Keyframe& keyframe, const Keyframe* before, const EdgeMatches& 
     keyframe.clusters.clear();
     for (int e = 0; e < edges.image.numEdges(); ++e) {
         votes.clear();
-        const auto first = static_cast<std::size_t>(edges.image.begin[static_cast<std::size_t>(e)]);
-        const auto end = static_cast<std::size_t>(edges.image.begin[static_cast<std::size_t>(e) + 1]);
-        for (std::size_t i = first; i < end; ++i) {
+        const IndexRange own = edges.image.pointsOf(e);
+        for (std::size_t i = own.first; i < own.end; ++i) {
             const auto source = static_cast<std::size_t>(edges.source[i]);
             if (source < matched.size() && matched[source] >= 0) ++votes[matched[source]];
         }
-        const auto most = std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
-            return a.second < b.second;
-        });
+        const auto most = std::max_element(votes.begin(), votes.end(),
+                                           [](const auto& a, const auto& b) { return a.second < b.second; });
         keyframe.clusters.push_back(
             most == votes.end() ? next++ : before->clusters[static_cast<std::size_t>(most->first)]);
     }
@@ -57,25 +56,16 @@ void numberEdges(Keyframe& keyframe, const Keyframe* before, const EdgeMatches& 
 
 EdgeMap ownEdges(const Keyframe& kf, const RgbdFrame& frame, const PinholeCamera& camera) {
     EdgeMap edges;
-    const bool coloured = frame.colour.type() == CV_8UC3 && frame.colour.size() == frame.grey.size();
     for (int e = 0; e < kf.edges.image.numEdges(); ++e) {
         MapEdge edge;
         edge.keyframe_id = kf.id;
-        const auto first = static_cast<std::size_t>(kf.edges.image.begin[static_cast<std::size_t>(e)]);
-        const auto end = static_cast<std::size_t>(kf.edges.image.begin[static_cast<std::size_t>(e) + 1]);
+        const auto [first, end] = kf.edges.image.pointsOf(e);
         for (std::size_t i = first; i < end; ++i) {
-            edge.points.emplace_back(kf.edges.x[i], kf.edges.y[i], kf.edges.z[i]);
-            Eigen::Vector2d pixel(kf.edges.image.x[i], kf.edges.image.y[i]);
-            if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
+            edge.points.push_back(kf.edges.points.at(i).cast<float>());
+            const Eigen::Vector2d pixel = camera.distortPixel({kf.edges.image.x[i], kf.edges.image.y[i]});
             const int u = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, camera.width - 1);
             const int v = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, camera.height - 1);
-            if (coloured) {
-                const auto& bgr = frame.colour.at<cv::Vec3b>(v, u);
-                edge.colours.push_back({bgr[2], bgr[1], bgr[0]});
-            } else {
-                const std::uint8_t level = frame.grey.at<std::uint8_t>(v, u);
-                edge.colours.push_back({level, level, level});
-            }
+            edge.colours.push_back(colourAt(frame, u, v));
         }
         edges.push_back(std::move(edge));
     }

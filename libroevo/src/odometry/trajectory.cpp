@@ -8,7 +8,7 @@
 namespace roevo {
 namespace {
 
-constexpr double kStill = 0.02;      // m; less change of view than this is hardly any
+constexpr double kStill = 0.02;             // m; less change of view than this is hardly any
 constexpr std::size_t kRecentFrames = 128;  // of which it is kept which edges their errors come from
 constexpr double kTypicalDepth = 2;  // m; at this depth a turn by 1 rad changes a view like so many metres
 
@@ -23,9 +23,8 @@ Matrix6d rotated(const Eigen::Matrix3d& R) {
 template <class Chosen>
 void forget(PoseUncertainty& uncertainty, Chosen&& chosen) {
     auto& edges = uncertainty.influences;
-    const auto gone = std::stable_partition(edges.begin(), edges.end(), [&](const EdgeInfluence& edge) {
-        return !chosen(edge.cluster);
-    });
+    const auto gone = std::stable_partition(edges.begin(), edges.end(),
+                                            [&](const EdgeInfluence& edge) { return !chosen(edge.cluster); });
     for (auto it = gone; it != edges.end(); ++it)
         uncertainty.independent += it->moved * it->moved.transpose();
     edges.erase(gone, edges.end());

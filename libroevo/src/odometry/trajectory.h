@@ -25,8 +25,8 @@ class Trajectory {
     /// As FrameResult::covariance.
     Matrix6d worldCovariance(const RelativePose& pose) const;
     /// Of the motion from one frame to another (their indices in the order of addFrame()): of T_from_to,
-    /// position, then orientation, along the axes of the second camera. Not finite where they are in different
-    /// tracks.
+    /// position, then orientation, along the axes of the second camera. Not finite where they are in
+    /// different tracks.
     Matrix6d motionCovariance(std::size_t from, std::size_t to) const;
 
     const std::vector<KeyframeInfo>& keyframes() const { return keyframes_; }
@@ -48,7 +48,7 @@ class Trajectory {
 
     std::vector<KeyframeInfo> keyframes_;
     std::vector<PoseUncertainty> in_world_;  ///< of the keyframes; influences of the newest alone
-    std::vector<RelativePose> links_;  ///< of the keyframes, to the ones before; -1: to the world
+    std::vector<RelativePose> links_;        ///< of the keyframes, to the ones before; -1: to the world
     std::vector<Frame> frames_;
     std::vector<StampedPose> live_;
 };

@@ -44,7 +44,7 @@ class EdgeAssociator {
 
     FineOptions options_;
     std::vector<std::int32_t> votes_, touched_;
-    int stride_ = 1;  ///< one point in so many of a reference edge is looked up
+    std::size_t stride_ = 1;  ///< every n-th point of a reference edge is looked up
 };
 
 }  // namespace roevo

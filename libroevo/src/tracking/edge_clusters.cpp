@@ -29,15 +29,14 @@ void EdgeClusters::start(const std::vector<std::int32_t>& cluster_of) {
     }
 }
 
-void EdgeClusters::add(std::size_t edge, const float (&matrix)[6], const float (&vector)[3], float x, float y,
-                       float z) {
+void EdgeClusters::add(std::size_t edge, const float (&matrix)[6], const float (&vector)[3],
+                       const Eigen::Vector3d& point) {
     if (edge >= slot_of_.size()) return;  // of points that are no edge points, as experiments choose them
     Sum& sum = sums_[static_cast<std::size_t>(slot_of_[edge])];
     sum.used = true;
     Eigen::Matrix3f M;
     M << matrix[0], matrix[1], matrix[2], matrix[1], matrix[3], matrix[4], matrix[2], matrix[4], matrix[5];
     const Eigen::Matrix3d information = M.cast<double>();
-    const Eigen::Vector3d point = Eigen::Vector3f(x, y, z).cast<double>();
     const Eigen::Vector3d pull = Eigen::Vector3f(vector[0], vector[1], vector[2]).cast<double>();
     const Eigen::Matrix3d P = skew(point), turned = P * information;
     sum.hessian.topLeftCorner<3, 3>() += information;

@@ -30,8 +30,9 @@ class EdgeClusters {
   public:
     /// @param cluster_of  of each edge (see Keyframe::clusters); must outlive the use
     void start(const std::vector<std::int32_t>& cluster_of);
-    /// @param matrix,vector  as in kernels::PointInformation, of a point at (x, y, z), m
-    void add(std::size_t edge, const float (&matrix)[6], const float (&vector)[3], float x, float y, float z);
+    /// @param matrix,vector  as in kernels::PointInformation, of a point (m)
+    void add(std::size_t edge, const float (&matrix)[6], const float (&vector)[3],
+             const Eigen::Vector3d& point);
 
     /// Of the pose that solves the system: as of independent points, and what the pose would move by if any
     /// one edge were left out (the jackknife over clusters, which is the sandwich estimator with its
@@ -46,8 +47,8 @@ class EdgeClusters {
         Matrix6d hessian = Matrix6d::Zero();
         Vector6d gradient = Vector6d::Zero();
     };
-    std::vector<Sum> sums_;               // in the order of clusters
-    std::vector<std::int32_t> slot_of_;   // of each edge: its cluster's place in sums_
+    std::vector<Sum> sums_;              // in the order of clusters
+    std::vector<std::int32_t> slot_of_;  // of each edge: its cluster's place in sums_
 };
 
 }  // namespace roevo

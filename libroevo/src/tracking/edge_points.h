@@ -12,10 +12,9 @@ namespace roevo {
 
 /// Organized edges with depth: 2-D points as OrganizedEdges has them, plus their position in the camera
 /// frame. Only points with depth are kept, and an edge is split where consecutive points jump in depth.
-/// Arrays read by the kernels are padded.
 struct EdgePoints3D {
     OrganizedEdges image;                 ///< 2-D side; points without depth are gone
-    std::vector<float> x, y, z;           ///< camera frame, m; padded to a multiple of the kernels' lanes
+    Points3 points;                       ///< camera frame, m; padded
     std::vector<float> correction;        ///< m that EdgeSides added to the depth of the patch
     std::vector<float> weight;            ///< w_s(depth), Eq. (20)
     std::vector<std::uint8_t> occluding;  ///< 1 where the point borders a background behind it

@@ -89,27 +89,18 @@ void EdgeTerm::assess(const Pose& T_current_keyframe, const RowMotion& rows) {
 
 void EdgeTerm::project(const Pose& pose, const RowMotion& rows) {
     const EdgePoints3D& edges = keyframe_->edges;
-    const std::vector<float>*x = &edges.x, *y = &edges.y, *z = &edges.z;
     if (free_readout_) {
-        moved_x_ = edges.x;
-        moved_y_ = edges.y;
-        moved_z_ = edges.z;
+        moved_ = edges.points;
         exchangeMotion(keyframe_->row_motion, keyframe_->row_motion.at(rows.seconds_per_row), edges.image.y,
-                       edges.size(), moved_x_, moved_y_, moved_z_);
-        x = &moved_x_;
-        y = &moved_y_;
-        z = &moved_z_;
+                       edges.size(), moved_);
     }
-    const std::size_t padded = x->size();
-    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
-    kernels::best().project(makeProjection(pose, ideal_, rows), x->data(), y->data(), z->data(), padded,
-                            {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+    roevo::project(free_readout_ ? moved_ : edges.points, pose, ideal_, rows, projected_);
 }
 
 void EdgeTerm::associateProjected(const Pose& T_current_keyframe, double radius) {
-    associator_.associate(keyframe_->edges.image, u_.data(), v_.data(), imageRotation(T_current_keyframe),
-                          edge_options_.tangent_span, frame_->edges, frame_->grid, ideal_.width,
-                          ideal_.height, radius, matches_);
+    associator_.associate(keyframe_->edges.image, projected_.u.data(), projected_.v.data(),
+                          imageRotation(T_current_keyframe), edge_options_.tangent_span, frame_->edges,
+                          frame_->grid, ideal_.width, ideal_.height, radius, matches_);
 }
 
 void EdgeTerm::tangentResiduals(const RowMotion& rows) {
@@ -125,11 +116,12 @@ void EdgeTerm::tangentResiduals(const RowMotion& rows) {
         const auto p = static_cast<std::size_t>(matches_.current[k]);
         // Eq. (7), as a signed scalar across the tangent (its square and normal equations are the same),
         // about the associated point rather than its predecessor: unbiased where the edge is curved
-        residual_[k] =
-            current.normal_x[p] * (u_[i] - current.x[p]) + current.normal_y[p] * (v_[i] - current.y[p]);
-        const float blur = now.variance(x_[i], y_[i], z_[i], current.normal_x[p], current.normal_y[p]) +
-                           then.variance(edges.x[i], edges.y[i], edges.z[i], edges.image.normal_x[i],
-                                         edges.image.normal_y[i]);
+        residual_[k] = current.normal_x[p] * (projected_.u[i] - current.x[p]) +
+                       current.normal_y[p] * (projected_.v[i] - current.y[p]);
+        const float blur = now.variance(projected_.x[i], projected_.y[i], projected_.z[i],
+                                        current.normal_x[p], current.normal_y[p]) +
+                           then.variance(edges.points.x[i], edges.points.y[i], edges.points.z[i],
+                                         edges.image.normal_x[i], edges.image.normal_y[i]);
         sharpness_[k] = 1 / (1 + blur);
         scratch_.push_back(std::abs(residual_[k]) * std::sqrt(sharpness_[k]));
     }
@@ -139,8 +131,7 @@ void EdgeTerm::tangentResiduals(const RowMotion& rows) {
 float EdgeTerm::currentDepth(std::size_t point) {
     float& measured = current_depth_[point];
     if (measured != kUnknown) return measured;
-    Eigen::Vector2d pixel(frame_->edges.x[point], frame_->edges.y[point]);
-    if (camera_.isDistorted()) pixel = camera_.distortPixel(pixel);
+    const Eigen::Vector2d pixel = camera_.distortPixel({frame_->edges.x[point], frame_->edges.y[point]});
     measured = foregroundDepth(frame_->images.depth, static_cast<float>(pixel.x()),
                                static_cast<float>(pixel.y()), edge_options_, sensor_)
                    .depth;
@@ -159,10 +150,10 @@ void EdgeTerm::depthResiduals() {
         const auto i = static_cast<std::size_t>(matches_.reference[k]);
         const float measured = currentDepth(static_cast<std::size_t>(matches_.current[k]));
         if (measured <= 0) continue;
-        const float z2 = measured * measured, reference2 = edges.z[i] * edges.z[i];
+        const float z2 = measured * measured, reference2 = edges.points.z[i] * edges.points.z[i];
         const float variance = noise2 * (z2 * z2 + reference2 * reference2) + 2 * floor2;
         // What the sides of the edge add in the keyframe they would add here, too
-        const float residual = z_[i] - edges.correction[i] - measured;
+        const float residual = projected_.z[i] - edges.correction[i] - measured;
         const float squared = residual * residual / variance;
         if (squared > chi2) continue;
         depth_residual_[k] = residual;
@@ -202,11 +193,12 @@ void EdgeTerm::accumulate(PoseSystem& system) {
         const auto p = static_cast<std::size_t>(matches_.current[k]);
         const float nx = current.normal_x[p], ny = current.normal_y[p], w = weight_[k], r = residual_[k];
         float matrix[6], vector[3];
-        liftInformation(x_[i], y_[i], z_[i], fx, fy, w * nx * nx, w * nx * ny, w * ny * ny, w * nx * r,
-                        w * ny * r, matrix, vector);
+        const float x = projected_.x[i], y = projected_.y[i], z = projected_.z[i];
+        liftInformation(x, y, z, fx, fy, w * nx * nx, w * nx * ny, w * ny * ny, w * nx * r, w * ny * r,
+                        matrix, vector);
         matrix[5] += depth_weight_[k];
         vector[2] += depth_weight_[k] * depth_residual_[k];
-        rows_.set(k, matrix, vector, x_[i], y_[i], z_[i]);
+        rows_.set(k, matrix, vector, x, y, z);
     }
     system.add(rows_.sum());
 }
@@ -225,16 +217,15 @@ void EdgeTerm::accumulateReadout(const Linearisation& at, PoseSystem& system) co
         if (weight_[k] <= 0) continue;
         const auto i = static_cast<std::size_t>(matches_.reference[k]);
         const auto p = static_cast<std::size_t>(matches_.current[k]);
-        const double a = ideal_.fx / static_cast<double>(z_[i]), b = ideal_.fy / static_cast<double>(z_[i]);
-        const Eigen::Vector3d point(x_[i], y_[i], z_[i]);
+        const Eigen::Vector3d point = projected_.at(i);
+        const double a = ideal_.fx / point.z(), b = ideal_.fy / point.z();
         const Eigen::Vector2d normal(current.normal_x[p], current.normal_y[p]);
         const Eigen::Vector3d by_point(
             a * normal.x(), b * normal.y(),
             -(a * normal.x() * point.x() + b * normal.y() * point.y()) / point.z());
-        const Eigen::Vector3d in_keyframe(keyframe_->edges.x[i], keyframe_->edges.y[i],
-                                          keyframe_->edges.z[i]);
-        const double by_current =
-            by_point.dot(rows.pointVelocity(point)) * (static_cast<double>(v_[i]) - rows.reference_row);
+        const Eigen::Vector3d in_keyframe = keyframe_->edges.points.at(i);
+        const double by_current = by_point.dot(rows.pointVelocity(point)) *
+                                  (static_cast<double>(projected_.v[i]) - rows.reference_row);
         const double by_keyframe =
             -by_point.dot(at.T_current_keyframe.linear() * keyframe_->row_motion.pointVelocity(in_keyframe)) *
             (static_cast<double>(keyframe_->edges.image.y[i]) - rows.reference_row);

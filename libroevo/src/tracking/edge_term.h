@@ -65,8 +65,8 @@ class EdgeTerm : public ResidualTerm {
     bool has_associated_ = false;
 
     EdgeMatches matches_;
-    std::vector<float> x_, y_, z_, u_, v_;            // of all keyframe points, in the camera
-    std::vector<float> moved_x_, moved_y_, moved_z_;  // keyframe points at another read-out time
+    ProjectedPoints3 projected_;  // all keyframe points
+    Points3 moved_;               // keyframe points at another read-out time
     // of the matches; sharpness: information across an edge as a share of what it would be at rest
     std::vector<float> residual_, sharpness_, weight_, depth_residual_, depth_weight_;
     std::vector<float> current_depth_, scratch_;

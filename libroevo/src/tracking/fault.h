@@ -21,7 +21,7 @@ struct Fault {
         kNoDepth,
         kFewPointsWithDepth,  ///< numbers: found, needed
         // of tracking
-        kFewPointsInView,  ///< coarse; numbers: in view, of so many
+        kFewPointsInView,  ///< coarse; numbers: points in view, points of the keyframe
         kCoarseAstray,
         kFewInliers,  ///< numbers: found, needed
         kFewMatched,  ///< numbers: found, needed, percent of the edges

@@ -6,16 +6,15 @@
 
 namespace roevo {
 
-/// Neighbouring points of an edge err together: their information counts about one independent point in so
-/// many.
+/// Neighbouring points of an edge err together: this many of them tell as much as one independent point.
 inline constexpr double kCorrelatedPoints = 5;
 
 struct FineResult {
     bool converged = false;
     Pose T_current_keyframe = Pose::Identity();
-    int inliers = 0;           ///< associated points that passed the chi-square test
-    double scale = 0;          ///< robust spread of the point-to-tangent residual, px, of edges at rest
-    double matched_ratio = 0;  ///< see EdgeMatches
+    int inliers = 0;              ///< associated points that passed the chi-square test
+    double scale = 0;             ///< robust spread of the point-to-tangent residual, px, of edges at rest
+    double matched_ratio = 0;     ///< see EdgeMatches
     PoseUncertainty uncertainty;  ///< of the left perturbation (t, phi) of T_current_keyframe
 };
 

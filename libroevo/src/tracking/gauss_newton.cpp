@@ -12,15 +12,15 @@ void InformationRows::reset(std::size_t count) {
     const std::size_t padded = kernels::paddedSize(count);
     for (auto& array : matrix_) array.assign(padded, 0);
     for (auto& array : vector_) array.assign(padded, 0);
-    for (auto* array : {&x_, &y_, &z_}) array->assign(padded, 0);
+    for (auto* array : {&points_.x, &points_.y, &points_.z}) array->assign(padded, 0);
 }
 
 kernels::NormalEquations InformationRows::sum() const {
-    kernels::PointInformation points{x_.data(), y_.data(), z_.data(), {}, {}};
+    kernels::PointInformation points{points_.x.data(), points_.y.data(), points_.z.data(), {}, {}};
     for (int a = 0; a < 6; ++a) points.matrix[a] = matrix_[a].data();
     for (int a = 0; a < 3; ++a) points.vector[a] = vector_[a].data();
     kernels::NormalEquations equations;
-    kernels::best().accumulate(points, x_.size(), equations);
+    kernels::best().accumulate(points, points_.size(), equations);
     return equations;
 }
 

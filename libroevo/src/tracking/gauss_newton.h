@@ -5,6 +5,7 @@
 #include "roevo/types.h"
 #include "tracking/edge_clusters.h"
 #include "tracking/kernels.h"
+#include "tracking/points3.h"
 #include "tracking/rolling_shutter.h"
 
 namespace roevo {
@@ -26,9 +27,7 @@ class InformationRows {
              float z) {
         for (int a = 0; a < 6; ++a) matrix_[a][point] = matrix[a];
         for (int a = 0; a < 3; ++a) vector_[a][point] = vector[a];
-        x_[point] = x;
-        y_[point] = y;
-        z_[point] = z;
+        points_.set(point, x, y, z);
     }
     kernels::NormalEquations sum() const;
     /// Adds each of them to its edge.
@@ -40,12 +39,13 @@ class InformationRows {
             for (int a = 0; a < 6; ++a) matrix[a] = matrix_[a][i];
             for (int a = 0; a < 3; ++a) vector[a] = vector_[a][i];
             if (matrix[0] + matrix[3] + matrix[5] > 0)
-                clusters.add(edge_of(i), matrix, vector, x_[i], y_[i], z_[i]);
+                clusters.add(edge_of(i), matrix, vector, points_.at(i));
         }
     }
 
   private:
-    std::vector<float> matrix_[6], vector_[3], x_, y_, z_;
+    std::vector<float> matrix_[6], vector_[3];
+    Points3 points_;
 };
 
 /// Symmetric 6x6 system H xi = -g of Eqs. (12), (13), in double precision, and what joins the read-out time

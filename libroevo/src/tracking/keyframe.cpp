@@ -4,13 +4,10 @@ namespace roevo {
 
 void Keyframe::setRowMotion(const RowMotion& rows) {
     if (rows == row_motion) return;
-    exchangeMotion(row_motion, rows, edges.image.y, edges.size(), edges.x, edges.y, edges.z);
+    exchangeMotion(row_motion, rows, edges.image.y, edges.size(), edges.points);
     row_motion = rows;
     for (std::size_t k = 0; k < photometric.source.size(); ++k) {
-        const auto i = static_cast<std::size_t>(photometric.source[k]);
-        photometric.x[k] = edges.x[i];
-        photometric.y[k] = edges.y[i];
-        photometric.z[k] = edges.z[i];
+        photometric.points.set(k, edges.points.at(static_cast<std::size_t>(photometric.source[k])));
     }
 }
 

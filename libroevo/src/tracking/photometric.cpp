@@ -54,25 +54,19 @@ PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const Image
     PhotometricPoints points;
     // Every n-th point over all edges: points of an edge are consecutive, so that this spreads evenly along
     // them
-    const std::size_t limit = static_cast<std::size_t>(max_points);
-    const std::size_t step = std::max<std::size_t>(1, (edges.size() + limit - 1) / limit);
+    const std::size_t step = strideFor(edges.size(), max_points);
     std::vector<std::size_t> chosen;
     for (std::size_t i = step / 2; i < edges.size(); i += step) chosen.push_back(i);
-    const std::size_t padded = kernels::paddedSize(chosen.size());
     for (const std::size_t i : chosen) {
         points.source.push_back(static_cast<std::int32_t>(i));
         points.edge_of.push_back(edges.image.edge_of[i]);
-        points.x.push_back(edges.x[i]);
-        points.y.push_back(edges.y[i]);
-        points.z.push_back(edges.z[i]);
+        points.points.add(edges.points.x[i], edges.points.y[i], edges.points.z[i]);
         points.axis_x.push_back(edges.image.gradient_x[i]);
         points.axis_y.push_back(edges.image.gradient_y[i]);
         const float slope = edges.image.strength[i] / 255;
         points.weight.push_back(edges.weight[i] / (1 + slope * slope));  // Eq. (3)
     }
-    points.x.resize(padded, 0);
-    points.y.resize(padded, 0);
-    points.z.resize(padded, 1);
+    points.points.pad();
     points.patches.resize(static_cast<std::size_t>(pyramid.numLevels()));
     for (int level = 0; level < pyramid.numLevels(); ++level) {
         auto& patches = points.patches[static_cast<std::size_t>(level)];
@@ -97,24 +91,21 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
                                     const PinholeCamera& camera, const Pose& T, const RowMotion& rows,
                                     const Brightness& brightness) {
     gain_ = static_cast<float>(brightness.gain);
-    const std::size_t n = points.size(), padded = points.x.size();
-    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
+    const std::size_t n = points.size();
+    project(points.points, T, camera, rows, projected_);
     axis_x_.resize(n);
     axis_y_.resize(n);
     weight_.resize(n);
     residuals_.resize(n);
-    const auto& kernel = kernels::best();
-    kernel.project(makeProjection(T, camera, rows), points.x.data(), points.y.data(), points.z.data(), padded,
-                   {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
     const Eigen::Vector2f turn = points.turning ? imageRotation(T) : Eigen::Vector2f(1, 0);
     for (std::size_t i = 0; i < n; ++i) {
         axis_x_[i] = turn.x() * points.axis_x[i] - turn.y() * points.axis_y[i];
         axis_y_[i] = turn.y() * points.axis_x[i] + turn.x() * points.axis_y[i];
     }
     const auto& patches = points.patches[static_cast<std::size_t>(level)];
-    kernel.patches(
+    kernels::best().patches(
         {image.ptr<std::uint8_t>(), static_cast<std::ptrdiff_t>(image.step), image.cols, image.rows},
-        patches.data(), u_.data(), v_.data(), axis_x_.data(), axis_y_.data(), n,
+        patches.data(), projected_.u.data(), projected_.v.data(), axis_x_.data(), axis_y_.data(), n,
         static_cast<float>(brightness.gain), static_cast<float>(brightness.offset), residuals_.data());
     scratch_.clear();
     for (std::size_t i = 0; i < n; ++i) {
@@ -129,11 +120,9 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
         std::fill(weight_.begin(), weight_.end(), 0.0F);
         return;
     }
-    const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
-    std::nth_element(scratch_.begin(), middle, scratch_.end());
     constexpr double kFloor = 1;  // grey levels; 8-bit rounding and resampling never do better
-    scale_ = std::max(kFloor, std::sqrt(static_cast<double>(*middle) / kernels::kPatchSize));
-    cost_ = std::sqrt(static_cast<double>(*middle) / kernels::kPatchSize);
+    cost_ = std::sqrt(static_cast<double>(medianOf(scratch_)) / kernels::kPatchSize);
+    scale_ = std::max(kFloor, cost_);
     const auto inverse = static_cast<float>(1 / (scale_ * scale_ * kernels::kPatchSize));
     double weights = 0, slopes = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -185,9 +174,9 @@ void PhotometricResiduals::accumulate(const PhotometricPoints& points, int level
         const float m01 = c * s * (g0 - g2) + (c * c - s * s) * g1;
         const float m11 = s * s * g0 + 2 * c * s * g1 + c * c * g2;
         float matrix[6], vector[3];
-        liftInformation(x_[i], y_[i], z_[i], fx, fy, m00, m01, m11, c * r0 - s * r1, s * r0 + c * r1, matrix,
-                        vector);
-        rows_.set(i, matrix, vector, x_[i], y_[i], z_[i]);
+        const float x = projected_.x[i], y = projected_.y[i], z = projected_.z[i];
+        liftInformation(x, y, z, fx, fy, m00, m01, m11, c * r0 - s * r1, s * r0 + c * r1, matrix, vector);
+        rows_.set(i, matrix, vector, x, y, z);
     }
     out = rows_.sum();
 }

@@ -14,7 +14,7 @@ namespace roevo {
 /// Edge points of a keyframe chosen for photometric alignment, with their orientation-aligned reference
 /// patches on every pyramid level, Eq. (2).
 struct PhotometricPoints {
-    std::vector<float> x, y, z;                        ///< keyframe camera frame, m; padded
+    Points3 points;                                    ///< keyframe camera frame, m; padded
     std::vector<float> axis_x, axis_y;                 ///< unit gradient, the patch's first axis
     std::vector<float> weight;                         ///< w_i of Eq. (3)
     std::vector<std::vector<kernels::Patch>> patches;  ///< [level][point]
@@ -46,11 +46,10 @@ class PhotometricResiduals {
                   const Brightness& brightness);
 
     int numVisible() const { return num_visible_; }
-    double scale() const {
-        return scale_;
-    }  ///< robust spread of a patch's root mean square residual, grey levels
+    /// Robust spread of a patch's root mean square residual, grey levels.
+    double scale() const { return scale_; }
     double slope() const { return slope_; }  ///< see studentSlope(): mean over the points by their weights
-    double cost() const { return cost_; }  ///< median, comparable between poses at one level
+    double cost() const { return cost_; }    ///< median, comparable between poses at one level
 
     /// The brightness that fits the present alignment best (weighted linear regression).
     Brightness fitBrightness(const PhotometricPoints& points, int level, const Brightness& current) const;
@@ -65,7 +64,8 @@ class PhotometricResiduals {
     }
 
   private:
-    std::vector<float> x_, y_, z_, u_, v_, axis_x_, axis_y_, weight_;
+    ProjectedPoints3 projected_;
+    std::vector<float> axis_x_, axis_y_, weight_;
     InformationRows rows_;
     std::vector<kernels::PatchResidual> residuals_;
     std::vector<float> scratch_;
@@ -91,7 +91,7 @@ class PhotometricTerm : public ResidualTerm {
 
     /// Too few visible points end the minimisation; 0: they never do.
     void require(int points) { needed_ = points; }
-    /// Weighs all residuals together as `weight` times so many points (alpha of Eq. (9)); else each counts
+    /// Weighs all residuals together as `weight` times `points()` points (alpha of Eq. (9)); else each counts
     /// alone.
     void balance(double weight, std::function<std::size_t()> points) {
         weight_ = weight;

@@ -24,10 +24,10 @@ PoseUncertainty sum(const PoseUncertainty& reference, const Matrix6d& carried, d
     auto a = reference.influences.begin();
     auto b = own.influences.begin();
     while (a != reference.influences.end() || b != own.influences.end()) {
-        const bool first = a != reference.influences.end() &&
-                           (b == own.influences.end() || a->cluster <= b->cluster);
-        const bool second = b != own.influences.end() &&
-                            (a == reference.influences.end() || b->cluster <= a->cluster);
+        const bool first =
+            a != reference.influences.end() && (b == own.influences.end() || a->cluster <= b->cluster);
+        const bool second =
+            b != own.influences.end() && (a == reference.influences.end() || b->cluster <= a->cluster);
         EdgeInfluence both{first ? a->cluster : b->cluster, Vector6d::Zero()};
         if (first) both.moved += sign * (carried * (a++)->moved);
         if (second) both.moved += (b++)->moved;

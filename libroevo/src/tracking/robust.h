@@ -5,17 +5,22 @@
 
 namespace roevo {
 
-inline constexpr float kStudentNu =
-    5;  ///< degrees of freedom of the t-distribution that residuals of edges follow
+inline constexpr float kStudentNu = 5;  ///< degrees of freedom of the t-distribution of residuals
+
+/// @param values  not empty; are put in another order
+template <typename Scalar>
+Scalar medianOf(std::vector<Scalar>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 /// Spread (one sigma) of residuals in pixels from the median of their magnitudes, within what edges in real
 /// images can have: sub-pixel edges never agree better than 0.1 px. Not to be called without residuals.
 /// @param magnitudes  are put in another order
 inline double robustScale(std::vector<float>& magnitudes) {
     constexpr double kMinScale = 0.1, kMaxScale = 2.0;  // px
-    const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
-    std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-    return std::clamp(1.4826 * static_cast<double>(*middle), kMinScale, kMaxScale);
+    return std::clamp(1.4826 * static_cast<double>(medianOf(magnitudes)), kMinScale, kMaxScale);
 }
 
 /// `weight` times what iteratively reweighted least squares gives a residual of the t-distribution.

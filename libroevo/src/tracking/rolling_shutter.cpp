@@ -18,15 +18,11 @@ RowMotion RowMotion::atPyramidLevel(int level) const {
 }
 
 void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
-                    std::size_t count, std::vector<float>& x, std::vector<float>& y, std::vector<float>& z) {
+                    std::size_t count, Points3& points) {
     constexpr double kNearest = 0.05;  // m
     for (std::size_t i = 0; i < count; ++i) {
-        const Eigen::Vector3d p =
-            from.exchange(Eigen::Vector3d(x[i], y[i], z[i]), static_cast<double>(rows[i]), to);
-        if (!(p.z() > kNearest)) continue;
-        x[i] = static_cast<float>(p.x());
-        y[i] = static_cast<float>(p.y());
-        z[i] = static_cast<float>(p.z());
+        const Eigen::Vector3d p = from.exchange(points.at(i), static_cast<double>(rows[i]), to);
+        if (p.z() > kNearest) points.set(i, p);
     }
 }
 
@@ -86,6 +82,15 @@ kernels::Projection makeProjection(const Pose& T, const PinholeCamera& camera, c
     projection.reference_row = static_cast<float>(rows.reference_row);
     projection.last_row = static_cast<float>(camera.height - 1);
     return projection;
+}
+
+void project(const Points3& points, const Pose& T_current_keyframe, const PinholeCamera& camera,
+             const RowMotion& rows, ProjectedPoints3& out) {
+    const std::size_t padded = points.size();
+    for (auto* array : {&out.x, &out.y, &out.z, &out.u, &out.v}) array->resize(padded);
+    kernels::best().project(makeProjection(T_current_keyframe, camera, rows), points.x.data(),
+                            points.y.data(), points.z.data(), padded,
+                            {out.x.data(), out.y.data(), out.z.data(), out.u.data(), out.v.data()});
 }
 
 }  // namespace roevo

@@ -5,7 +5,7 @@
 
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/types.h"
-#include "tracking/kernels.h"
+#include "tracking/points3.h"
 
 namespace roevo {
 
@@ -49,10 +49,10 @@ struct RowMotion {
     }
 };
 
-/// Moves the first `count` points, which `from` brought to the reference row, to where `to` would have
-/// brought them. A motion that would bring a point to the camera is none: such a point stays.
+/// Moves the first `count` points, seen on these rows, which `from` brought to the reference row, to where
+/// `to` would have brought them. A motion that would bring a point to the camera is none: such a point stays.
 void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
-                    std::size_t count, std::vector<float>& x, std::vector<float>& y, std::vector<float>& z);
+                    std::size_t count, Points3& points);
 
 /// Images whose rows are read one after the other while the camera moves. The motion follows from the pose
 /// itself and the previous frame's.
@@ -73,6 +73,10 @@ struct RollingShutter {
 /// Rigid motion, camera and row motion for the kernels.
 kernels::Projection makeProjection(const Pose& T_current_keyframe, const PinholeCamera& camera,
                                    const RowMotion& rows);
+
+/// Moves padded points of a keyframe into a camera and projects them.
+void project(const Points3& points, const Pose& T_current_keyframe, const PinholeCamera& camera,
+             const RowMotion& rows, ProjectedPoints3& out);
 
 /// Least squares for the one number that all frames share: seconds per row. Linear, because a small read-out
 /// time moves points in proportion; each frame adds what its pose leaves undetermined (Schur complement).

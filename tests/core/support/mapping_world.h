@@ -120,9 +120,7 @@ inline TestKeyframe makeKeyframe(int id, const Pose& pose, const std::vector<Cur
             out.image.addPoint(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
                                static_cast<float>(-tangent.y()), static_cast<float>(tangent.x()), 20);
             const Eigen::Vector3d seen = camera.backProject(pixel.x(), pixel.y(), p.z());
-            out.x.push_back(static_cast<float>(seen.x()));
-            out.y.push_back(static_cast<float>(seen.y()));
-            out.z.push_back(static_cast<float>(seen.z()));
+            out.points.add(seen);
             out.weight.push_back(1);
             out.colours.push_back(
                 {static_cast<std::uint8_t>(sighting.curve), static_cast<std::uint8_t>(id), 0});
@@ -135,10 +133,7 @@ inline TestKeyframe makeKeyframe(int id, const Pose& pose, const std::vector<Cur
     computeNormals(out.image, kNormalSpan);
     computeSlopes(out);
     out.found.assign(made.curve_of_edge.size(), -1);
-    const std::size_t padded = kernels::paddedSize(out.size());
-    out.x.resize(padded, 0);
-    out.y.resize(padded, 0);
-    out.z.resize(padded, 1);
+    out.points.pad();
     return made;
 }
 

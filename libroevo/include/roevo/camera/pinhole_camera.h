@@ -35,7 +35,7 @@ struct PinholeCamera {
         return {(u - cx) / fx * depth, (v - cy) / fy * depth, depth};
     }
 
-    /// Where the real lens puts an ideally projected pixel.
+    /// Where the real lens puts an ideally projected pixel; without distortion the pixel itself.
     Eigen::Vector2d distortPixel(const Eigen::Vector2d& ideal) const;
 
     /// Empty when usable, else one line naming what is wrong and its value.

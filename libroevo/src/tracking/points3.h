@@ -1,0 +1,52 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "tracking/kernels.h"
+
+namespace roevo {
+
+/// Points in three dimensions, m: one array per coordinate, as the kernels read them.
+struct Points3 {
+    std::vector<float> x, y, z;
+
+    std::size_t size() const { return x.size(); }  ///< with the padding, if there is one
+    Eigen::Vector3d at(std::size_t i) const {
+        return {static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
+    }
+    void set(std::size_t i, float px, float py, float pz) {
+        x[i] = px;
+        y[i] = py;
+        z[i] = pz;
+    }
+    void set(std::size_t i, const Eigen::Vector3d& point) {
+        set(i, static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()));
+    }
+    void add(float px, float py, float pz) {
+        x.push_back(px);
+        y.push_back(py);
+        z.push_back(pz);
+    }
+    void add(const Eigen::Vector3d& point) {
+        add(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()));
+    }
+    /// Room for this many points and their padding.
+    void reserve(std::size_t count) {
+        for (auto* array : {&x, &y, &z}) array->reserve(kernels::paddedSize(count));
+    }
+    /// Appends points at (0, 0, 1), which any camera can project, up to a multiple of the kernels' lanes.
+    void pad() {
+        const std::size_t padded = kernels::paddedSize(size());
+        x.resize(padded, 0);
+        y.resize(padded, 0);
+        z.resize(padded, 1);
+    }
+};
+
+/// Points moved into a camera (m) and where it sees them (px); far outside the image where behind it.
+struct ProjectedPoints3 : Points3 {
+    std::vector<float> u, v;
+};
+
+}  // namespace roevo
