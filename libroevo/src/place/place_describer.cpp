@@ -14,7 +14,7 @@ constexpr double kPatchRadius = 0.15;                  ///< m
 constexpr double kLeastRadius = 10, kMostRadius = 48;  ///< px; of what is far away or near
 constexpr int kCornerWindow = 3;  ///< px to each side, that the second moments are taken over
 constexpr int kCornerStep = 2;    ///< points of an edge from one that is looked at to the next
-constexpr int kApart = 2;         ///< steps to each side that a chosen point is the most distinct of
+constexpr int kApart = 1;         ///< steps to each side that a chosen point is the most distinct of
 constexpr double kCellSize = 40;  ///< px, of the grid over the image
 
 int roundToInt(double value) {
