@@ -21,8 +21,9 @@ constexpr double kLeastVisible = 0.25;
 constexpr double kLeastDepthAgreement = 0.7;
 constexpr double kMostSigmaTranslation = 0.02;  ///< m
 constexpr double kMostSigmaRotation = 1 * kDegree;
-constexpr double kDepthSigmas = 3;    ///< within which depths agree
-constexpr double kDepthFloor = 0.02;  ///< m, one sigma: foregrounds are found differently from elsewhere
+constexpr double kDepthSigmas = 3;       ///< within which depths agree
+constexpr int kLeastSimilarPoints = 15;  ///< symmetric furniture, seen from the other side, had up to 14
+constexpr double kDepthFloor = 0.02;     ///< m, one sigma: foregrounds are found differently from elsewhere
 
 OdometryOptions widened(OdometryOptions options, double scale) {
     options.fine.search_radius = std::max(options.fine.search_radius, kSearchRadius * scale);
@@ -36,6 +37,13 @@ double worstSigma(const Eigen::Matrix3d& covariance) {
 }
 
 }  // namespace
+
+double placeConfidence(const Verification& points, const EdgeRegistration& edges) {
+    if (!edges.accepted || points.inliers < kLeastSimilarPoints) return 0;
+    return (static_cast<double>(points.inliers) / points.matches + edges.keyframe_matched +
+            edges.frame_matched) /
+           3;
+}
 
 EdgeRegistrar::EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions& options)
     : ideal_(camera.undistorted()),

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "place/place_verifier.h"
 #include "tracking/edge_term.h"
 
 namespace roevo {
@@ -16,8 +17,16 @@ struct EdgeRegistration {
     double depth_agreement = 0;    ///< share of the associated points whose depths agree
     double sigma_translation = 0;  ///< m, in the worst direction
     double sigma_rotation = 0;     ///< rad, about the worst axis
-    bool accepted = false;
+    bool accepted = false;         ///< the edges agree; those of a place that looks alike do, too
 };
+
+/// How sure it is that this is the place, 0 to 1: the mean of the shares of similar points that agree and of
+/// edges found, both ways; 0 where the edges do not agree or few points do.
+double placeConfidence(const Verification& points, const EdgeRegistration& edges);
+
+/// Confidence from which on no other place looked so much alike (0.63 was the most, in a corridor with equal
+/// doors). Below it, something else must tell: how far the camera may have moved, or a second keyframe.
+inline constexpr double kUnambiguousConfidence = 0.66;
 
 /// Registers a frame to a keyframe that it may never have been tracked against, by their edges only: from a
 /// pose that is known to some centimetres, with a search radius that narrows down, and no motion prior.
