@@ -26,7 +26,7 @@ double placeConfidence(const Verification& points, const EdgeRegistration& edges
 
 /// Confidence from which on no other place looked so much alike (0.63 was the most, in a corridor with equal
 /// doors). Below it, something else must tell: how far the camera may have moved, or a second keyframe.
-inline constexpr double kUnambiguousConfidence = 0.66;
+inline constexpr double kUnambiguousConfidence = 0.68;
 
 /// Registers a frame to a keyframe that it may never have been tracked against, by their edges only: from a
 /// pose that is known to some centimetres, with a search radius that narrows down, and no motion prior.
