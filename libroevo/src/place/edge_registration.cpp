@@ -12,7 +12,9 @@ namespace roevo {
 namespace {
 
 constexpr double kSearchRadius = 12;  ///< px of a camera with f = 525 px: what the pose may be off
-constexpr int kMostIterations = 20;
+constexpr int kMostIterations = 15;
+constexpr double kStill = 0.03;          ///< px; tracking goes on from here
+constexpr double kOverRelaxation = 1.6;  ///< of the steps once the radius is the final one, as in FineTracker
 
 // What it takes to be accepted
 constexpr int kLeastInliers = 150;
@@ -60,6 +62,9 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     loop.settled_from = term_.narrowed();
     loop.focal_length = ideal_.fx;
     loop.depth = keyframe.typicalDepth();
+    loop.still = kStill;
+    loop.relaxation = kOverRelaxation;
+    loop.relaxed_from = term_.narrowed();
     const GaussNewtonResult found = minimise(T_start, RollingShutter(), {&term_}, loop);
     if (!found.complete || !found.T_current_keyframe.isFinite()) return out;
     out.T_frame_keyframe = found.T_current_keyframe;
