@@ -66,6 +66,14 @@ TEST(PlaceMatches, ThatAreAsGoodElsewhereDoNotCount) {
     EXPECT_EQ(matches.size(), 49U);
 }
 
+TEST(PlaceMatches, MorePointsThanAKeyframeHasAreNotLookedAt) {
+    std::mt19937 random(3);
+    const PlacePoints many = randomPlace(kMaxPlacePoints + 50, random);
+    std::vector<PlaceMatch> matches;
+    matchPlaces(many, many, matches);
+    EXPECT_EQ(matches.size(), kMaxPlacePoints);
+}
+
 TEST(PlaceMatches, OfNothingAreNone) {
     std::mt19937 random(1);
     std::vector<PlaceMatch> matches(3);

@@ -76,7 +76,6 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     term_.assess(out.T_frame_keyframe, RowMotion());
     out.inliers = term_.inliers();
     out.keyframe_matched = term_.matches().matchedRatio();
-    out.visible = static_cast<double>(term_.matches().visible_points);
     lookBack(keyframe, frame_edges, out);
     out.accepted = out.inliers >= kLeastInliers && out.keyframe_matched >= kLeastMatched &&
                    out.frame_matched >= kLeastMatched && out.visible >= kLeastVisible &&
@@ -104,7 +103,7 @@ void EdgeRegistrar::lookBack(const Keyframe& keyframe, const EdgePoints3D& frame
         return static_cast<double>(size) /
                static_cast<double>(std::max<std::size_t>(1, (size + most - 1) / most));
     };
-    out.visible = std::min(out.visible / std::max(1.0, lookedUp(keyframe.edges.size())),
+    out.visible = std::min(term_.matches().visible_points / std::max(1.0, lookedUp(keyframe.edges.size())),
                            matches_.visible_points / std::max(1.0, lookedUp(frame_edges.size())));
     int agreed = 0;
     for (std::size_t k = 0; k < matches_.size(); ++k) {

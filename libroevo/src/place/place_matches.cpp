@@ -18,6 +18,10 @@ constexpr float kElsewhere = 0.1F;                            ///< m; nearer poi
 constexpr int kRatioNumerator = 95, kRatioDenominator = 100;  ///< of the distances of the best and of others
 constexpr int kNone = Descriptor::kBits + 1;
 
+std::size_t lookedAt(const PlacePoints& points) {
+    return std::min(points.size(), kMaxPlacePoints);
+}
+
 /// The most similar point of the other keyframe, for each point of both; the first of equal ones.
 struct Nearest {
     std::array<std::int32_t, kMaxPlacePoints> of_query, of_candidate;
@@ -28,8 +32,9 @@ __attribute__((always_inline)) inline void searchAll(const PlacePoints& query, c
                                                      Nearest& out) {
     out.query_distance.fill(kNone);
     out.candidate_distance.fill(kNone);
-    for (std::size_t i = 0; i < query.size(); ++i) {
-        for (std::size_t j = 0; j < candidate.size(); ++j) {
+    const std::size_t candidates = lookedAt(candidate);
+    for (std::size_t i = 0; i < lookedAt(query); ++i) {
+        for (std::size_t j = 0; j < candidates; ++j) {
             const int distance = hammingDistance(query[i].descriptor, candidate[j].descriptor);
             if (distance < out.query_distance[i]) {
                 out.query_distance[i] = distance;
@@ -59,7 +64,7 @@ __attribute__((always_inline)) inline void match(const PlacePoints& query, const
                                                  std::vector<PlaceMatch>& out) {
     Nearest nearest;
     searchAll(query, candidate, nearest);
-    for (std::size_t i = 0; i < query.size(); ++i) {
+    for (std::size_t i = 0; i < lookedAt(query); ++i) {
         const int distance = nearest.query_distance[i];
         if (distance > kMostBits) continue;
         const auto j = static_cast<std::size_t>(nearest.of_query[i]);

@@ -12,7 +12,7 @@ struct PlaceMatch {
 };
 
 /// Pairs of points, each of which is the other's most similar one, and more so than any that is somewhere
-/// else. The most similar pairs first.
+/// else. The most similar pairs first. Of each set, the first kMaxPlacePoints are looked at.
 void matchPlaces(const PlacePoints& query, const PlacePoints& candidate, std::vector<PlaceMatch>& out);
 
 }  // namespace roevo
