@@ -36,7 +36,11 @@ endforeach()
 roevo_test(test_core_sequences
   SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp core/test_shadow_edges.cpp core/test_option_extremes.cpp
   LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets)
-foreach(program camera edges tracking mapping odometry mapped_runs sequences)
+roevo_test(test_core_place
+  SOURCES core/test_place_describer.cpp core/test_place_matches.cpp core/test_place_index.cpp core/test_place_verifier.cpp
+          core/test_place_registration.cpp core/test_place_clips.cpp
+  LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets)
+foreach(program camera edges tracking place mapping odometry mapped_runs sequences)
   target_include_directories(test_core_${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_include_directories(test_core_${program} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 endforeach()

@@ -1,0 +1,123 @@
+#include "place/edge_registration.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "tracking/camera_scale.h"
+#include "tracking/fine_tracker.h"
+
+namespace roevo {
+namespace {
+
+constexpr double kSearchRadius = 12;  ///< px of a camera with f = 525 px: what the pose may be off
+constexpr int kMostIterations = 15;
+constexpr double kStill = 0.03;          ///< px; tracking goes on from here
+constexpr double kOverRelaxation = 1.6;  ///< of the steps once the radius is the final one, as in FineTracker
+
+// What it takes to be accepted
+constexpr int kLeastInliers = 150;
+constexpr double kLeastMatched = 0.4;  ///< of the edges, both ways
+constexpr double kLeastVisible = 0.25;
+constexpr double kLeastDepthAgreement = 0.7;
+constexpr double kMostSigmaTranslation = 0.02;  ///< m
+constexpr double kMostSigmaRotation = 1 * kDegree;
+constexpr double kDepthSigmas = 3;       ///< within which depths agree
+constexpr int kLeastSimilarPoints = 20;  ///< symmetric furniture, seen from its other side, had up to 15
+constexpr double kDepthFloor = 0.02;     ///< m, one sigma: foregrounds are found differently from elsewhere
+
+OdometryOptions widened(OdometryOptions options, double scale) {
+    options.fine.search_radius = std::max(options.fine.search_radius, kSearchRadius * scale);
+    options.fine.max_iterations = std::max(options.fine.max_iterations, kMostIterations);
+    return options;
+}
+
+double worstSigma(const Eigen::Matrix3d& covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
+}
+
+}  // namespace
+
+double placeConfidence(const Verification& points, const EdgeRegistration& edges) {
+    if (!edges.accepted || points.inliers < kLeastSimilarPoints) return 0;
+    return (static_cast<double>(points.inliers) / points.matches + edges.keyframe_matched +
+            edges.frame_matched) /
+           3;
+}
+
+EdgeRegistrar::EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions& options)
+    : ideal_(camera.undistorted()),
+      options_(widened(scaledTo(camera, options), camera.pixelScale())),
+      term_(camera, options_),
+      associator_(options_.fine) {}
+
+EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Frame& frame,
+                                              const EdgePoints3D& frame_edges, const Pose& T_start) {
+    EdgeRegistration out;
+    term_.start(keyframe, frame);
+    GaussNewtonOptions loop;
+    loop.max_iterations = options_.fine.max_iterations;
+    loop.settled_from = term_.narrowed();
+    loop.focal_length = ideal_.fx;
+    loop.depth = keyframe.typicalDepth();
+    loop.still = kStill;
+    loop.relaxation = kOverRelaxation;
+    loop.relaxed_from = term_.narrowed();
+    const GaussNewtonResult found = minimise(T_start, RollingShutter(), {&term_}, loop);
+    if (!found.complete || !found.T_current_keyframe.isFinite()) return out;
+    out.T_frame_keyframe = found.T_current_keyframe;
+    out.covariance = kCorrelatedPoints * found.system.hessian.inverse();
+    if (!out.covariance.allFinite()) return out;
+    out.sigma_translation = worstSigma(out.covariance.topLeftCorner<3, 3>());
+    out.sigma_rotation = worstSigma(out.covariance.bottomRightCorner<3, 3>());
+    term_.look(keyframe, frame);
+    term_.assess(out.T_frame_keyframe, RowMotion());
+    out.inliers = term_.inliers();
+    out.keyframe_matched = term_.matches().matchedRatio();
+    lookBack(keyframe, frame_edges, out);
+    out.accepted = out.inliers >= kLeastInliers && out.keyframe_matched >= kLeastMatched &&
+                   out.frame_matched >= kLeastMatched && out.visible >= kLeastVisible &&
+                   out.depth_agreement >= kLeastDepthAgreement &&
+                   out.sigma_translation <= kMostSigmaTranslation && out.sigma_rotation <= kMostSigmaRotation;
+    return out;
+}
+
+void EdgeRegistrar::lookBack(const Keyframe& keyframe, const EdgePoints3D& frame_edges,
+                             EdgeRegistration& out) {
+    const Pose T_keyframe_frame = out.T_frame_keyframe.inverse();
+    const std::size_t padded = frame_edges.x.size();
+    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
+    kernels::best().project(makeProjection(T_keyframe_frame, ideal_, RowMotion()), frame_edges.x.data(),
+                            frame_edges.y.data(), frame_edges.z.data(), padded,
+                            {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+    grid_.build(keyframe.edges.image, ideal_.width, ideal_.height);
+    associator_.associate(frame_edges.image, u_.data(), v_.data(), imageRotation(T_keyframe_frame),
+                          options_.edges.tangent_span, keyframe.edges.image, grid_, ideal_.width,
+                          ideal_.height, options_.fine.final_radius, matches_);
+    out.frame_matched = matches_.matchedRatio();
+    // Points that are looked up are as thin as in the associator
+    const auto lookedUp = [&](std::size_t size) {
+        const auto most = static_cast<std::size_t>(options_.fine.max_points);
+        return static_cast<double>(size) /
+               static_cast<double>(std::max<std::size_t>(1, (size + most - 1) / most));
+    };
+    out.visible = std::min(term_.matches().visible_points / std::max(1.0, lookedUp(keyframe.edges.size())),
+                           matches_.visible_points / std::max(1.0, lookedUp(frame_edges.size())));
+    int agreed = 0;
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        const auto i = static_cast<std::size_t>(matches_.reference[k]),
+                   j = static_cast<std::size_t>(matches_.current[k]);
+        const auto seen = static_cast<double>(keyframe.edges.z[j]);
+        const double difference = static_cast<double>(z_[i]) - seen;
+        const double sigma = options_.sensor.depthSigma(seen);
+        if (difference * difference <
+            kDepthSigmas * kDepthSigmas * (2 * sigma * sigma + kDepthFloor * kDepthFloor))
+            ++agreed;
+    }
+    out.depth_agreement =
+        matches_.size() > 0 ? static_cast<double>(agreed) / static_cast<double>(matches_.size()) : 0;
+}
+
+}  // namespace roevo

@@ -1,0 +1,57 @@
+#pragma once
+#include <vector>
+
+#include "place/place_verifier.h"
+#include "tracking/edge_term.h"
+
+namespace roevo {
+
+/// How well the edges of a keyframe and of a frame agree on a pose, with nothing known beforehand.
+struct EdgeRegistration {
+    Pose T_frame_keyframe = Pose::Identity();
+    Matrix6d covariance = Matrix6d::Zero();  ///< of its left perturbation (t, phi)
+    int inliers = 0;               ///< associated points of the keyframe that passed the chi-square test
+    double keyframe_matched = 0;   ///< share of the keyframe's visible edges that the frame has
+    double frame_matched = 0;      ///< share of the frame's visible edges that the keyframe has
+    double visible = 0;            ///< the smaller share of edge points of one that are in view of the other
+    double depth_agreement = 0;    ///< share of the associated points whose depths agree
+    double sigma_translation = 0;  ///< m, in the worst direction
+    double sigma_rotation = 0;     ///< rad, about the worst axis
+    bool accepted = false;         ///< the edges agree; those of a place that looks alike do, too
+};
+
+/// How sure it is that this is the place, 0 to 1: the mean of the shares of similar points that agree and of
+/// edges found, both ways; 0 where the edges do not agree or few points do.
+double placeConfidence(const Verification& points, const EdgeRegistration& edges);
+
+/// Confidence from which on no other place looked so much alike (0.63 was the most, in a corridor with equal
+/// doors). Below it, something else must tell: how far the camera may have moved, or a second keyframe.
+inline constexpr double kUnambiguousConfidence = 0.68;
+
+/// Registers a frame to a keyframe that it may never have been tracked against, by their edges only: from a
+/// pose that is known to some centimetres, with a search radius that narrows down, and no motion prior.
+/// Keeps buffers only.
+class EdgeRegistrar {
+  public:
+    /// @param camera   with its lens
+    /// @param options  as given: scaled to the camera here
+    EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions& options);
+
+    /// @param frame_edges  those of the frame that have depth
+    /// @param T_start      T_frame_keyframe
+    [[nodiscard]] EdgeRegistration registerEdges(const Keyframe& keyframe, const Frame& frame,
+                                                 const EdgePoints3D& frame_edges, const Pose& T_start);
+
+  private:
+    void lookBack(const Keyframe& keyframe, const EdgePoints3D& frame_edges, EdgeRegistration& out);
+
+    PinholeCamera ideal_;
+    OdometryOptions options_;
+    EdgeTerm term_;
+    EdgeAssociator associator_;
+    EdgeGrid grid_;  ///< of the keyframe
+    EdgeMatches matches_;
+    std::vector<float> x_, y_, z_, u_, v_;  ///< of the frame's points, in the keyframe
+};
+
+}  // namespace roevo

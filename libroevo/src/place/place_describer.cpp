@@ -1,0 +1,150 @@
+#include "place/place_describer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "place/sampling_pattern.h"
+
+namespace roevo {
+namespace {
+
+// Pixels are those of a camera with f = 525 px (PinholeCamera::pixelScale())
+constexpr double kPatchRadius = 0.15;                  ///< m
+constexpr double kLeastRadius = 10, kMostRadius = 48;  ///< px; of what is far away or near
+constexpr int kCornerWindow = 3;  ///< px to each side, that the second moments are taken over
+constexpr int kCornerStep = 2;    ///< points of an edge from one that is looked at to the next
+constexpr int kApart = 1;         ///< steps to each side that a chosen point is the most distinct of
+constexpr double kCellSize = 40;  ///< px, of the grid over the image
+
+int roundToInt(double value) {
+    return static_cast<int>(std::lround(value));
+}
+
+/// The smaller eigenvalue of the second moments of the image gradient about a pixel, in grey levels squared:
+/// how well the place of the pixel is known in the worse direction, which is that of the edge. 0 at the
+/// border.
+float cornerStrength(const cv::Mat& grey, int u, int v) {
+    constexpr int kMargin = kCornerWindow + 1;
+    if (u < kMargin || v < kMargin || u >= grey.cols - kMargin || v >= grey.rows - kMargin) return 0;
+    int xx = 0, xy = 0, yy = 0;
+    for (int y = v - kCornerWindow; y <= v + kCornerWindow; ++y) {
+        const auto *above = grey.ptr<std::uint8_t>(y - 1), *row = grey.ptr<std::uint8_t>(y),
+                   *below = grey.ptr<std::uint8_t>(y + 1);
+        for (int x = u - kCornerWindow; x <= u + kCornerWindow; ++x) {
+            const int gx = row[x + 1] - row[x - 1], gy = below[x] - above[x];
+            xx += gx * gx;
+            xy += gx * gy;
+            yy += gy * gy;
+        }
+    }
+    const double mean = 0.5 * (xx + yy), difference = 0.5 * (xx - yy);
+    return static_cast<float>(mean - std::hypot(difference, static_cast<double>(xy)));
+}
+
+}  // namespace
+
+void PlaceDescriber::describe(const EdgePoints3D& edges, const cv::Mat& grey, PlacePoints& out) {
+    out.clear();
+    findCorners(edges.image, grey);
+    chooseCorners(edges.image);
+    cv::integral(grey, integral_, CV_32S);
+    const double scale = camera_.pixelScale();
+    out.reserve(corners_.size());
+    for (const Corner& corner : corners_) {
+        const auto i = static_cast<std::size_t>(corner.point);
+        PlacePoint point;
+        point.x = edges.x[i];
+        point.y = edges.y[i];
+        point.z = edges.z[i];
+        point.u = edges.image.x[i];
+        point.v = edges.image.y[i];
+        const Eigen::Vector2d normal(edges.image.normal_x[i], edges.image.normal_y[i]);
+        point.normal_angle = static_cast<float>(std::atan2(normal.y(), normal.x()));
+        const double radius = std::clamp(camera_.fx * kPatchRadius / static_cast<double>(point.z),
+                                         kLeastRadius * scale, kMostRadius * scale);
+        point.descriptor = describePatch({point.u, point.v}, normal, radius);
+        out.push_back(point);
+    }
+}
+
+void PlaceDescriber::findCorners(const OrganizedEdges& edges, const cv::Mat& grey) {
+    corners_.clear();
+    for (std::size_t e = 0; e < static_cast<std::size_t>(edges.numEdges()); ++e) {
+        strength_.clear();
+        for (auto i = static_cast<std::size_t>(edges.begin[e]);
+             i < static_cast<std::size_t>(edges.begin[e + 1]); i += kCornerStep) {
+            strength_.push_back(cornerStrength(grey, roundToInt(static_cast<double>(edges.x[i])),
+                                               roundToInt(static_cast<double>(edges.y[i]))));
+        }
+        const int count = static_cast<int>(strength_.size());
+        for (int k = 0; k < count; ++k) {
+            const float own = strength_[static_cast<std::size_t>(k)];
+            bool largest = own > 0;
+            for (int other = std::max(0, k - kApart); largest && other < std::min(count, k + kApart + 1);
+                 ++other) {
+                const float strength = strength_[static_cast<std::size_t>(other)];
+                largest = other < k ? strength < own : strength <= own;  // of equal ones the first
+            }
+            if (largest) corners_.push_back({edges.begin[e] + k * kCornerStep, own, 0});
+        }
+    }
+}
+
+void PlaceDescriber::chooseCorners(const OrganizedEdges& edges) {
+    const double cell = kCellSize * camera_.pixelScale();
+    const int columns = static_cast<int>(camera_.width / cell) + 1,
+              rows = static_cast<int>(camera_.height / cell) + 1;
+    corners_of_cell_.assign(static_cast<std::size_t>(columns * rows), 0);
+    const auto stronger = [](const Corner& a, const Corner& b) {
+        return a.strength != b.strength ? a.strength > b.strength : a.point < b.point;
+    };
+    std::sort(corners_.begin(), corners_.end(), stronger);
+    for (Corner& corner : corners_) {
+        const auto i = static_cast<std::size_t>(corner.point);
+        const int column =
+            std::clamp(static_cast<int>(static_cast<double>(edges.x[i]) / cell), 0, columns - 1);
+        const int row = std::clamp(static_cast<int>(static_cast<double>(edges.y[i]) / cell), 0, rows - 1);
+        corner.rank = corners_of_cell_[static_cast<std::size_t>(row * columns + column)]++;
+    }
+    std::sort(corners_.begin(), corners_.end(), [&](const Corner& a, const Corner& b) {
+        return a.rank != b.rank ? a.rank < b.rank : stronger(a, b);
+    });
+    if (corners_.size() > kMaxPlacePoints) corners_.erase(corners_.begin() + kMaxPlacePoints, corners_.end());
+}
+
+float PlaceDescriber::boxMean(const Eigen::Vector2d& centre, double half_width) const {
+    const int columns = integral_.cols - 1, rows = integral_.rows - 1;
+    const auto first = [&](double at, int size) {
+        return std::clamp(roundToInt(at - half_width), 0, size - 1);
+    };
+    const auto end = [&](double at, int begin, int size) {
+        return std::clamp(roundToInt(at + half_width) + 1, begin + 1, size);
+    };
+    const int left = first(centre.x(), columns), right = end(centre.x(), left, columns);
+    const int top = first(centre.y(), rows), bottom = end(centre.y(), top, rows);
+    const auto *above = integral_.ptr<std::int32_t>(top), *below = integral_.ptr<std::int32_t>(bottom);
+    const int sum = below[right] - below[left] - above[right] + above[left];
+    return static_cast<float>(sum) / static_cast<float>((right - left) * (bottom - top));
+}
+
+Descriptor PlaceDescriber::describePatch(const Eigen::Vector2d& centre, const Eigen::Vector2d& normal,
+                                         double radius) const {
+    const SamplingPattern& pattern = samplingPattern();
+    const Eigen::Vector2d along(-normal.y(), normal.x());
+    std::array<float, SamplingPattern::kSites> grey{};
+    for (std::size_t s = 0; s < grey.size(); ++s) {
+        const SamplingPattern::Site& site = pattern.sites[s];
+        grey[s] = boxMean(centre + radius * (static_cast<double>(site.along_normal) * normal +
+                                             static_cast<double>(site.along_edge) * along),
+                          radius * static_cast<double>(site.half_width));
+    }
+    Descriptor descriptor;
+    for (std::size_t k = 0; k < pattern.comparisons.size(); ++k) {
+        const SamplingPattern::Comparison& pair = pattern.comparisons[k];
+        if (grey[pair.first] > grey[pair.second]) descriptor.words[k / 64] |= std::uint64_t{1} << (k % 64);
+    }
+    return descriptor;
+}
+
+}  // namespace roevo

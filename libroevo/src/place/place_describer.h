@@ -1,0 +1,47 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "place/place_points.h"
+#include "roevo/camera/pinhole_camera.h"
+#include "tracking/edge_points.h"
+
+namespace roevo {
+
+/// Chooses the points that a keyframe is recognised by, and describes them. They are those where the image
+/// tells where along its edge a point is (ends, junctions, bends, change of what is beside the edge), spread
+/// over the image. Their patches are of one size in metres, and turned so that the edge's signed normal comes
+/// to lie on the x axis. Keeps its buffers.
+class PlaceDescriber {
+  public:
+    /// @param camera  with its lens or not: edges and images are those of the ideal one
+    explicit PlaceDescriber(const PinholeCamera& camera) : camera_(camera.undistorted()) {}
+
+    /// @param edges  of the keyframe
+    /// @param grey   that they were found in: CV_8UC1, height x width, without the lens's distortion
+    /// @param out    at most kMaxPlacePoints, the most distinct ones of every part of the image first
+    void describe(const EdgePoints3D& edges, const cv::Mat& grey, PlacePoints& out);
+
+  private:
+    struct Corner {
+        std::int32_t point;  ///< of the edges
+        float strength;
+        std::int32_t rank;  ///< among those of its cell of the image, from 0
+    };
+    void findCorners(const OrganizedEdges& edges, const cv::Mat& grey);
+    void chooseCorners(const OrganizedEdges& edges);
+    /// Mean grey level of a square, as far as it is inside the image.
+    float boxMean(const Eigen::Vector2d& centre, double half_width) const;
+    Descriptor describePatch(const Eigen::Vector2d& centre, const Eigen::Vector2d& normal,
+                             double radius) const;
+
+    PinholeCamera camera_;
+    std::vector<float> strength_;  ///< of points of one edge
+    std::vector<Corner> corners_;
+    std::vector<std::int32_t> corners_of_cell_;
+    cv::Mat integral_;  ///< of the grey image
+};
+
+}  // namespace roevo

@@ -1,0 +1,23 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "place/descriptor.h"
+
+namespace roevo {
+
+/// A point of an organized edge that can be told from others, also along its edge.
+struct PlacePoint {
+    float x = 0, y = 0, z = 0;  ///< in the keyframe's frame, m
+    float u = 0, v = 0;         ///< ideal px
+    float normal_angle = 0;     ///< of the edge's normal on the gradient's side, rad from the image's x axis
+    Descriptor descriptor;
+};
+
+/// What a keyframe is recognised by.
+using PlacePoints = std::vector<PlacePoint>;
+
+inline constexpr std::size_t kMaxPlacePoints = 400;
+static_assert(kMaxPlacePoints * sizeof(PlacePoint) <= 40'000, "maps keep these for every keyframe");
+
+}  // namespace roevo

@@ -1,0 +1,187 @@
+#include "place/place_verifier.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace roevo {
+namespace {
+
+constexpr double kPlaceNoise = 0.015;  ///< m, one sigma: the same corner is not found at the same point again
+constexpr double kMostSigmas = 2.5;    ///< of an inlier
+constexpr double kMostTurn = 30 * kDegree;  ///< between the turn of a normal and the roll of the pose
+constexpr double kLeastBase = 0.15;         ///< m, between the points of a sample
+constexpr double kLeastSine = 0.2;          ///< of the angle between the sides of a sample
+constexpr int kMostSamples = 6000;          ///< most of which fail at once
+constexpr double kMissedSample = 1e-3;      ///< probability that no sample was all right, at which to stop
+constexpr int kRefinements = 4;
+constexpr int kLeastInliers = 8;
+constexpr double kLeastExtent = 0.05;  ///< m
+
+double angleBetween(double a, double b) {
+    return std::abs(std::remainder(a - b, 2 * kPi));
+}
+
+/// Rotation about the optical axis, rad.
+double rollOf(const Pose& pose) {
+    const Eigen::Matrix3d& R = pose.linear();
+    return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+}
+
+/// Orthonormal axes of a triangle; its corners are not on a line.
+Eigen::Matrix3d axesOf(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    Eigen::Matrix3d axes;
+    axes.col(0) = (b - a).normalized();
+    axes.col(2) = axes.col(0).cross(c - a).normalized();
+    axes.col(1) = axes.col(2).cross(axes.col(0));
+    return axes;
+}
+
+bool isSlim(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    const Eigen::Vector3d ab = b - a, ac = c - a;
+    return ab.cross(ac).norm() < kLeastSine * ab.norm() * ac.norm();
+}
+
+}  // namespace
+
+std::optional<Verification> PlaceVerifier::verify(const PlacePoints& query, int query_id,
+                                                  const PlacePoints& candidate, int candidate_id) {
+    matchPlaces(query, candidate, matches_);
+    collect(query, candidate);
+    if (static_cast<int>(pairs_.size()) < kLeastInliers) return std::nullopt;
+    constexpr std::uint32_t kSpread = 2654435761U;  // ids are small numbers: their seeds shall not be
+    const std::uint32_t seed = (static_cast<std::uint32_t>(query_id) * kSpread) ^
+                               (static_cast<std::uint32_t>(candidate_id) + kSpread);
+    int inliers = 0;
+    Pose best = sample(seed, inliers);
+    for (int k = 0; k < kRefinements && inliers >= 3; ++k) {
+        const Pose refined = refine(best);
+        const int count = countInliers(refined);
+        if (count < inliers) break;
+        best = refined;
+        inliers = count;
+    }
+    if (inliers < kLeastInliers) return std::nullopt;
+    const Verification result = describe(best);
+    if (result.extent < kLeastExtent || !best.isFinite()) return std::nullopt;
+    return result;
+}
+
+void PlaceVerifier::collect(const PlacePoints& query, const PlacePoints& candidate) {
+    pairs_.clear();
+    for (const PlaceMatch& match : matches_) {
+        const PlacePoint& q = query[static_cast<std::size_t>(match.query)];
+        const PlacePoint& c = candidate[static_cast<std::size_t>(match.candidate)];
+        const double of_query = sensor_.depthSigma(static_cast<double>(q.z)),
+                     of_candidate = sensor_.depthSigma(static_cast<double>(c.z));
+        const double variance = of_query * of_query + of_candidate * of_candidate + kPlaceNoise * kPlaceNoise;
+        pairs_.push_back({{q.x, q.y, q.z},
+                          {c.x, c.y, c.z},
+                          static_cast<double>(c.normal_angle) - static_cast<double>(q.normal_angle),
+                          1 / variance});
+    }
+}
+
+bool PlaceVerifier::explains(const Pose& T, double roll, const Pair& pair) const {
+    return (T * pair.query - pair.candidate).squaredNorm() * pair.information < kMostSigmas * kMostSigmas &&
+           angleBetween(pair.turn, roll) < kMostTurn;
+}
+
+int PlaceVerifier::countInliers(const Pose& T) const {
+    const double roll = rollOf(T);
+    return static_cast<int>(std::count_if(pairs_.begin(), pairs_.end(),
+                                          [&](const Pair& pair) { return explains(T, roll, pair); }));
+}
+
+bool PlaceVerifier::mayBeOfOnePose(const Pair& a, const Pair& b) const {
+    const double in_query = (a.query - b.query).norm(), in_candidate = (a.candidate - b.candidate).norm();
+    const double variance = 1 / a.information + 1 / b.information, difference = in_query - in_candidate;
+    return std::min(in_query, in_candidate) > kLeastBase &&
+           difference * difference < kMostSigmas * kMostSigmas * variance &&
+           angleBetween(a.turn, b.turn) < kMostTurn;
+}
+
+Pose PlaceVerifier::sample(std::uint32_t seed, int& best_inliers) const {
+    std::mt19937 random(seed);
+    const auto count = static_cast<std::uint32_t>(pairs_.size());
+    // Similar pairs come first and are more often right: they are drawn more often
+    const auto draw = [&]() -> const Pair& {
+        const auto one = static_cast<std::uint32_t>(random()) % count,
+                   other = static_cast<std::uint32_t>(random()) % count;
+        return pairs_[std::min(one, other)];
+    };
+    Pose best;
+    best_inliers = 0;
+    int enough = kMostSamples;
+    for (int k = 0; k < enough; ++k) {
+        const Pair &a = draw(), &b = draw(), &c = draw();
+        if (!mayBeOfOnePose(a, b) || !mayBeOfOnePose(a, c) || !mayBeOfOnePose(b, c)) continue;
+        if (isSlim(a.query, b.query, c.query) || isSlim(a.candidate, b.candidate, c.candidate)) continue;
+        const Eigen::Matrix3d rotation =
+            axesOf(a.candidate, b.candidate, c.candidate) * axesOf(a.query, b.query, c.query).transpose();
+        const Eigen::Vector3d translation =
+            (a.candidate + b.candidate + c.candidate - rotation * (a.query + b.query + c.query)) / 3;
+        const Pose pose(Eigen::Quaterniond(rotation), translation);
+        const int inliers = countInliers(pose);
+        if (inliers <= best_inliers) continue;
+        best_inliers = inliers;
+        best = pose;
+        const double share = std::pow(static_cast<double>(inliers) / count, 3);
+        if (share < 1) {
+            const double needed = std::log(kMissedSample) / std::log1p(-share);
+            enough = std::min(enough, static_cast<int>(std::ceil(std::min<double>(needed, kMostSamples))));
+        } else {
+            enough = 0;
+        }
+    }
+    return best;
+}
+
+Pose PlaceVerifier::refine(const Pose& T) const {
+    const double roll = rollOf(T);
+    double sum = 0;
+    Eigen::Vector3d query = Eigen::Vector3d::Zero(), candidate = Eigen::Vector3d::Zero();
+    for (const Pair& pair : pairs_) {
+        if (!explains(T, roll, pair)) continue;
+        sum += pair.information;
+        query += pair.information * pair.query;
+        candidate += pair.information * pair.candidate;
+    }
+    query /= sum;
+    candidate /= sum;
+    Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
+    for (const Pair& pair : pairs_)
+        if (explains(T, roll, pair))
+            correlation += pair.information * (pair.candidate - candidate) * (pair.query - query).transpose();
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d handedness(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+    const Eigen::Matrix3d rotation = svd.matrixU() * handedness.asDiagonal() * svd.matrixV().transpose();
+    return {Eigen::Quaterniond(rotation), candidate - rotation * query};
+}
+
+Verification PlaceVerifier::describe(const Pose& T) const {
+    Verification out;
+    out.T_candidate_query = T;
+    out.matches = static_cast<int>(pairs_.size());
+    const double roll = rollOf(T);
+    double squared = 0;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+    for (const Pair& pair : pairs_) {
+        if (!explains(T, roll, pair)) continue;
+        ++out.inliers;
+        squared += (T * pair.query - pair.candidate).squaredNorm() * pair.information;
+        mean += pair.candidate;
+        moments += pair.candidate * pair.candidate.transpose();
+    }
+    mean /= out.inliers;
+    moments = moments / out.inliers - mean * mean.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
+    out.spread = std::sqrt(squared / out.inliers);
+    out.extent = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+    return out;
+}
+
+}  // namespace roevo

@@ -1,0 +1,118 @@
+// Places of real clips: found again among those of all others, and never taken for another one. Skips,
+// visibly, without the data.
+#include <gtest/gtest.h>
+
+#include "core/support/place_views.h"
+#include "core/support/real_clip.h"
+#include "place/edge_registration.h"
+#include "place/place_index.h"
+
+namespace roevo {
+namespace {
+
+using namespace testing;
+
+struct PlaceClip {
+    PinholeCamera camera;
+    std::vector<std::unique_ptr<PlaceView>> views;
+};
+
+/// Every so many frames of a clip, with keyframe ids from `first_id` on.
+PlaceClip placesOf(const std::string& name, std::size_t step, int first_id) {
+    PlaceClip out;
+    const DatasetReader reader = openDataset(test::dataFolder() + "/" + name);
+    const std::vector<StampedPose> truth = readTumTrajectory(reader.groundTruthPath());
+    out.camera = reader.camera();
+    for (std::size_t i = 0; i < reader.size(); i += step) {
+        const RgbdFrame frame = reader.readFrame(i);
+        // Ground truth comes every 10 ms
+        const auto nearest =
+            std::min_element(truth.begin(), truth.end(), [&](const StampedPose& a, const StampedPose& b) {
+                return std::abs(a.timestamp - frame.timestamp) < std::abs(b.timestamp - frame.timestamp);
+            });
+        const int id = first_id + static_cast<int>(out.views.size());
+        out.views.push_back(makePlaceView(out.camera, frame, nearest->T_world_camera, id));
+    }
+    return out;
+}
+
+class PlaceClips : public ::testing::Test {
+  protected:
+    static constexpr const char* kNames[] = {"tum_fr3_cabinet_loop_58", "tum_fr1_xyz_150",
+                                             "tum_fr3_structure_notexture_far_80", "icl_office_kt0_50"};
+    void SetUp() override {
+        for (const char* name : kNames) {
+            const std::string folder = test::dataFolder() + "/" + name;
+            if (!std::filesystem::exists(folder))
+                GTEST_SKIP() << folder << " is not there; set ROEVO_DATA_DIR to the folder with the clips";
+        }
+        int id = 0;
+        for (const char* name : kNames) {
+            clips_.push_back(placesOf(name, clips_.empty() ? 1 : 10, id));
+            for (const auto& view : clips_.back().views) index_.insert(id++, view->points);
+        }
+    }
+    struct Found {
+        int id = -1;  ///< -1: none is sure
+        double confidence = 0;
+        Pose T_frame_keyframe;
+    };
+    const PlaceView& viewOf(int id) const {
+        for (const PlaceClip& clip : clips_)
+            if (id <= clip.views.back()->keyframe.id)
+                return *clip.views[static_cast<std::size_t>(id - clip.views.front()->keyframe.id)];
+        return *clips_.back().views.back();
+    }
+    /// The surest of the five candidates.
+    Found recognise(const PlaceClip& clip, const PlaceView& view, const std::vector<int>& excluded) {
+        std::vector<PlaceCandidate> candidates;
+        index_.query(view.points, 5, excluded, candidates);
+        EdgeRegistrar registrar(clip.camera, OdometryOptions());
+        Found best;
+        for (const PlaceCandidate& candidate : candidates) {
+            const PlaceView& other = viewOf(candidate.id);
+            const auto points = verifier_.verify(view.points, view.keyframe.id, other.points, candidate.id);
+            if (!points) continue;
+            const EdgeRegistration edges = registrar.registerEdges(
+                other.keyframe, view.frame, view.keyframe.edges, points->T_candidate_query.inverse());
+            const double confidence = placeConfidence(*points, edges);
+            if (confidence < kUnambiguousConfidence || confidence <= best.confidence) continue;
+            best = {candidate.id, confidence, edges.T_frame_keyframe};
+        }
+        return best;
+    }
+
+    std::vector<PlaceClip> clips_;
+    PlaceIndex index_;
+    PlaceVerifier verifier_{SensorOptions()};
+};
+
+TEST_F(PlaceClips, KeyframesAroundTheCabinetAreFoundByTheirNeighbours) {
+    const PlaceClip& clip = clips_.front();
+    int sure = 0;
+    double worst = 0;
+    for (const auto& view : clip.views) {
+        const Found found = recognise(clip, *view, {view->keyframe.id});
+        if (found.id < 0) continue;
+        ++sure;
+        ASSERT_LT(found.id, static_cast<int>(clip.views.size())) << "another room";
+        const Pose truth = view->T_world_camera.inverse() * viewOf(found.id).T_world_camera;
+        worst = std::max(worst, poseError(found.T_frame_keyframe, truth));
+    }
+    RecordProperty("sure", sure);
+    RecordProperty("worst_cm", std::to_string(100 * worst));
+    EXPECT_GE(sure, 45) << "of " << clip.views.size();
+    EXPECT_LT(worst, 0.12) << "the cabinet looks much the same from its other side";
+}
+
+TEST_F(PlaceClips, OtherRoomsAreNeverTakenForThisOne) {
+    for (const PlaceClip& clip : clips_) {
+        std::vector<int> own;
+        for (const auto& view : clip.views) own.push_back(view->keyframe.id);
+        for (const auto& view : clip.views)
+            EXPECT_LT(recognise(clip, *view, own).id, 0) << "frame " << view->keyframe.id;
+    }
+}
+
+}  // namespace
+}  // namespace roevo

@@ -1,0 +1,107 @@
+// Registration of a frame to a keyframe by their edges alone, and what is not accepted.
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "core/support/place_views.h"
+#include "core/support/random_pose.h"
+#include "core/support/simulated.h"
+#include "place/edge_registration.h"
+
+namespace roevo {
+namespace {
+
+using namespace testing;
+
+class PlaceRegistration : public ::testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        const Sequence sequence = simulate(smallRoom(), 20);
+        camera_ = sequence.camera;
+        keyframe_ = makePlaceView(camera_, sequence.frames[0], sequence.truth[0].T_world_camera, 0);
+        frame_ = makePlaceView(camera_, sequence.frames[19], sequence.truth[19].T_world_camera, 19);
+    }
+    static void TearDownTestSuite() {
+        keyframe_.reset();
+        frame_.reset();
+    }
+    static Pose truth() { return frame_->T_world_camera.inverse() * keyframe_->T_world_camera; }
+    static EdgeRegistration from(const Pose& start) {
+        return EdgeRegistrar(camera_, OdometryOptions())
+            .registerEdges(keyframe_->keyframe, frame_->frame, frame_->keyframe.edges, start);
+    }
+
+    static PinholeCamera camera_;
+    static std::unique_ptr<PlaceView> keyframe_, frame_;
+};
+PinholeCamera PlaceRegistration::camera_;
+std::unique_ptr<PlaceView> PlaceRegistration::keyframe_, PlaceRegistration::frame_;
+
+TEST_F(PlaceRegistration, ConvergesFromWhatSimilarPointsTell) {
+    ASSERT_GT(poseError(truth(), Pose::Identity()), 0.05) << "else the case tests little";
+    for (int seed = 0; seed < 5; ++seed) {
+        std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
+        const EdgeRegistration found = from(randomPose(random, 0.02, 0.012) * truth());
+        EXPECT_TRUE(found.accepted) << seed;
+        EXPECT_LT(poseError(found.T_frame_keyframe, truth()), 0.004) << seed;
+        EXPECT_GT(found.keyframe_matched, 0.7);
+        EXPECT_GT(found.frame_matched, 0.7);
+        EXPECT_GT(found.depth_agreement, 0.8);
+        EXPECT_LT(found.sigma_translation, 0.01);
+    }
+}
+
+TEST_F(PlaceRegistration, IsNotAcceptedSomewhereElse) {
+    for (int seed = 0; seed < 10; ++seed) {
+        std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
+        Vector6d xi = Vector6d::Zero();
+        xi[0] = uniform(random, 0.4, 0.8);
+        xi[4] = uniform(random, 0.2, 0.5);
+        const EdgeRegistration found = from(poseIncrement(xi) * truth());
+        EXPECT_FALSE(found.accepted && poseError(found.T_frame_keyframe, truth()) > 0.05) << seed;
+    }
+}
+
+TEST_F(PlaceRegistration, SameBytesWhateverCameBefore) {
+    EdgeRegistrar registrar(camera_, OdometryOptions());
+    const auto run = [&](const Pose& start) {
+        return registrar.registerEdges(keyframe_->keyframe, frame_->frame, frame_->keyframe.edges, start);
+    };
+    const EdgeRegistration first = run(truth());
+    (void)run(Pose::Identity());
+    EXPECT_EQ(run(truth()).T_frame_keyframe.matrix(), first.T_frame_keyframe.matrix());
+    EXPECT_EQ(run(truth()).covariance, first.covariance);
+}
+
+TEST_F(PlaceRegistration, ParallelEdgesAloneAreNotAccepted) {
+    // A wall of upright stripes: nothing tells how high the camera is
+    RgbdFrame stripes;
+    stripes.timestamp = 1;
+    stripes.grey = cv::Mat(camera_.height, camera_.width, CV_8UC1, cv::Scalar(60));
+    stripes.depth = cv::Mat(camera_.height, camera_.width, CV_32FC1, cv::Scalar(2));
+    for (int u = 13; u < camera_.width - 20; u += 37)
+        cv::rectangle(stripes.grey, cv::Rect(u, 0, 11, camera_.height), cv::Scalar(200), cv::FILLED);
+    const auto view = makePlaceView(camera_, stripes, Pose::Identity(), 0);
+    ASSERT_GT(view->keyframe.edges.size(), 500U);
+    const EdgeRegistration found =
+        EdgeRegistrar(camera_, OdometryOptions())
+            .registerEdges(view->keyframe, view->frame, view->keyframe.edges, Pose::Identity());
+    EXPECT_FALSE(found.accepted);
+}
+
+TEST_F(PlaceRegistration, ConfidenceIsTheMeanShareAndNothingWithoutAcceptance) {
+    Verification points;
+    points.matches = 50;
+    points.inliers = 25;
+    EdgeRegistration edges;
+    edges.keyframe_matched = 0.8;
+    edges.frame_matched = 0.5;
+    EXPECT_EQ(placeConfidence(points, edges), 0);
+    edges.accepted = true;
+    EXPECT_NEAR(placeConfidence(points, edges), 0.6, 1e-12);
+    points.inliers = 10;
+    EXPECT_EQ(placeConfidence(points, edges), 0);
+}
+
+}  // namespace
+}  // namespace roevo
