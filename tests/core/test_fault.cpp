@@ -9,7 +9,7 @@
 namespace roevo {
 namespace {
 
-constexpr auto kLast = Fault::Kind::kDiverged;
+constexpr auto kLast = Fault::Kind::kUnconfirmed;
 
 /// How many numbers are part of the words. The compiler asks here for kinds that come to be.
 std::size_t numbersOf(Fault::Kind kind) {

@@ -9,6 +9,7 @@
 #include "keyframe_maker.h"
 #include "mapping/mapper.h"
 #include "outcome.h"
+#include "relocaliser.h"
 #include "semi_dense_store.h"
 #include "stopwatch.h"
 #include "tracking/camera_scale.h"
@@ -16,6 +17,14 @@
 #include "trajectory.h"
 
 namespace roevo {
+
+namespace {
+
+// How far a lost camera can have come
+constexpr double kReach = 0.3;     // m
+constexpr double kTopSpeed = 1.5;  // m/s
+
+}  // namespace
 
 struct Odometry::Impl {
     Impl(const PinholeCamera& raw, const OdometryOptions& opts, const Pose& start,
@@ -28,6 +37,7 @@ struct Odometry::Impl {
           tracker(std::move(own_tracker)),
           motion(opts.motion, opts.sensor, raw.height),
           mapper(makeMapper(raw.undistorted(), scaled)),
+          relocaliser(raw, opts),
           semi_dense(raw, opts) {}
 
     PinholeCamera camera;
@@ -37,6 +47,7 @@ struct Odometry::Impl {
     std::unique_ptr<Tracker> tracker;
     MotionModel motion;  // relative to the reference, as all but the trajectory
     std::unique_ptr<Mapper> mapper;
+    Relocaliser relocaliser;
     SemiDenseStore semi_dense;
     Trajectory trajectory;
 
@@ -51,10 +62,11 @@ struct Odometry::Impl {
     FrameResult processFrame(const RgbdFrame& images);
     FrameResult applyMapUpdates();
     Outcome start();
+    Outcome findAgain(Tracking failed, double since_measured);
     Outcome bridge(Tracking failed);
     Outcome renewReference(Tracking tracking);
     void learn(const Tracking& tracking, const RollingShutter& shutter);
-    void settle(const Outcome& outcome, const Matrix6d& measured);
+    void settle(const Outcome& outcome, const PoseUncertainty& measured);
     Fault beginTrack(const Pose& T_world_camera, const Matrix6d& covariance);
     Fault promote(const Frame& promoted, const Tracking& tracked);
     void adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked);
@@ -78,11 +90,15 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     const Prediction prediction = motion.predict(images.timestamp);
     Tracking tracking = tracker->track(*reference, *frame, prediction);  // Sec. V
     if (tracking.lost()) tracking = tracker->search(*reference, *frame, prediction, std::move(tracking));
-    if (tracking.lost()) return report(std::move(result), bridge(std::move(tracking)));
+    if (tracking.tracked && prediction.blind &&
+        !relocaliser.confirms(*reference, *frame, tracking.pose.T_keyframe_camera))
+        tracking.reject({Fault::Kind::kUnconfirmed, {static_cast<int>(1e3 * prediction.since_measured)}});
+    if (tracking.lost())
+        return report(std::move(result), findAgain(std::move(tracking), prediction.since_measured));
 
     lost_frames = 0;
     learn(tracking, prediction.shutter);
-    const Matrix6d measured = tracking.pose.covariance();
+    const PoseUncertainty measured = tracking.pose.uncertainty;
     Outcome outcome;
     if (keyframeIsDue(*reference, tracking, options.keyframe))
         outcome = renewReference(std::move(tracking));  // Sec. VI
@@ -123,6 +139,26 @@ Outcome Odometry::Impl::start() {
     outcome.status = FrameStatus::kInitialised;
     outcome.tracking.pose.keyframe = reference->id;
     outcome.new_keyframe = true;
+    return outcome;
+}
+
+/// Where tracking lost the camera, a keyframe that it has seen before may tell where it is.
+Outcome Odometry::Impl::findAgain(Tracking failed, double since_measured) {
+    const RelativePose last{reference->id, motion.lastPose(), {}};
+    const Whereabouts near{trajectory.worldPose(last).translation(), kReach + kTopSpeed * since_measured};
+    const auto pose = relocaliser.find(*frame, trajectory, near);
+    if (!pose) return bridge(std::move(failed));
+    Outcome outcome;
+    outcome.tracking = failed;
+    outcome.tracking.pose = *pose;
+    outcome.tracking.matches = {};  // with another keyframe
+    outcome.tracking.rows = motion.stillRows();
+    if (promote(*frame, outcome.tracking)) return bridge(std::move(failed));
+    motion.anchor(frame->timestamp(), Pose::Identity());
+    lost_frames = 0;
+    outcome.tracking.pose = {reference->id, Pose::Identity(), {}};
+    outcome.found_at = pose->keyframe;
+    outcome.is_keyframe = outcome.new_keyframe = true;
     return outcome;
 }
 
@@ -195,8 +231,8 @@ void Odometry::Impl::learn(const Tracking& tracking, const RollingShutter& shutt
 }
 
 /// A tracked pose is what the next one is predicted from.
-/// @param measured  its covariance, which a keyframe no longer has relative to itself
-void Odometry::Impl::settle(const Outcome& outcome, const Matrix6d& measured) {
+/// @param measured  its uncertainty, which a keyframe no longer has relative to itself
+void Odometry::Impl::settle(const Outcome& outcome, const PoseUncertainty& measured) {
     const RelativePose& pose = outcome.tracking.pose;
     if (outcome.tracking.searched)
         motion.anchor(frame->timestamp(), pose.T_keyframe_camera);
@@ -229,6 +265,7 @@ Fault Odometry::Impl::promote(const Frame& promoted, const Tracking& tracked) {
 }
 
 void Odometry::Impl::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
+    relocaliser.add(*fresh, of);
     semi_dense.add(fresh->edges.image, of, fresh->row_motion);
     mapper->insert({*fresh, ownEdges(*fresh, of.images, camera), trajectory.keyframePose(fresh->id), tracked,
                     reference.get(), motion.secondsPerRow()},
@@ -247,7 +284,8 @@ FrameResult Odometry::Impl::report(FrameResult result, const Outcome& outcome) {
         result.reason = "cannot start here: " + describe(tracking.fault);
         return result;
     }
-    trajectory.addFrame(result.timestamp, tracking.pose);
+    const bool measured = outcome.status != FrameStatus::kPredicted && outcome.status != FrameStatus::kLost;
+    trajectory.addFrame(result.timestamp, tracking.pose, measured);
     result.reason = describe(outcome);
     result.T_world_camera = trajectory.worldPose(tracking.pose);
     result.covariance = trajectory.worldCovariance(tracking.pose);

@@ -17,7 +17,10 @@ std::string describe(const Outcome& outcome) {
             break;
     }
     std::string text;
-    if (outcome.tracking.searched) text = "found by searching around the last pose: " + why;
+    if (outcome.found_at >= 0)
+        text = "found again at keyframe " + std::to_string(outcome.found_at) + ": " + why;
+    else if (outcome.tracking.searched)
+        text = "found by searching around the last pose: " + why;
     if (!outcome.no_keyframe) return text;
     return text + (text.empty() ? "" : "; ") + "a new keyframe is due, but " + describe(outcome.no_keyframe);
 }

@@ -12,6 +12,7 @@ struct Outcome {
     bool is_keyframe = false;   ///< the frame is the reference now
     bool new_keyframe = false;  ///< this frame brought a new keyframe: itself or the frame before it
     int lost_frames = 0;        ///< until this one
+    int found_at = -1;          ///< keyframe that a lost frame was recognised by
 };
 
 /// The reason of a frame's status in words: the one place where they are made.

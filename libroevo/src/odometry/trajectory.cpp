@@ -60,8 +60,8 @@ int Trajectory::addKeyframe(double timestamp, const RelativePose& pose,
     return id;
 }
 
-void Trajectory::addFrame(double timestamp, const RelativePose& pose) {
-    frames_.push_back({timestamp, pose});
+void Trajectory::addFrame(double timestamp, const RelativePose& pose, bool measured) {
+    frames_.push_back({timestamp, pose, measured});
     live_.push_back({timestamp, worldPose(pose)});
     if (frames_.size() <= kRecentFrames) return;
     forget(frames_[frames_.size() - kRecentFrames - 1].pose.uncertainty, [](std::int32_t) { return true; });
@@ -118,9 +118,25 @@ Pose Trajectory::finalPose(const Frame& frame) const {
     return interpolate(from_parent, from_next, since / (since + left));
 }
 
+bool Trajectory::sameTrack(int first_keyframe, int last_keyframe) const {
+    const auto begin = links_.begin() + first_keyframe + 1, end = links_.begin() + last_keyframe + 1;
+    return begin >= end || std::none_of(begin, end, [](const auto& link) { return link.keyframe < 0; });
+}
+
 std::vector<StampedPose> Trajectory::frames() const {
     std::vector<StampedPose> poses;
     for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame)});
+    std::size_t last = 0;  // measured frame
+    for (std::size_t next = 1; next < frames_.size(); ++next) {
+        if (!frames_[next].measured) continue;
+        const StampedPose &from = poses[last], &to = poses[next];
+        const bool known = sameTrack(frames_[last].pose.keyframe, frames_[next].pose.keyframe);
+        for (std::size_t i = last + 1; known && i < next; ++i)
+            poses[i].T_world_camera =
+                interpolate(from.T_world_camera, to.T_world_camera,
+                            (poses[i].timestamp - from.timestamp) / (to.timestamp - from.timestamp));
+        last = next;
+    }
     return poses;
 }
 

@@ -16,7 +16,8 @@ class Trajectory {
     /// @param pose  relative to the keyframe that it was tracked from. @return its id
     /// @param clusters  of its edges; what other edges did to its pose is from now on independent
     int addKeyframe(double timestamp, const RelativePose& pose, const std::vector<std::int32_t>& clusters);
-    void addFrame(double timestamp, const RelativePose& pose);
+    /// @param measured  else its final pose is interpolated between measured ones, where there are any
+    void addFrame(double timestamp, const RelativePose& pose, bool measured = true);
 
     /// Moves the keyframes as the map has it; younger ones follow the one that they were tracked from.
     void apply(const MapUpdate& update);
@@ -42,8 +43,10 @@ class Trajectory {
     struct Frame {
         double timestamp = 0;
         RelativePose pose;
+        bool measured = true;
     };
     RelativePose inWorld(const RelativePose& pose) const;
+    bool sameTrack(int first_keyframe, int last_keyframe) const;
     Pose finalPose(const Frame& frame) const;
 
     std::vector<KeyframeInfo> keyframes_;

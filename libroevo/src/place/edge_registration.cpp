@@ -68,7 +68,9 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     const GaussNewtonResult found = minimise(T_start, RollingShutter(), {&term_}, loop);
     if (!found.complete || !found.T_current_keyframe.isFinite()) return out;
     out.T_frame_keyframe = found.T_current_keyframe;
-    out.covariance = kCorrelatedPoints * found.system.hessian.inverse();
+    clusters_.start(keyframe.clusters);
+    term_.addTo(clusters_);
+    out.covariance = clusters_.uncertainty(found.system, term_.slope()).covariance();
     if (!out.covariance.allFinite()) return out;
     out.sigma_translation = worstSigma(out.covariance.topLeftCorner<3, 3>());
     out.sigma_rotation = worstSigma(out.covariance.bottomRightCorner<3, 3>());
@@ -87,15 +89,11 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
 void EdgeRegistrar::lookBack(const Keyframe& keyframe, const EdgePoints3D& frame_edges,
                              EdgeRegistration& out) {
     const Pose T_keyframe_frame = out.T_frame_keyframe.inverse();
-    const std::size_t padded = frame_edges.x.size();
-    for (auto* array : {&x_, &y_, &z_, &u_, &v_}) array->resize(padded);
-    kernels::best().project(makeProjection(T_keyframe_frame, ideal_, RowMotion()), frame_edges.x.data(),
-                            frame_edges.y.data(), frame_edges.z.data(), padded,
-                            {x_.data(), y_.data(), z_.data(), u_.data(), v_.data()});
+    project(frame_edges.points, T_keyframe_frame, ideal_, RowMotion(), projected_);
     grid_.build(keyframe.edges.image, ideal_.width, ideal_.height);
-    associator_.associate(frame_edges.image, u_.data(), v_.data(), imageRotation(T_keyframe_frame),
-                          options_.edges.tangent_span, keyframe.edges.image, grid_, ideal_.width,
-                          ideal_.height, options_.fine.final_radius, matches_);
+    associator_.associate(frame_edges.image, projected_.u.data(), projected_.v.data(),
+                          imageRotation(T_keyframe_frame), options_.edges.tangent_span, keyframe.edges.image,
+                          grid_, ideal_.width, ideal_.height, options_.fine.final_radius, matches_);
     out.frame_matched = matches_.matchedRatio();
     // Points that are looked up are as thin as in the associator
     const auto lookedUp = [&](std::size_t size) {
@@ -109,8 +107,8 @@ void EdgeRegistrar::lookBack(const Keyframe& keyframe, const EdgePoints3D& frame
     for (std::size_t k = 0; k < matches_.size(); ++k) {
         const auto i = static_cast<std::size_t>(matches_.reference[k]),
                    j = static_cast<std::size_t>(matches_.current[k]);
-        const auto seen = static_cast<double>(keyframe.edges.z[j]);
-        const double difference = static_cast<double>(z_[i]) - seen;
+        const auto seen = static_cast<double>(keyframe.edges.points.z[j]);
+        const double difference = static_cast<double>(projected_.z[i]) - seen;
         const double sigma = options_.sensor.depthSigma(seen);
         if (difference * difference <
             kDepthSigmas * kDepthSigmas * (2 * sigma * sigma + kDepthFloor * kDepthFloor))

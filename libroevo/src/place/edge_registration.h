@@ -51,7 +51,8 @@ class EdgeRegistrar {
     EdgeAssociator associator_;
     EdgeGrid grid_;  ///< of the keyframe
     EdgeMatches matches_;
-    std::vector<float> x_, y_, z_, u_, v_;  ///< of the frame's points, in the keyframe
+    ProjectedPoints3 projected_;  ///< the frame's points, in the keyframe
+    EdgeClusters clusters_;
 };
 
 }  // namespace roevo

@@ -54,9 +54,9 @@ void PlaceDescriber::describe(const EdgePoints3D& edges, const cv::Mat& grey, Pl
     for (const Corner& corner : corners_) {
         const auto i = static_cast<std::size_t>(corner.point);
         PlacePoint point;
-        point.x = edges.x[i];
-        point.y = edges.y[i];
-        point.z = edges.z[i];
+        point.x = edges.points.x[i];
+        point.y = edges.points.y[i];
+        point.z = edges.points.z[i];
         point.u = edges.image.x[i];
         point.v = edges.image.y[i];
         const Eigen::Vector2d normal(edges.image.normal_x[i], edges.image.normal_y[i]);

@@ -16,6 +16,11 @@ Matrix6d PoseUncertainty::covariance() const {
     return sum;
 }
 
+double PoseUncertainty::designEffect() const {
+    const double effect = (covariance() * independent.inverse()).trace() / 6;
+    return std::isfinite(effect) ? std::max(1.0, effect) : 1;
+}
+
 void EdgeClusters::start(const std::vector<std::int32_t>& cluster_of) {
     std::vector<std::int32_t> clusters = cluster_of;
     std::sort(clusters.begin(), clusters.end());

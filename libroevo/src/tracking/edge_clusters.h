@@ -22,6 +22,8 @@ struct PoseUncertainty {
     std::vector<EdgeInfluence> influences;  ///< in the order of clusters, each once
 
     Matrix6d covariance() const;
+    /// How many points count as one: the covariance over that of independent points, mean of all directions.
+    double designEffect() const;
 };
 
 /// What each edge adds to the normal equations of a pose. The points of an edge err together (its depth in

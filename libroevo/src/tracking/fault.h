@@ -25,7 +25,8 @@ struct Fault {
         kCoarseAstray,
         kFewInliers,  ///< numbers: found, needed
         kFewMatched,  ///< numbers: found, needed, percent of the edges
-        kDiverged
+        kDiverged,
+        kUnconfirmed  ///< after a gap in time; number: its length, ms
     };
     Kind kind = Kind::kNone;
     std::array<int, 4> numbers{};

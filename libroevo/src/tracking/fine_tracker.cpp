@@ -63,7 +63,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
                                 brightness);
     // alpha: both kinds of residual count as many points as the edges have, whatever the sample's size
     photometric.balance(options_.photometric_weight, [this] { return edges_.matches().size(); });
-    PriorTerm likely(prior, kCorrelatedPoints);
+    PriorTerm likely(prior);
     std::vector<ResidualTerm*> terms{&edges_, &likely};
     if (options_.photometric_weight > 0 && keyframe.photometric.size() > 0) terms.push_back(&photometric);
     GaussNewtonOptions loop;

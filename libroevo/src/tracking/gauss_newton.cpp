@@ -56,8 +56,8 @@ Eigen::Matrix<double, 7, 1> PoseSystem::solveWithReadout() const {
 bool PriorTerm::linearise(const Linearisation& at, PoseSystem& system) {
     const Pose difference = at.T_current_keyframe * prior_.mean.inverse();
     const Eigen::AngleAxisd turn(difference.linear());
-    const double position = weight_ / (prior_.sigma_translation * prior_.sigma_translation);
-    const double orientation = weight_ / (prior_.sigma_rotation * prior_.sigma_rotation);
+    const double position = prior_.weight / (prior_.sigma_translation * prior_.sigma_translation);
+    const double orientation = prior_.weight / (prior_.sigma_rotation * prior_.sigma_rotation);
     system.hessian.diagonal().head<3>().array() += position;
     system.hessian.diagonal().tail<3>().array() += orientation;
     system.gradient.head<3>() += position * difference.translation();

@@ -15,6 +15,7 @@ struct PosePrior {
     Pose mean = Pose::Identity();
     double sigma_translation = 1;  ///< m
     double sigma_rotation = 1;     ///< rad
+    double weight = 1;             ///< by how much the rest of the system overstates its information
 };
 
 /// What points contribute to the normal equations, laid out as the kernels want it. Keeps its memory.
@@ -89,13 +90,11 @@ class ResidualTerm {
 /// What is likely beforehand: keeps directions solvable that the edges do not see.
 class PriorTerm : public ResidualTerm {
   public:
-    /// @param weight  how much the rest of the system overstates its information
-    explicit PriorTerm(const PosePrior& prior, double weight = 1) : prior_(prior), weight_(weight) {}
+    explicit PriorTerm(const PosePrior& prior) : prior_(prior) {}
     bool linearise(const Linearisation& at, PoseSystem& system) override;
 
   private:
     PosePrior prior_;
-    double weight_;
 };
 
 /// Holds steps back: a prior about wherever the pose is.

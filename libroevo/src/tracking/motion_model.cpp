@@ -10,10 +10,12 @@ namespace roevo {
 namespace {
 
 constexpr double kLongestPrediction = 0.5;  ///< s; nobody moves on evenly for longer
+constexpr double kUsual = 2.5;              ///< times the last interval between frames: still a usual one
 constexpr double kShortestStep = 0.005,
                  kLongestStep = 0.35;    ///< s between two poses that make a velocity for the rows
 constexpr double kLeastSigma = 1e-3;     ///< m and rad, of any prior
 constexpr double kLongestReadout = 0.1;  ///< s
+constexpr double kLearning = 0.2;        ///< share of the newest frame in the mean design effect
 
 }  // namespace
 
@@ -31,7 +33,10 @@ void MotionModel::anchor(double timestamp, const Pose& T_reference_camera) {
     interval_ = 0;
 }
 
-void MotionModel::measure(double timestamp, const Pose& T_reference_camera, const Matrix6d& covariance) {
+void MotionModel::measure(double timestamp, const Pose& T_reference_camera,
+                          const PoseUncertainty& uncertainty) {
+    const Matrix6d covariance = uncertainty.covariance();
+    design_effect_ += kLearning * (uncertainty.designEffect() - design_effect_);
     const double interval = timestamp - last_timestamp_;
     // What moved between two stamps that nearly coincide is mostly their errors: the velocity stays
     if (interval >= kShortestStep) {
@@ -51,8 +56,15 @@ void MotionModel::changeReference(const Pose& T_new_old) {
 }
 
 Prediction MotionModel::predict(double timestamp) const {
-    return {poseAt(timestamp),      T_reference_assumed_, prior(timestamp),
-            searchPrior(timestamp), shutter(timestamp),   brightness_};
+    const double dt = timestamp - last_timestamp_;
+    return {poseAt(timestamp),
+            T_reference_assumed_,
+            prior(timestamp),
+            searchPrior(timestamp),
+            shutter(timestamp),
+            brightness_,
+            dt,
+            dt > std::max(kLongestPrediction, kUsual * interval_)};
 }
 
 Pose MotionModel::poseAt(double timestamp) const {
@@ -70,6 +82,7 @@ PosePrior MotionModel::prior(double timestamp) const {
         return std::sqrt(by_motion * by_motion + (1 + share) * (1 + share) * last + share * share * before);
     };
     PosePrior prior;
+    prior.weight = design_effect_;
     prior.mean = poseAt(timestamp).inverse();
     prior.sigma_translation =
         std::max(sigma(motion_.acceleration, motion_.speed, last_.position, before_.position), kLeastSigma);

@@ -12,7 +12,9 @@ struct Prediction {
     Pose T_reference_last = Pose::Identity();    ///< of the frame before, measured or not
     PosePrior prior, search_prior;               ///< about the predicted pose; about the last one, wide
     RollingShutter shutter;
-    Brightness brightness;  ///< of the last frame, against the reference
+    Brightness brightness;      ///< of the last frame, against the reference
+    double since_measured = 0;  ///< s
+    bool blind = false;         ///< that is so long, and longer than usual, that all this is worth little
 };
 
 /// What is known of the camera's motion before a frame is looked at: constant velocity between measured
@@ -26,9 +28,8 @@ class MotionModel {
     /// search.
     void anchor(double timestamp, const Pose& T_reference_camera);
     /// A measured pose; with the one before it gives the velocity, unless their stamps nearly coincide.
-    /// @param covariance  of the pose against its reference, position then orientation
-    void measure(double timestamp, const Pose& T_reference_camera,
-                 const Matrix6d& covariance = Matrix6d::Zero());
+    /// @param uncertainty  of the pose against its reference
+    void measure(double timestamp, const Pose& T_reference_camera, const PoseUncertainty& uncertainty = {});
     /// A pose that was not measured: only a search looks around it.
     void assume(const Pose& T_reference_camera) { T_reference_assumed_ = T_reference_camera; }
     /// Brightness of the last frame against the reference.
@@ -67,7 +68,8 @@ class MotionModel {
     Pose T_reference_last_ = Pose::Identity();     ///< measured
     Pose T_reference_assumed_ = Pose::Identity();  ///< or not
     Brightness brightness_;
-    Variance last_, before_;  ///< of the last two measured poses
+    Variance last_, before_;    ///< of the last two measured poses
+    double design_effect_ = 1;  ///< of the poses so far
     double last_timestamp_ = 0;
     bool has_last_ = false;
     Pose step_ = Pose::Identity();  ///< T_last_current over interval_ seconds

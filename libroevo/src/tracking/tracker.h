@@ -23,6 +23,10 @@ struct Tracking {
     double ms_coarse = 0, ms_fine = 0;
 
     bool lost() const { return !tracked; }
+    void reject(const Fault& why) {
+        tracked = false;
+        fault = why;
+    }
     double matchedRatio() const { return matches.matchedRatio(); }
 };
 

@@ -1,0 +1,130 @@
+#include "relocaliser.h"
+
+#include <algorithm>
+
+#include "tracking/camera_scale.h"
+#include "tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+constexpr std::size_t kCandidates = 5;  ///< keyframes whose points are compared
+constexpr std::size_t kRegistered = 3;  ///< of them, those whose edges are
+constexpr std::size_t kPoints = 200;    ///< kept of a keyframe, the most distinct ones
+// Poses that are further apart are different places
+constexpr double kSamePlace = 0.3;               ///< m
+constexpr double kSameDirection = 15 * kDegree;  ///< rad
+
+}  // namespace
+
+Relocaliser::Relocaliser(const PinholeCamera& camera, const OdometryOptions& options)
+    : camera_(camera),
+      ideal_(camera.undistorted()),
+      options_(scaledTo(camera, options)),
+      describer_(camera),
+      verifier_(options.sensor),
+      registrar_(camera, options) {}
+
+void Relocaliser::add(const Keyframe& keyframe, const Frame& frame) {
+    collect();
+    newest_ = std::async(std::launch::async, [this, copy = keyframe, grey = frame.pyramid.level(0).clone()] {
+        return describe(copy, grey);
+    });
+}
+
+Relocaliser::Place Relocaliser::describe(const Keyframe& keyframe, const cv::Mat& grey) {
+    Place place;
+    describer_.describe(keyframe.edges, grey, place.points);
+    if (place.points.size() > kPoints) place.points.resize(kPoints);
+    place.points.shrink_to_fit();
+    const std::vector<Rgb> colours(keyframe.edges.size());
+    place.edges = PackedKeyframe(toMapKeyframe(keyframe, colours, ideal_, options_.mapping.max_points));
+    place.median_depth = keyframe.median_depth;
+    place.row_motion = keyframe.row_motion;
+    return place;
+}
+
+void Relocaliser::collect() {
+    if (!newest_.valid()) return;
+    places_.push_back(newest_.get());
+    index_.insert(static_cast<int>(places_.size()) - 1, places_.back().points);
+}
+
+Keyframe Relocaliser::unpacked(int id) const {
+    const Place& place = places_[static_cast<std::size_t>(id)];
+    MapKeyframe edges;
+    place.edges.unpackInto(edges, ideal_, options_.sensor);
+    Keyframe keyframe;
+    keyframe.id = id;
+    keyframe.edges.image = std::move(edges.image);
+    // The normal is on the gradient's side
+    keyframe.edges.image.gradient_x = keyframe.edges.image.normal_x;
+    keyframe.edges.image.gradient_y = keyframe.edges.image.normal_y;
+    keyframe.edges.points = std::move(edges.points);
+    keyframe.edges.weight = std::move(edges.weight);
+    keyframe.edges.correction.assign(keyframe.edges.size(), 0);
+    for (int e = 0; e < keyframe.edges.image.numEdges(); ++e) keyframe.clusters.push_back(e);
+    keyframe.median_depth = place.median_depth;
+    keyframe.row_motion = place.row_motion;
+    return keyframe;
+}
+
+EdgePoints3D Relocaliser::lifted(const Frame& frame) const {
+    if (frame.images.depth.empty()) return {};
+    return liftEdges(frame.edges, frame.images.depth, camera_, RowMotion(), options_.edges, options_.sensor);
+}
+
+bool Relocaliser::confirms(const Keyframe& keyframe, const Frame& frame, const Pose& T_keyframe_camera) {
+    const EdgePoints3D edges = lifted(frame);
+    return edges.size() > 0 &&
+           registrar_.registerEdges(keyframe, frame, edges, T_keyframe_camera.inverse()).accepted;
+}
+
+std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajectory& trajectory,
+                                              const Whereabouts& whereabouts) {
+    collect();
+    const EdgePoints3D edges = lifted(frame);
+    if (edges.size() == 0) return std::nullopt;
+    describer_.describe(edges, frame.pyramid.level(0), points_);
+    if (points_.size() > kPoints) points_.resize(kPoints);
+    std::vector<PlaceCandidate> candidates;
+    index_.query(points_, kCandidates, {}, candidates);
+    std::vector<std::pair<Verification, int>> alike;
+    for (const PlaceCandidate& candidate : candidates) {
+        const auto& place = places_[static_cast<std::size_t>(candidate.id)];
+        const auto found = verifier_.verify(points_, -1, place.points, candidate.id);
+        if (found) alike.emplace_back(*found, candidate.id);
+    }
+    std::stable_sort(alike.begin(), alike.end(),
+                     [](const auto& a, const auto& b) { return a.first.inliers > b.first.inliers; });
+    if (alike.size() > kRegistered) alike.resize(kRegistered);
+    std::vector<Recognition> recognised;
+    for (const auto& [points, id] : alike) {
+        const EdgeRegistration found =
+            registrar_.registerEdges(unpacked(id), frame, edges, points.T_candidate_query.inverse());
+        const double confidence = placeConfidence(points, found);
+        if (confidence <= 0) continue;
+        const RelativePose pose{id, found.T_frame_keyframe.inverse(), {found.covariance, {}}};
+        recognised.push_back({pose, trajectory.worldPose(pose), confidence});
+    }
+    return surest(recognised, whereabouts);
+}
+
+std::optional<RelativePose> Relocaliser::surest(const std::vector<Recognition>& recognised,
+                                                const Whereabouts& whereabouts) {
+    const auto best = std::max_element(
+        recognised.begin(), recognised.end(),
+        [](const Recognition& a, const Recognition& b) { return a.confidence < b.confidence; });
+    if (best == recognised.end()) return std::nullopt;
+    if (best->confidence >= kUnambiguousConfidence) return best->pose;
+    const auto isRival = [&](const Recognition& other) {
+        const Pose apart = best->T_world_camera.inverse() * other.T_world_camera;
+        return apart.translation().norm() > kSamePlace || rotationAngle(apart) > kSameDirection;
+    };
+    const double distance = (best->T_world_camera.translation() - whereabouts.centre).norm();
+    if (distance > whereabouts.radius || std::any_of(recognised.begin(), recognised.end(), isRival))
+        return std::nullopt;
+    return best->pose;
+}
+
+}  // namespace roevo
