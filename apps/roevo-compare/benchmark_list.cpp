@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "input/excerpt.h"
+#include "input/regular_file.h"
 #include "programs/program.h"
 
 namespace roevo {
@@ -20,16 +22,14 @@ using Json = nlohmann::json;
 constexpr char kOurs[] = "ROEVO-TR+BA";
 
 Json parseFile(const std::string& file) {
-    std::error_code ignored;
-    if (fs::is_directory(file, ignored))
-        throw std::runtime_error("cannot read " + file + ": it is a directory; give the list's file");
+    requireRegularInput(file);
     errno = 0;
     std::ifstream in(file);
     if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno ? errno : ENOENT));
     try {
         return Json::parse(in);
     } catch (const Json::exception& e) {
-        throw std::runtime_error(file + " is no JSON: " + firstLine(e.what()));
+        throw std::runtime_error(file + " is no JSON: " + excerpt(e.what(), 160));  // it quotes what it read
     }
 }
 

@@ -11,6 +11,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "input/regular_file.h"
+
 namespace fs = std::filesystem;
 
 namespace roevo {
@@ -24,6 +26,8 @@ std::string faultOf(const std::string& path) {
     if (!fs::exists(path)) return path + ": no such file";
     if (fs::is_directory(path))
         return path + (fs::exists(fs::path(path) / "metadata.yaml") ? kRos2 : " is a folder, not a bag");
+    if (const std::string other = otherThanFile(path); !other.empty())
+        return "cannot read " + path + ": " + other;
     std::ifstream in(path, std::ios::binary);
     std::string head(16, '\0');
     if (!in) return path + ": cannot be read (no permission?)";
