@@ -11,6 +11,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "input/excerpt.h"
 #include "input/regular_file.h"
 
 namespace fs = std::filesystem;
@@ -41,8 +42,8 @@ std::string faultOf(const std::string& path) {
 }  // namespace
 
 std::string BagTopic::toText() const {
-    return name + " (" + type + (encoding.empty() ? "" : ", " + encoding) + ", " + std::to_string(messages) +
-           (messages == 1 ? " message)" : " messages)");
+    return excerpt(name) + " (" + excerpt(type) + (encoding.empty() ? "" : ", " + excerpt(encoding)) + ", " +
+           std::to_string(messages) + (messages == 1 ? " message)" : " messages)");
 }
 
 BagFile::BagFile(const std::string& path) : path_(path) {
