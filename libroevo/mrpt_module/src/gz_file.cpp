@@ -18,7 +18,6 @@ std::uint32_t gzTrailerLength(const std::filesystem::path& file) {
 
 bool GzFile::open(const std::filesystem::path& file, int level) {
     file_ = file;
-    level_ = level;
     return stream_.open(file.string(), level);
 }
 
@@ -39,9 +38,7 @@ bool GzFile::write(const mrpt::serialization::CSerializable& object) {
 
 bool GzFile::close() {
     stream_.close();
-    if (level_ > 0) return gzTrailerLength(file_) == static_cast<std::uint32_t>(bytes_);
-    std::error_code error;
-    return std::filesystem::file_size(file_, error) == bytes_ && !error;
+    return gzTrailerLength(file_) == static_cast<std::uint32_t>(bytes_);
 }
 
 }  // namespace roevo

@@ -19,7 +19,7 @@ std::uint32_t gzTrailerLength(const std::filesystem::path& file);
 /// when the disk is full.
 class GzFile {
   public:
-    /// @param level  of compression; 0: none
+    /// @param level  of compression; 0: none, yet in the gz format
     bool open(const std::filesystem::path& file, int level);
 
     /// False when it could not be written, as far as that is known by now.
@@ -37,7 +37,6 @@ class GzFile {
     std::filesystem::path file_;
     mrpt::io::CFileGZOutputStream stream_;
     std::uint64_t bytes_ = 0;
-    int level_ = 0;
 };
 
 }  // namespace roevo
