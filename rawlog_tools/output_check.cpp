@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "input/regular_file.h"
 #include "roevo_mrpt/rawlog_writer.h"
 
 namespace roevo {
@@ -15,6 +16,7 @@ namespace roevo {
 namespace fs = std::filesystem;
 
 void checkOutputFolder(const std::string& rawlog) {
+    requireReplaceable(rawlog);
     const fs::path parent = fs::path(rawlog).parent_path();
     const fs::path folder = parent.empty() ? "." : parent;
     const auto fail = [&](const std::string& what) {

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "input/excerpt.h"
+#include "input/regular_file.h"
 #include "programs/program.h"
 
 namespace roevo {
@@ -20,16 +22,14 @@ using Json = nlohmann::json;
 constexpr char kOurs[] = "ROEVO-TR+BA";
 
 Json parseFile(const std::string& file) {
-    std::error_code ignored;
-    if (fs::is_directory(file, ignored))
-        throw std::runtime_error("cannot read " + file + ": it is a directory; give the list's file");
+    requireRegularInput(file);
     errno = 0;
     std::ifstream in(file);
     if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno ? errno : ENOENT));
     try {
         return Json::parse(in);
     } catch (const Json::exception& e) {
-        throw std::runtime_error(file + " is no JSON: " + firstLine(e.what()));
+        throw std::runtime_error(file + " is no JSON: " + excerpt(e.what(), 160));  // it quotes what it read
     }
 }
 
@@ -140,7 +140,7 @@ BenchmarkList readBenchmarkList(const std::string& file, const std::string& data
     for (std::size_t i = 0; i < entries.size(); ++i) {
         const std::string where = file + ": sequence " + std::to_string(i + 1);
         const std::string name = Entry(entries[i], where).text("name");
-        const Entry entry(entries[i], where + " ('" + name + "')");
+        const Entry entry(entries[i], where + " ('" + excerpt(name) + "')");
         if (name.empty() || name[0] == '.' || name.find('/') != std::string::npos)
             entry.fail("its name cannot be that of a folder");
         if (!names.insert(name).second) entry.fail("there is another one of that name");
@@ -155,7 +155,8 @@ BenchmarkList readBenchmarkList(const std::string& file, const std::string& data
         addSequence(entry, sequence, found);  // even if it is missing: a fault of the list should be seen
         for (const SequenceInput& one : found.sequences)  // parts, too: each has a folder of that name
             if (!run_names.insert(one.name).second)
-                entry.fail("what is run of it would be called '" + one.name + "', and there is another one");
+                entry.fail("what is run of it would be called '" + excerpt(one.name) +
+                           "', and there is another one");
         if (sequence.input.empty())
             list.missing.push_back(name + ": not in " + data + " (" + tried + ")");
         else

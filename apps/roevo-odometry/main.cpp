@@ -76,7 +76,7 @@ int run(int argc, char** argv) {
         1);  // decoding runs beside tracking already; more threads would blur the times per frame
     const RunReport report = runOdometry(settings);
     for (const std::string& warning : {report.warning, report.scale_warning})
-        if (!warning.empty()) std::fprintf(stderr, "%s: warning: %s\n", kName, warning.c_str());
+        if (!warning.empty()) printWarning(kName, warning);
     if (!settings.quiet) printSummary(report, settings.output_dir);
     if (!report.evaluation && !settings.ground_truth.empty())
         throw std::runtime_error(settings.ground_truth + ": " + report.evaluation_fault);

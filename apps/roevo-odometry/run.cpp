@@ -10,8 +10,10 @@
 #include "evaluation/scale_check.h"
 #include "evaluation/trajectory_io.h"
 #include "programs/atomic_file.h"
+#include "programs/interrupt.h"
 #include "programs/output_folder.h"
 #include "programs/progress.h"
+#include "programs/whole_outputs.h"
 #include "recordings/frame_source.h"
 #include "roevo_mrpt/config_file.h"
 #include "roevo_mrpt/observation_converter.h"
@@ -35,6 +37,10 @@ std::size_t expectedFrames(const FrameSource& source, const RunSettings& setting
     const std::size_t left = source.size() - std::min(settings.skip, source.size());
     return settings.first > 0 ? std::min(left, settings.first) : left;
 }
+
+const std::vector<std::string> kResults = {
+    "trajectory.txt", "trajectory_live.txt", "trajectory_robot.txt", "keyframes.txt", "map.3Dscene",
+    "map.ply",        "map_semi_dense.ply",  "config_used.ini",      "frames.csv",    "summary.json"};
 
 constexpr double kLongestGap = 1;  // s; a recording that stood still, or a stray stamp, is not waited for
 
@@ -125,7 +131,7 @@ std::vector<StampedPose> keyframePoses(const RunReport& report) {
 }
 
 // @param content  with the map and the surface already in it
-void writeMap(const fs::path& dir, const RunReport& report, const Odometry& odometry, SceneContent content,
+void writeMap(WholeOutputs& files, const RunReport& report, const Odometry& odometry, SceneContent content,
               std::vector<StampedPose> reference) {
     // The other modes do not tell which edges are the same
     if (report.mode == Mode::kBundleAdjustment) content.keyframe_edges = odometry.keyframeEdges();
@@ -133,9 +139,12 @@ void writeMap(const fs::path& dir, const RunReport& report, const Odometry& odom
     content.keyframes = report.keyframes;
     content.camera = report.camera.undistorted();
     content.reference = std::move(reference);
-    saveScene((dir / "map.3Dscene").string(), *buildScene(content));
-    savePly((dir / "map.ply").string(), content.map);
-    savePointsPly((dir / "map_semi_dense.ply").string(), content.semi_dense);
+    saveScene(files.path("map.3Dscene"), *buildScene(content));
+    InterruptGuard::check();
+    savePly(files.path("map.ply"), content.map);
+    InterruptGuard::check();
+    savePointsPly(files.path("map_semi_dense.ply"), content.semi_dense);
+    InterruptGuard::check();
 }
 
 }  // namespace
@@ -144,6 +153,7 @@ RunReport runOdometry(const RunSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
     auto source = prefetch(openSource(settings.input, settings.sensor_label));
     prepareOutputFolder(settings.output_dir);
+    WholeOutputs files(settings.output_dir, kResults);
 
     RunReport report;
     report.input = settings.input;
@@ -178,28 +188,26 @@ RunReport runOdometry(const RunSettings& settings) {
     report.map_edges = content.map.size();
     for (const MapEdge& edge : content.map) report.map_points += edge.points.size();
 
-    const fs::path dir = settings.output_dir;
+    const InterruptGuard guard;  // a signal does not leave half of the results
     const std::string failure = report.failure();
     if (failure.empty()) {
         evaluateRun(report, ground_truth);
-        writeTumTrajectory((dir / "trajectory.txt").string(), report.trajectory);
-        writeTumTrajectory((dir / "trajectory_live.txt").string(), odometry.liveTrajectory());
-        writeTumTrajectory((dir / "keyframes.txt").string(), keyframePoses(report));
-        const fs::path robot_file = dir / "trajectory_robot.txt";
+        writeTumTrajectory(files.path("trajectory.txt"), report.trajectory);
+        writeTumTrajectory(files.path("trajectory_live.txt"), odometry.liveTrajectory());
+        writeTumTrajectory(files.path("keyframes.txt"), keyframePoses(report));
         if (report.mounted)
-            writeTumTrajectory(robot_file.string(),
+            writeTumTrajectory(files.path("trajectory_robot.txt"),
                                robotTrajectory(report.trajectory, report.camera_on_robot));
-        else
-            fs::remove(robot_file);  // of an earlier run into this folder
-        writeMap(dir, report, odometry, std::move(content), alignedReference(report, ground_truth.poses));
+        writeMap(files, report, odometry, std::move(content), alignedReference(report, ground_truth.poses));
     }
-    saveConfigFile((dir / "config_used.ini").string(), odometry.options());
-    writeTextAtomically((dir / "frames.csv").string(), framesCsv(report));
+    saveConfigFile(files.path("config_used.ini"), odometry.options());
+    writeTextAtomically(files.path("frames.csv"), framesCsv(report));
     report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    writeTextAtomically((dir / "summary.json").string(), summaryJson(report));
+    writeTextAtomically(files.path("summary.json"), summaryJson(report));
+    files.commit();
     if (!failure.empty())
-        throw std::runtime_error(settings.input + ": " + failure + " (see " + (dir / "frames.csv").string() +
-                                 ")");
+        throw std::runtime_error(settings.input + ": " + failure + " (see " +
+                                 (fs::path(settings.output_dir) / "frames.csv").string() + ")");
     return report;
 }
 

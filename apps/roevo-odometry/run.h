@@ -16,8 +16,9 @@ struct RunSettings {
     bool quiet = false;
 };
 
-/// Runs the odometry over the input and writes every file of the contract into output_dir.
-/// @throws std::runtime_error in one line; when no frame could be tracked, after frames.csv and summary.json
+/// Runs the odometry over the input and writes every file of the contract into output_dir, all of them
+/// together, at its end. @throws std::runtime_error in one line; when no frame could be tracked, after
+/// frames.csv, config_used.ini and summary.json, which says so
 RunReport runOdometry(const RunSettings& settings);
 
 }  // namespace roevo

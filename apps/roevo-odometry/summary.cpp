@@ -156,6 +156,7 @@ std::string summaryJson(const RunReport& report) {
     mrpt.erase(0, mrpt.find_first_of("0123456789"));
     json["versions"] = {{"roevo", versionText()}, {"mrpt", mrpt}, {"opencv", CV_VERSION}, {"eigen", eigen}};
     json["input"] = {{"path", report.input}, {"kind", report.kind}, {"warning", report.warning}};
+    json["failure"] = report.failure();
     json["mode"] = toString(report.mode);
     json["camera"] = cameraJson(report);
     json["frames"] = framesJson(report);

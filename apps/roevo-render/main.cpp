@@ -2,12 +2,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "evaluation/trajectory_io.h"
 #include "offscreen.h"
 #include "programs/atomic_file.h"
 #include "programs/program.h"
+#include "roevo_mrpt/image_conversions.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "scene_content.h"
 
@@ -69,7 +69,7 @@ int run(int argc, char** argv) {
                           : fixedView(view_name, content, static_cast<double>(width) / height);
     preparePoints(*scene, kSuperSampling * std::max(1.f, static_cast<float>(height) / kPointSizeHeight));
     const cv::Mat picture = renderOffscreen(*scene, view, width, height);
-    writeAtomically(output, [&](const std::string& path) { cv::imwrite(path, picture); });
+    writeAtomically(output, [&](const std::string& path) { writeImageFile(path, picture); });
     std::printf("%s: %d x %d pixels, view %s, layer %s, %zu points\n", output.c_str(), width, height,
                 view_name.c_str(), layer.c_str(), content.cloud.size());
     return 0;

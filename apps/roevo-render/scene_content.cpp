@@ -11,11 +11,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <stdexcept>
 
+#include "input/regular_file.h"
 #include "roevo_mrpt/scene_builder.h"
 
 namespace roevo {
@@ -82,8 +82,7 @@ void brighten(float minimum, float& r, float& g, float& b) {
 }  // namespace
 
 COpenGLScene::Ptr loadScene(const std::string& path) {
-    if (std::error_code e; std::filesystem::is_directory(path, e))
-        throw std::runtime_error("cannot read " + path + ": it is a directory; give a .3Dscene file");
+    requireRegularInput(path);
     errno = 0;
     if (!std::ifstream(path)) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
     auto scene = COpenGLScene::Create();

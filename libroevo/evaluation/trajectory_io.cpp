@@ -7,11 +7,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string_view>
 
+#include "input/excerpt.h"
+#include "input/regular_file.h"
 #include "programs/atomic_file.h"
 #include "programs/byte_order_mark.h"
 
@@ -37,8 +38,8 @@ std::array<double, kNumColumns> parseLine(std::string_view text, const std::stri
             double& value = values[count];
             const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
             if (error != std::errc() || rest != word.data() + word.size())
-                fail(path, line, "'" + std::string(word) + "' is not a number");
-            if (!std::isfinite(value)) fail(path, line, "'" + std::string(word) + "' is not finite");
+                fail(path, line, "'" + excerpt(word) + "' is not a number");
+            if (!std::isfinite(value)) fail(path, line, "'" + excerpt(word) + "' is not finite");
         }
         ++count;
         begin = text.find_first_not_of(kBlank, end);
@@ -70,9 +71,7 @@ bool sameTime(const StampedPose& a, const StampedPose& b) {
 }  // namespace
 
 std::vector<StampedPose> readTumTrajectory(const std::string& path) {
-    std::error_code unreadable;
-    if (std::filesystem::is_directory(path, unreadable))
-        throw std::runtime_error("cannot read " + path + ": it is a directory; give a trajectory file");
+    requireRegularInput(path);
     errno = 0;
     std::ifstream in(path);
     if (!in) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno ? errno : ENOENT));

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "input/regular_file.h"
+
 namespace roevo {
 namespace {
 
@@ -41,8 +43,7 @@ std::string temporaryName(const std::string& path) {
 }  // namespace
 
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), temporary_path_(temporaryName(path_)) {
-    std::error_code unreadable;
-    if (fs::is_directory(path_, unreadable)) fail(path_, "it is a directory; give a file name");
+    requireReplaceable(path_);
     slot_ = registerFile(temporary_path_.c_str());
 }
 

@@ -7,9 +7,11 @@ namespace roevo {
 
 /// An output file that appears under its name only when whole. It is written beside the target under a
 /// temporary name (same extension, so that writers that go by the extension work) and renamed by commit();
-/// without commit(), or when the program is interrupted, the temporary file is removed.
+/// without commit(), or when the program is interrupted, the temporary file is removed. What is there and no
+/// regular file (a folder, a device, a pipe) is refused.
 class AtomicFile {
   public:
+    /// @throws std::runtime_error when there is something else than a regular file under that name
     explicit AtomicFile(std::string path);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;

@@ -6,13 +6,19 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <new>
+#include <system_error>
 
+#include "input/excerpt.h"
 #include "programs/atomic_file.h"
 
 namespace roevo {
 namespace {
 
 constexpr int kFailure = 1, kWrongUsage = 2;
+constexpr std::size_t kLongestMessage = 1500;  // characters; a path alone may have some hundreds
+
+const char* program_name = "";  // for terminate()
 
 void onSignal(int signal) {
     removeTemporaryFiles();
@@ -25,6 +31,20 @@ int fail(const char* name, const std::string& message, int code) {
     return code;
 }
 
+// Of what nobody can catch: in a thread, or on the way out of something else.
+[[noreturn]] void onTerminate() {
+    removeTemporaryFiles();
+    try {
+        if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
+        fail(program_name, "ended by a fault of this program", kFailure);
+    } catch (const std::exception& e) {
+        fail(program_name, describe(e), kFailure);
+    } catch (...) {
+        fail(program_name, "ended by a fault of this program", kFailure);
+    }
+    _exit(kFailure);
+}
+
 }  // namespace
 
 int runProgram(const char* name, const std::function<int()>& body) {
@@ -33,16 +53,17 @@ int runProgram(const char* name, const std::function<int()>& body) {
     std::signal(SIGINT, onSignal);
     std::signal(SIGTERM, onSignal);
     if (std::signal(SIGHUP, onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit fails instead, and is reported
+    program_name = name;
+    std::set_terminate(onTerminate);
     try {
         return body();
     } catch (const UsageError& e) {
         return fail(name, std::string(e.what()) + " (see " + name + " --help)", kWrongUsage);
     } catch (const CLI::Error& e) {
         return fail(name, e.what(), kWrongUsage);
-    } catch (const std::bad_alloc&) {
-        return fail(name, "out of memory", kFailure);
     } catch (const std::exception& e) {
-        return fail(name, e.what(), kFailure);
+        return fail(name, describe(e), kFailure);
     }
 }
 
@@ -67,11 +88,31 @@ const char* versionText() {
     return ROEVO_VERSION;
 }
 
+void printWarning(const char* name, const std::string& text) {
+    std::fprintf(stderr, "%s: warning: %s\n", name, firstLine(text).c_str());
+}
+
 std::string firstLine(const std::string& message) {
     const std::size_t begin = message.find_first_not_of(" \n\r\t");
     if (begin == std::string::npos) return "unknown error";
     const std::size_t end = message.find_first_of("\r\n", begin);
-    return message.substr(begin, end == std::string::npos ? end : end - begin);
+    return excerpt(message.substr(begin, end == std::string::npos ? end : end - begin), kLongestMessage);
+}
+
+bool isOutOfMemory(const std::exception& fault) {
+    if (dynamic_cast<const std::bad_alloc*>(&fault)) return true;
+    // OpenCV's own type, which not every program knows; MRPT may have wrapped it
+    return std::string(fault.what()).find("Insufficient memory") != std::string::npos;
+}
+
+std::string describe(const std::exception& fault) {
+    if (isOutOfMemory(fault))
+        return "out of memory: close other programs, raise the limit (ulimit -v) or give smaller images";
+    // Mostly a thread that has no room for its stack
+    if (const auto* system = dynamic_cast<const std::system_error*>(&fault))
+        if (system->code() == std::errc::resource_unavailable_try_again)
+            return "cannot start a thread: a limit on memory or processes (ulimit -v, -u) is in the way";
+    return firstLine(fault.what());
 }
 
 }  // namespace roevo

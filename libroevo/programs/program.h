@@ -1,4 +1,5 @@
 #pragma once
+#include <exception>
 #include <functional>
 #include <optional>
 #include <stdexcept>
@@ -17,6 +18,8 @@ struct UsageError : std::runtime_error {
 
 /// Runs a program's body and turns what it throws into one line on stderr, `name: error: ...`.
 /// @return the body's exit code; 1 on an exception; 2 on wrong usage (UsageError or a CLI11 error)
+/// What cannot be caught ends the program with such a line, too. A limit on file sizes makes writing fail
+/// instead of ending the program.
 int runProgram(const char* name, const std::function<int()>& body);
 
 /// Adds --version and parses. Use as `if (auto code = parseCommandLine(app, argc, argv)) return *code;`
@@ -27,7 +30,17 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* 
 /// Version of this software, e.g. "0.1.0".
 const char* versionText();
 
-/// First meaningful line of an exception's text: MRPT's carry the source position and a call stack.
+/// `name: warning: …` on stderr, in one line.
+void printWarning(const char* name, const std::string& text);
+
+/// First meaningful line of an exception's text (MRPT's carry the source position and a call stack), fit for
+/// a terminal: printable, and not of hundreds of pages.
 std::string firstLine(const std::string& message);
+
+/// Whether it says that memory has run out, which is no fault of the input that was at hand.
+bool isOutOfMemory(const std::exception& fault);
+
+/// What it says, in one line for the user.
+std::string describe(const std::exception& fault);
 
 }  // namespace roevo

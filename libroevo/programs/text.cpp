@@ -5,28 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "input/excerpt.h"
+
 namespace roevo {
 namespace {
-
-// Length of the valid UTF-8 sequence that starts there; 0 when there is none (RFC 3629).
-std::size_t sequenceLength(const std::string& text, std::size_t i) {
-    const auto byte = [&](std::size_t k) {
-        return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u;
-    };
-    const unsigned lead = byte(i), next = byte(i + 1);
-    const std::size_t length = lead < 0x80                    ? 1
-                               : lead >= 0xC2 && lead <= 0xDF ? 2
-                               : lead >= 0xE0 && lead <= 0xEF ? 3
-                               : lead >= 0xF0 && lead <= 0xF4 ? 4
-                                                              : 0;
-    for (std::size_t k = 1; k < length; ++k)
-        if ((byte(i + k) & 0xC0) != 0x80) return 0;
-    const bool overlong = (lead == 0xE0 && next < 0xA0) || (lead == 0xF0 && next < 0x90);
-    const bool surrogate = lead == 0xED && next > 0x9F;
-    const bool noncharacter = lead == 0xEF && next == 0xBF && byte(i + 2) >= 0xBE;
-    const bool too_large = lead == 0xF4 && next > 0x8F;
-    return overlong || surrogate || noncharacter || too_large ? 0 : length;
-}
 
 std::string escape(const std::string& text, const std::string& special, const char* before) {
     std::string escaped;
@@ -42,12 +24,10 @@ std::string escape(const std::string& text, const std::string& special, const ch
 std::string cleanText(const std::string& text) {
     std::string clean;
     for (std::size_t i = 0; i < text.size();) {
-        const std::size_t length = sequenceLength(text, i);
-        const auto byte = static_cast<unsigned char>(text[i]);
-        const bool c1_control = byte == 0xC2 && length == 2 && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+        const std::size_t length = utf8Length(text, i);
         if (length == 0)
             clean += "\xEF\xBF\xBD";
-        else if (byte < 0x20 || byte == 0x7F || c1_control)
+        else if (isControl(text, i))
             clean += ' ';
         else
             clean.append(text, i, length);

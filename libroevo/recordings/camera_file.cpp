@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "input/regular_file.h"
 #include "programs/byte_order_mark.h"
 #include "recordings/text_list.h"
 
@@ -23,6 +24,7 @@ struct Value {
 };
 
 std::map<std::string, Value> readKeyValues(const std::string& file) {
+    requireRegularInput(file);
     errno = 0;
     std::ifstream in(file);
     if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno ? errno : ENOENT));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evaluation/trajectory_io.h"
+#include "input/excerpt.h"
 #include "programs/program.h"
 #include "recordings/dataset_reader.h"
 #include "recordings/depth_scale.h"
@@ -29,6 +30,7 @@ void decodeInto(SourceFrame& frame, const Decode& decode) {
         frame.frame = decode();
         frame.fault.clear();
     } catch (const std::exception& e) {
+        if (isOutOfMemory(e)) throw;  // no fault of the frame
         frame.frame = RgbdFrame();
         frame.fault = firstLine(e.what());
     }
@@ -84,8 +86,6 @@ class RawlogSource : public FrameSource {
     bool next(SourceFrame& frame) override {
         if (!scan_) return false;
         frame.timestamp = fromMrptTime(scan_->timestamp);
-        frame.mounted = isMountedOnRobot(*scan_);
-        frame.camera_on_robot = cameraOnRobot(*scan_);
         decodeInto(frame, [&] {
             RgbdFrame decoded = toRgbdFrame(*scan_);
             if (colourCameraOf(*scan_) != camera_)
@@ -93,6 +93,9 @@ class RawlogSource : public FrameSource {
                     "the camera is not the one of the first frame (size or intrinsics changed)");
             return decoded;
         });
+        frame.mounted = frame.fault.empty() && isMountedOnRobot(*scan_);
+        frame.camera_on_robot.reset();
+        if (frame.fault.empty()) frame.camera_on_robot = cameraOnRobot(*scan_);
         const auto start = std::chrono::steady_clock::now();
         scan_ = reader_.next();  // reading from the file belongs to decoding, too
         frame.ms_decode +=
@@ -109,7 +112,7 @@ class RawlogSource : public FrameSource {
     const PinholeCamera& camera() const override { return camera_; }
     std::string kind() const override { return "rawlog"; }
     std::string cameraSource() const override {
-        return "the rawlog's observations, sensor '" + reader_.report().label + "'";
+        return "the rawlog's observations, sensor '" + excerpt(reader_.report().label) + "'";
     }
     GroundTruth groundTruth() const override {
         fs::path beside = path_;

@@ -49,7 +49,8 @@ void readAssociations(const std::string& folder_name, const std::string& file_na
         if (line.words.size() != 4)
             throw std::runtime_error(where + ": expected 'timestamp image timestamp depth_image'");
         DatasetEntry entry{parseNumber(line.words[0], where), parseNumber(line.words[2], where),
-                           (folder / line.words[1]).string(), (folder / line.words[3]).string()};
+                           (folder / parseFileName(line.words[1], where)).string(),
+                           (folder / parseFileName(line.words[3], where)).string()};
         if (line.words[1].find("depth") != std::string::npos &&
             line.words[3].find("depth") == std::string::npos) {
             std::swap(entry.timestamp, entry.depth_timestamp);

@@ -4,19 +4,18 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
+#include "input/excerpt.h"
+#include "input/regular_file.h"
 #include "programs/byte_order_mark.h"
 
 namespace roevo {
 
 std::vector<TextLine> readTextLines(const std::string& file) {
-    std::error_code unknown;
-    if (std::filesystem::is_directory(file, unknown))
-        throw std::runtime_error("cannot read " + file + ": it is a folder");
+    requireRegularInput(file);
     errno = 0;
     std::ifstream in(file);
     if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno ? errno : ENOENT));
@@ -35,6 +34,7 @@ std::vector<TextLine> readTextLines(const std::string& file) {
 }
 
 std::string readHeaderComments(const std::string& file) {
+    if (!otherThanFile(file).empty()) return "";
     std::ifstream in(file);
     skipByteOrderMark(in);
     std::string comments;
@@ -43,12 +43,19 @@ std::string readHeaderComments(const std::string& file) {
     return comments;
 }
 
+const std::string& parseFileName(const std::string& word, const std::string& where) {
+    constexpr std::size_t kLongest = 1024;  // bytes; Linux takes 4095 of a whole path
+    if (word.size() > kLongest || excerpt(word, kLongest) != word)
+        throw std::runtime_error(where + ": '" + excerpt(word) + "' cannot be a file name");
+    return word;
+}
+
 double parseNumber(const std::string& word, const std::string& where) {
     double value = 0;
     const char* end = word.data() + word.size();
     const auto [stop, error] = std::from_chars(word.data(), end, value);
     if (error != std::errc() || stop != end || !std::isfinite(value))
-        throw std::runtime_error(where + ": '" + word + "' is not a number");
+        throw std::runtime_error(where + ": '" + excerpt(word) + "' is not a number");
     return value;
 }
 
@@ -57,7 +64,7 @@ std::vector<ListEntry> readStampedList(const std::string& file, AssociationRepor
     for (const TextLine& line : readTextLines(file)) {
         const std::string where = file + ":" + std::to_string(line.number);
         if (line.words.size() < 2) throw std::runtime_error(where + ": expected 'timestamp filename'");
-        entries.push_back({parseNumber(line.words[0], where), line.words[1]});
+        entries.push_back({parseNumber(line.words[0], where), parseFileName(line.words[1], where)});
     }
     sortByTime(entries, report);
     return entries;

@@ -25,6 +25,10 @@ std::string readHeaderComments(const std::string& file);
 /// A finite number that fills the whole word. @throws std::runtime_error naming `where`.
 double parseNumber(const std::string& word, const std::string& where);
 
+/// The word, when it can be a file's name: printable, and no longer than names are.
+/// @throws std::runtime_error naming `where`.
+const std::string& parseFileName(const std::string& word, const std::string& where);
+
 struct ListEntry {
     double timestamp = 0;  ///< s
     std::string file;      ///< as written

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "input/excerpt.h"
+
 namespace roevo {
 namespace {
 
@@ -92,7 +94,7 @@ std::string OptionField::fromText(const std::string& text) const {
         const auto before = *target;
         if (!parseWhole(word, *target)) {
             *target = before;
-            return "option " + name() + ": '" + word + "' is not " + kind;
+            return "option " + name() + ": '" + excerpt(word) + "' is not " + kind;
         }
         std::string fault = check();
         if (!fault.empty()) *target = before;
@@ -102,7 +104,7 @@ std::string OptionField::fromText(const std::string& text) const {
     if (const auto* whole = std::get_if<int*>(&value)) return parseInto(*whole, "a whole number");
     if (const auto* flag = std::get_if<bool*>(&value)) {
         if (word != "true" && word != "false" && word != "1" && word != "0") {
-            return "option " + name() + ": '" + word + "' is neither true nor false";
+            return "option " + name() + ": '" + excerpt(word) + "' is neither true nor false";
         }
         **flag = word == "true" || word == "1";
         return {};
@@ -113,7 +115,7 @@ std::string OptionField::fromText(const std::string& text) const {
         *mode = known;
         return {};
     }
-    return "option " + name() + ": '" + word + "' is not one of ct, tr, ba";
+    return "option " + name() + ": '" + excerpt(word) + "' is not one of ct, tr, ba";
 }
 
 std::string OptionField::check() const {
@@ -258,7 +260,8 @@ std::string setOption(OdometryOptions& options, const std::string& name, const s
     const auto fields = optionFields(options);
     for (const auto& field : fields)
         if (field.name() == name) return field.fromText(text);
-    return "unknown option '" + name + "'; " + closestText(fields, name);
+    const std::string shown = excerpt(name);
+    return "unknown option '" + shown + "'; " + closestText(fields, shown);
 }
 
 std::string checkOptions(const OdometryOptions& options) {

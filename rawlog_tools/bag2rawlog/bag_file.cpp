@@ -11,6 +11,9 @@
 #include <map>
 #include <stdexcept>
 
+#include "input/excerpt.h"
+#include "input/regular_file.h"
+
 namespace fs = std::filesystem;
 
 namespace roevo {
@@ -24,6 +27,8 @@ std::string faultOf(const std::string& path) {
     if (!fs::exists(path)) return path + ": no such file";
     if (fs::is_directory(path))
         return path + (fs::exists(fs::path(path) / "metadata.yaml") ? kRos2 : " is a folder, not a bag");
+    if (const std::string other = otherThanFile(path); !other.empty())
+        return "cannot read " + path + ": " + other;
     std::ifstream in(path, std::ios::binary);
     std::string head(16, '\0');
     if (!in) return path + ": cannot be read (no permission?)";
@@ -37,8 +42,8 @@ std::string faultOf(const std::string& path) {
 }  // namespace
 
 std::string BagTopic::toText() const {
-    return name + " (" + type + (encoding.empty() ? "" : ", " + encoding) + ", " + std::to_string(messages) +
-           (messages == 1 ? " message)" : " messages)");
+    return excerpt(name) + " (" + excerpt(type) + (encoding.empty() ? "" : ", " + excerpt(encoding)) + ", " +
+           std::to_string(messages) + (messages == 1 ? " message)" : " messages)");
 }
 
 BagFile::BagFile(const std::string& path) : path_(path) {

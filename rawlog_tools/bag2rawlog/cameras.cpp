@@ -4,6 +4,7 @@
 #include "bag2rawlog/convert.h"
 #include "bag2rawlog/ros_camera.h"
 #include "bag2rawlog/static_transforms.h"
+#include "input/excerpt.h"
 
 namespace roevo {
 namespace {
@@ -29,8 +30,8 @@ BagCameras readCameras(const BagFile& bag, const BagTopicNames& topics) {
     const bool same_frame = depth.frame_id == colour.frame_id;
     if (topics.depth_info.empty()) {
         if (!same_frame)
-            throw std::runtime_error(bag.path() + ": " + depth.name + " is in frame '" + depth.frame_id +
-                                     "', not in that of " + colour.name +
+            throw std::runtime_error(bag.path() + ": " + depth.name + " is in frame '" +
+                                     excerpt(depth.frame_id) + "', not in that of " + colour.name +
                                      ", and has no camera_info: record it, "
                                      "choose it by --depth-info-topic, or record aligned depth");
         out.depth = out.colour;
@@ -43,7 +44,7 @@ BagCameras readCameras(const BagFile& bag, const BagTopicNames& topics) {
             throw std::runtime_error(bag.path() +
                                      ": depth is not aligned to colour, and /tf_static does not join "
                                      "their frames '" +
-                                     depth.frame_id + "' and '" + colour.frame_id +
+                                     excerpt(depth.frame_id) + "' and '" + excerpt(colour.frame_id) +
                                      "': record /tf_static, or aligned depth");
         out.T_depth_colour = *found;
     }

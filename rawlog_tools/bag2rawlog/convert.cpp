@@ -9,6 +9,7 @@
 
 #include "bag2rawlog/ros_image.h"
 #include "evaluation/association.h"
+#include "input/excerpt.h"
 #include "programs/interrupt.h"
 #include "programs/progress.h"
 #include "roevo_mrpt/rawlog_writer.h"
@@ -137,8 +138,8 @@ BagConversion convertBag(const BagFile& bag, const BagTopicNames& topics, const 
             topic = &topics.depth, number = d.message;
             const auto depth_message = imageOf(depth[d.message]);
             if (depth_message->encoding != encoding)
-                throw std::runtime_error("encoding " + depth_message->encoding + ", where others have " +
-                                         encoding);
+                throw std::runtime_error("encoding " + excerpt(depth_message->encoding) +
+                                         ", where others have " + excerpt(encoding));
             depth_image = depthImageOf(*depth_message, result.too_far);
             checkSize(depth_image, cameras.depth);
         } catch (const std::exception& error) {

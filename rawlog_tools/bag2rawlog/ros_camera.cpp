@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "input/excerpt.h"
+
 namespace roevo {
 namespace {
 
@@ -16,7 +18,7 @@ std::array<double, 5> distortionOf(const sensor_msgs::CameraInfo& message) {
                                                 std::all_of(d.begin() + 5, d.end(), zero));
     if (!known || d.size() > (model == "plumb_bob" ? 5u : d.size()))
         throw std::runtime_error(
-            "lens model '" + model + "' with " + std::to_string(d.size()) +
+            "lens model '" + excerpt(model) + "' with " + std::to_string(d.size()) +
             " coefficients is not supported, only plumb_bob with up to five: undistort the "
             "images first (image_proc), or record the rectified topic");
     std::array<double, 5> out{};

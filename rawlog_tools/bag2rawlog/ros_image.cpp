@@ -5,6 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "input/excerpt.h"
+
 namespace roevo {
 namespace {
 
@@ -23,7 +25,7 @@ cv::Mat viewOf(const sensor_msgs::Image& message, int type) {
         message.data.size() < static_cast<std::size_t>(message.step) * (message.height - 1) + row_bytes)
         throw std::runtime_error("image data of " + std::to_string(message.data.size()) +
                                  " bytes is too short for " + std::to_string(message.width) + "x" +
-                                 std::to_string(message.height) + " " + message.encoding);
+                                 std::to_string(message.height) + " " + excerpt(message.encoding));
     return {static_cast<int>(message.height), static_cast<int>(message.width), type,
             const_cast<std::uint8_t*>(message.data.data()), message.step};
 }
@@ -56,7 +58,7 @@ cv::Mat colourImageOf(const sensor_msgs::Image& message) {
     if (encoding == "rgb8") return converted(viewOf(message, CV_8UC3), cv::COLOR_RGB2BGR);
     if (encoding == "rgba8") return converted(viewOf(message, CV_8UC4), cv::COLOR_RGBA2BGR);
     if (encoding == "bgra8") return converted(viewOf(message, CV_8UC4), cv::COLOR_BGRA2BGR);
-    throw std::runtime_error("encoding " + encoding + " is no 8-bit colour or grey image");
+    throw std::runtime_error("encoding " + excerpt(encoding) + " is no 8-bit colour or grey image");
 }
 
 float depthUnitOf(const std::string& encoding) {
@@ -67,7 +69,7 @@ cv::Mat depthImageOf(const sensor_msgs::Image& message, std::size_t& too_far) {
     if (message.is_bigendian) throw std::runtime_error("big-endian depth is not supported");
     if (message.encoding == "16UC1" || message.encoding == "mono16") return viewOf(message, CV_16UC1).clone();
     if (message.encoding != "32FC1")
-        throw std::runtime_error("encoding " + message.encoding + " is no depth image");
+        throw std::runtime_error("encoding " + excerpt(message.encoding) + " is no depth image");
 
     const cv::Mat metres = viewOf(message, CV_32FC1);
     cv::Mat depth(metres.size(), CV_16UC1);

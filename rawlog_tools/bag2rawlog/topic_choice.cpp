@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "bag2rawlog/ros_image.h"
+#include "input/excerpt.h"
 
 namespace roevo {
 namespace {
@@ -57,7 +58,8 @@ std::string only(const BagFile& bag, const Topics& candidates, const std::string
 
 void checkEncoding(const BagTopic& topic, bool usable, const char* what) {
     if (!usable)
-        throw std::runtime_error(topic.name + " has encoding " + topic.encoding + ", which is no " + what);
+        throw std::runtime_error(topic.name + " has encoding " + excerpt(topic.encoding) + ", which is no " +
+                                 what);
 }
 
 std::string chooseColour(const BagFile& bag) {

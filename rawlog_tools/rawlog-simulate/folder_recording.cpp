@@ -4,6 +4,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "roevo_mrpt/image_conversions.h"
+
 namespace roevo {
 
 namespace fs = std::filesystem;
@@ -49,8 +51,7 @@ void FolderRecording::writeText(const std::string& name, const std::string& text
 }
 
 void FolderRecording::writePng(const std::string& name, const cv::Mat& image) const {
-    if (!cv::imwrite((partial_ / name).string(), image, {cv::IMWRITE_PNG_COMPRESSION, 1}))
-        throw std::runtime_error((partial_ / name).string() + ": cannot be written; is the disk full?");
+    writeImageFile((partial_ / name).string(), image, {cv::IMWRITE_PNG_COMPRESSION, 1});
 }
 
 }  // namespace roevo

@@ -52,7 +52,7 @@ int run(int argc, char** argv) {
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
 
     const ExportResult result = exportRawlog(input, sensor_label, output);
-    if (!result.warning.empty()) std::fprintf(stderr, "%s: warning: %s\n", kName, result.warning.c_str());
+    if (!result.warning.empty()) printWarning(kName, result.warning);
     print(result, output);
     return 0;
 }

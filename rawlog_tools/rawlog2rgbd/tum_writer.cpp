@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 #include "programs/text.h"
 #include "recordings/camera_file.h"
 #include "recordings/depth_times.h"
 #include "roevo_mrpt/file_copy.h"
+#include "roevo_mrpt/image_conversions.h"
 
 namespace fs = std::filesystem;
 
@@ -61,11 +61,11 @@ void TumWriter::add(double timestamp, std::optional<double> depth_timestamp, con
     const Row row{timestamp, depth_timestamp, "rgb/" + stampText(timestamp) + ending, depth_name + ".png"};
     const fs::path image_target = temporary_ / row.image, depth_target = temporary_ / row.depth;
     if (image_file.empty()) {
-        if (!cv::imwrite(image_target.string(), image)) failToWrite(image_target);
+        writeImageFile(image_target.string(), image);
     } else {
         linkOrCopyFile(image_file, image_target.string());
     }
-    if (!cv::imwrite(depth_target.string(), depth_u16)) failToWrite(depth_target);
+    writeImageFile(depth_target.string(), depth_u16);
     rows_.push_back(row);
 }
 

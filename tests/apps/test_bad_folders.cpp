@@ -1,6 +1,7 @@
 // Dataset folders with something wrong in them: what cannot be used is said, and the rest goes on.
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "evaluation/trajectory_io.h"
 #include "odometry_fixture.h"
@@ -85,6 +86,28 @@ TEST_F(BadFolder, NothingThatCanBeTracked) {
     expectError(runFrames(frames), 1, kName, {"none of the 8 frames could be tracked", "frames.csv"});
     EXPECT_EQ(rows().size(), kFrames) << "frames.csv is there to look into";
     EXPECT_FALSE(fs::exists(output() + "/trajectory.txt"));
+    const std::string failure = summary()["failure"];
+    EXPECT_NE(failure.find("none of the 8 frames could be tracked"), std::string::npos) << failure;
+}
+
+TEST_F(BadFolder, AFailedRunLeavesNoResultsOfAnEarlierOneBesideItsReport) {
+    ASSERT_EQ(runFrames(slidingRecording(3)).exit_code, 0);
+    EXPECT_EQ(summary()["failure"], "");
+    EXPECT_TRUE(fs::exists(output() + "/map.3Dscene"));
+    test::writeFile(output() + "/notes.txt", "the user's own\n");
+    auto frames = slidingRecording(3);
+    for (auto& frame : frames) frame.colour.setTo(0);
+    EXPECT_EQ(runFrames(frames).exit_code, 1);
+    std::set<std::string> left;
+    for (const auto& entry : fs::directory_iterator(output())) left.insert(entry.path().filename().string());
+    EXPECT_EQ(left, (std::set<std::string>{"config_used.ini", "frames.csv", "summary.json", "notes.txt"}));
+}
+
+TEST_F(BadFolder, ResultsThatCannotAllBeWrittenAreNotWrittenAtAll) {
+    test::writeTumFolder(folder_ / "recording", slidingRecording(3));
+    fs::create_directories(output() + "/map.ply");
+    expectError(run(folder_ / "recording"), 1, kName, {"map.ply", "it is a folder"});
+    EXPECT_EQ(std::distance(fs::directory_iterator(output()), {}), 1) << "the folder that was in the way";
 }
 
 TEST_F(BadFolder, UnreadablePngInTheMiddle) {

@@ -56,7 +56,7 @@ TEST(EvalProgram, FailuresAreOneLine) {
         return test::runProgram(kName, arguments);
     };
     expectError(with(folder / "none.txt"), 1, kName, {"none.txt", "No such file"});
-    expectError(with(folder.path().string()), 1, kName, {"directory"});
+    expectError(with(folder.path().string()), 1, kName, {"it is a folder"});
     expectError(with(folder / "bad.txt"), 1, kName, {"bad.txt:2:", "found 3"});
     expectError(with(folder / "two.txt"), 1, kName, {"only 2 poses"});
     expectError(with(folder / "r.txt", {"--max-dt", "-1"}), 2, kName, {"--max-dt"});

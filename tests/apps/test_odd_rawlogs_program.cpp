@@ -1,9 +1,13 @@
 // roevo-odometry on rawlogs of robots: where the camera sits, several cameras, images that are gone.
 #include <mrpt/io/CFileGZOutputStream.h>
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <iterator>
 
 #include "evaluation/trajectory_io.h"
 #include "mrpt/synthetic_scan.h"
@@ -61,6 +65,113 @@ TEST_F(OddRawlogProgram, TheRobotsTrajectoryIsWrittenWhenTheCameraIsMountedOnOne
     for (auto& each : scans) each->sensorPose = mrpt::poses::CPose3D();
     ASSERT_EQ(run(write(scans), {"--mode", "tr"}).exit_code, 0);
     EXPECT_FALSE(fs::exists(output() + "/trajectory_robot.txt"));
+}
+
+/// Ways for a sensor pose to be no rigid pose, each applied to a whole one.
+const std::pair<const char*, void (*)(mrpt::poses::CPose3D&)> kBrokenPoses[] = {
+    {"infinitely far", [](mrpt::poses::CPose3D& pose) { pose.x(INFINITY); }},
+    {"not a number", [](mrpt::poses::CPose3D& pose) { pose.z(NAN); }},
+    {"beyond the sun", [](mrpt::poses::CPose3D& pose) { pose.y(1e38); }},
+    {"no rotation", [](mrpt::poses::CPose3D& pose) { pose.setRotationMatrix({}); }},
+    {"a mirror",
+     [](mrpt::poses::CPose3D& pose) {
+         auto rotation = pose.getRotationMatrix();
+         for (int row = 0; row < 3; row++) rotation(row, 1) *= -1;
+         pose.setRotationMatrix(rotation);
+     }},
+    {"rotation of large numbers", [](mrpt::poses::CPose3D& pose) {
+         auto rotation = pose.getRotationMatrix();
+         rotation(1, 1) = 1.3e300;
+         pose.setRotationMatrix(rotation);
+     }}};
+
+TEST_F(OddRawlogProgram, SensorPosesThatAreNotRigidCostTheirFrame) {
+    // Every second frame is spoiled, the first of all too: poses of the sensor, then of its colour camera
+    constexpr std::size_t kWays = std::size(kBrokenPoses), kFrames = 4 * kWays;
+    const auto isOfColour = [](std::size_t frame) { return frame >= kFrames / 2; };
+    std::vector<mrpt::obs::CObservation3DRangeScan::Ptr> scans;
+    for (const auto& frame : slidingRecording(kFrames)) {
+        const std::size_t i = scans.size();
+        scans.push_back(scan(frame));
+        scans.back()->sensorPose = mrpt::poses::CPose3D(0.5, 0, 1, 0.3, 0, 0);
+        if (i % 2 == 0)
+            kBrokenPoses[i / 2 % kWays].second(isOfColour(i) ? scans.back()->relativePoseIntensityWRTDepth
+                                                             : scans.back()->sensorPose);
+    }
+    const auto result = run(write(scans), {"--mode", "tr"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    ASSERT_EQ(rows().size(), kFrames);
+    for (std::size_t i = 0; i < kFrames; i++) {
+        SCOPED_TRACE(kBrokenPoses[i / 2 % kWays].first);
+        EXPECT_EQ(status(i), i % 2 == 0 ? "rejected"
+                             : i == 1   ? "initialised"
+                                        : "ok")
+            << i << ' ' << reason(i);
+        if (i % 2 == 1) continue;
+        EXPECT_NE(reason(i).find(isOfColour(i) ? "pose of the colour camera is not rigid"
+                                               : "sensor pose is not rigid"),
+                  std::string::npos)
+            << reason(i);
+    }
+    EXPECT_EQ(readTumTrajectory(output() + "/trajectory_robot.txt").size(), kFrames / 2);
+}
+
+TEST_F(OddRawlogProgram, NoSensorPoseIsRigid) {
+    auto only = scan(slidingRecording(1).front());
+    only->sensorPose.x(INFINITY);
+    const std::string rawlog = write({only, only});
+    expectError(run(rawlog), 1, kName, {"r.rawlog", "none of the 2 frames", "sensor pose", "not rigid"});
+    expectError(test::runProgram("rawlog2rgbd", {"--input", rawlog, "--output", folder_ / "back"}), 1,
+                "rawlog2rgbd", {"r.rawlog", "none of its 2 frames", "sensor pose", "not rigid"});
+}
+
+TEST_F(OddRawlogProgram, ARangeImageThatPromisesMoreThanFits) {
+    const auto frames = slidingRecording(4);
+    const std::vector<std::uint32_t> sizes[] = {{1057954685, 382}, {65535, 65535}};  // 808 GB, 8.6 GB
+    for (const auto& size : sizes)
+        for (const std::size_t bad : {0u, 2u}) {
+            std::string bytes;
+            for (std::size_t i = 0; i < frames.size(); i++) {
+                mrpt::io::CMemoryStream memory;
+                auto archive = mrpt::serialization::archiveFrom(memory);
+                archive << *scan(frames[i]);
+                std::string object(static_cast<const char*>(memory.getRawBufferData()),
+                                   memory.getTotalBytesCount());
+                const std::uint32_t true_size[] = {240, 320};
+                const std::size_t at =
+                    object.find(std::string(reinterpret_cast<const char*>(true_size), sizeof true_size));
+                ASSERT_NE(at, std::string::npos);
+                if (i == bad) std::memcpy(&object[at], size.data(), sizeof true_size);
+                bytes += object;
+            }
+            test::writeFile(folder_ / "r.rawlog", bytes);
+            const auto result = run(folder_ / "r.rawlog", {"--mode", "tr"});
+            if (bad == 0) {
+                expectError(result, 1, kName, {"r.rawlog", "not a rawlog"});
+                continue;
+            }
+            EXPECT_EQ(result.exit_code, 0) << result.all();
+            EXPECT_NE(result.err.find("warning"), std::string::npos) << result.all();
+            EXPECT_NE(result.err.find("entry 3"), std::string::npos) << result.all();
+            EXPECT_EQ(rows().size(), 2u);
+        }
+}
+
+TEST_F(OddRawlogProgram, NamesThatCannotBeShown) {
+    std::vector<mrpt::obs::CObservation3DRangeScan::Ptr> scans;
+    for (const auto& frame : slidingRecording(2)) {
+        scans.push_back(scan(frame, std::string(50000, 'x')));
+        scans.push_back(scan(frame, "\x1b[2J\xff"));
+        scans.back()->intensityImage.setExternalStorage(std::string(50000, 'y') + "\x1b[2J");
+    }
+    const std::string rawlog = write(scans);
+    auto result = run(rawlog);
+    expectError(result, 1, kName, {"2 ?[2J?", "xx…", "--sensor-label"});
+    EXPECT_LT(result.err.size(), 1000u);
+    result = run(rawlog, {"--sensor-label", "\x1b[2J\xff"});
+    expectError(result, 1, kName, {"none of the 2 frames", "yyy"});
+    EXPECT_LT(result.err.size(), 3000u);
+    EXPECT_EQ(result.err.find("\x1b"), std::string::npos);
 }
 
 TEST_F(OddRawlogProgram, SeveralCamerasAreListed) {

@@ -86,6 +86,21 @@ inline ProgramResult runProgram(const std::string& name, const std::vector<std::
     return result;
 }
 
+/// The same, but ended with exit code 124 when it takes longer than some seconds: for what might hang.
+inline ProgramResult runForSeconds(int seconds, const std::string& name, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {std::to_string(seconds), std::string(ROEVO_BIN_DIR) + "/" + name});
+    return runProgram("/usr/bin/timeout", arguments);
+}
+
+/// The same with one of the shell's limits in force, e.g. "-f 64" (kB that a file may have).
+inline ProgramResult runLimited(const std::string& limit, const std::string& name,
+                                std::vector<std::string> arguments) {
+    const std::string program = std::string(ROEVO_BIN_DIR) + "/" + name;
+    arguments.insert(arguments.begin(),
+                     {"-c", "ulimit -c 0; ulimit " + limit + "; exec \"$0\" \"$@\"", program});
+    return runProgram("/bin/bash", arguments);
+}
+
 /// The program failed as programs of ours should: with this exit code and one line, `name: error: …`, that
 /// has all the given words in it.
 inline void expectError(const ProgramResult& result, int exit_code, const std::string& name,

@@ -1,5 +1,6 @@
 // bag2rawlog: bags that cannot be converted, or not whole.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tools/bag_fixture.h"
 
@@ -22,6 +23,12 @@ TEST_F(Bag2RawlogErrors, WrongUsage) {
 
 TEST_F(Bag2RawlogErrors, NoSuchFile) {
     expectRefusal({"recording.bag", "no such file"});
+}
+
+TEST_F(Bag2RawlogErrors, APipeIsNotWaitedFor) {
+    ASSERT_EQ(mkfifo(bagPath().c_str(), 0600), 0);
+    expectError(runForSeconds(10, kName, {"--input", bagPath(), "--list"}), 1, kName,
+                {"recording.bag", "it is a pipe"});
 }
 
 TEST_F(Bag2RawlogErrors, LeavesNothingInTheHomeDirectory) {

@@ -159,7 +159,8 @@ TEST(Rgbd2rawlogOptions, PathsWithSpacesAndLetters) {
 TEST(Rgbd2rawlogOptions, BadOutputsAndInputs) {
     const SmallTumFolder input;
     fs::create_directory(input / "dir.rawlog");
-    expectError(convert(input.path(), input / "dir.rawlog"), 1, "rgbd2rawlog", {"dir.rawlog", "directory"});
+    expectError(convert(input.path(), input / "dir.rawlog"), 1, "rgbd2rawlog",
+                {"dir.rawlog", "it is a folder"});
     expectError(convert(input / "rgb.txt", input / "o.rawlog"), 1, "rgbd2rawlog",
                 {"rgb.txt", "not a folder"});
     expectError(convert(input.path(), "/sys/o.rawlog"), 1, "rgbd2rawlog", {"/sys/o"});  // not even root may

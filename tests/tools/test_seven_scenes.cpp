@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <opencv2/core.hpp>
@@ -130,6 +131,17 @@ TEST(SevenScenes, PosesThatAreNoneAreLeftOut) {
     EXPECT_CONTAINS(dataset.groundTruth().note, "expected a 4x4 matrix, found 12 numbers");
     folder.write(SmallDataset::pose(1), "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
     EXPECT_CONTAINS(openDataset(folder.path()).groundTruth().note, "is not a rotation and a translation");
+}
+
+TEST(SevenScenes, APoseThatIsAPipeIsNotWaitedFor) {
+    const SmallDataset folder("7scenes", 3);
+    folder.remove(SmallDataset::pose(1));
+    ASSERT_EQ(mkfifo((folder / SmallDataset::pose(1)).c_str(), 0600), 0);
+    const auto result =
+        test::runForSeconds(10, "rgbd2rawlog", {"--input", folder.path(), "--output", folder / "o.rawlog"});
+    EXPECT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_CONTAINS(result.out, "1 left out, first: cannot read " + (folder / SmallDataset::pose(1)));
+    EXPECT_CONTAINS(result.out, "it is a pipe");
 }
 
 TEST(SevenScenes, NoPosesAtAll) {

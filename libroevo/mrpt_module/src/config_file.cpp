@@ -4,6 +4,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "input/excerpt.h"
+#include "input/regular_file.h"
 #include "whole_file.h"
 
 namespace roevo {
@@ -52,7 +54,7 @@ void loadConfigText(const std::string& text, const std::string& name, OdometryOp
         }
         const auto equals = content.find('=');
         if (equals == std::string::npos)
-            throw std::runtime_error(where + "expected 'key = value', found '" + content + "'");
+            throw std::runtime_error(where + "expected 'key = value', found '" + excerpt(content) + "'");
         const std::string key = trimmed(content.substr(0, equals)),
                           value = trimmed(content.substr(equals + 1));
         const std::string fault = setOption(changed, section.empty() ? key : section + "." + key, value);
@@ -64,6 +66,7 @@ void loadConfigText(const std::string& text, const std::string& name, OdometryOp
 }
 
 void loadConfigFile(const std::string& file, OdometryOptions& options) {
+    requireRegularInput(file);
     std::ifstream in(file);
     std::ostringstream text;
     if (!in || !(text << in.rdbuf())) throw std::runtime_error("cannot read config file " + file);

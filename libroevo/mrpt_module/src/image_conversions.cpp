@@ -1,22 +1,33 @@
 #include "roevo_mrpt/image_conversions.h"
 
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <new>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "checked_memory.h"
 #include "image_file.h"
 
 namespace roevo {
 namespace {
 
+// For the first image OpenCV starts all its decoders, of which GDAL ends the program when it finds no room.
+constexpr std::size_t kRoomToDecode = std::size_t{64} << 20;  // bytes
+
 cv::Mat decode(const std::string& file, int flags) {
     const std::vector<std::uint8_t> bytes = readImageFile(file);
     if (const std::string damage = imageDamage(bytes); !damage.empty())
         throw std::runtime_error("cannot decode image (" + damage + "): " + file);
+    requireRoom(kRoomToDecode);
     cv::Mat image;
     try {
         image = cv::imdecode(bytes, flags);
-    } catch (const cv::Exception&) {
+    } catch (const cv::Exception& e) {
+        if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();  // nothing is known of the image then
         image.release();
     }
     if (image.empty()) throw std::runtime_error("cannot decode image (damaged or not an image): " + file);
@@ -36,6 +47,19 @@ cv::Mat readDepthFile(const std::string& file) {
                                  std::to_string(8 * depth.elemSize1()) + " bits and " +
                                  std::to_string(depth.channels()) + " channel(s): " + file);
     return depth;
+}
+
+void writeImageFile(const std::string& file, const cv::Mat& image, const std::vector<int>& parameters) {
+    std::vector<std::uint8_t> bytes;
+    if (!cv::imencode(std::filesystem::path(file).extension().string(), image, bytes, parameters))
+        throw std::runtime_error("cannot write " + file + ": the image cannot be encoded");
+    errno = 0;
+    std::ofstream out(file, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out)
+        throw std::runtime_error("cannot write " + file + ": " +
+                                 (errno ? std::strerror(errno) : "disk full?"));
 }
 
 float depthUnit(double units_per_metre) {

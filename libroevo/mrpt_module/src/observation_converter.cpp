@@ -4,6 +4,8 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <Eigen/LU>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <opencv2/imgproc.hpp>
@@ -66,6 +68,24 @@ cv::Mat depthOf(const CObservation3DRangeScan& scan, const PinholeCamera& depth_
     return depth;
 }
 
+/// A damaged rawlog may hold any bytes in place of a pose. @throws std::runtime_error
+void checkRigid(const mrpt::poses::CPose3D& pose, const char* name) {
+    constexpr double kFarthest = 1e8;    // m; coordinates of a national grid are within
+    constexpr double kTolerance = 1e-4;  // of each element; old recordings have rotations in single precision
+    Eigen::Matrix3d R;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) R(r, c) = pose.getRotationMatrix()(r, c);
+    // Not "any is larger": nothing is larger than what is not a number
+    const bool near =
+        std::abs(pose.x()) < kFarthest && std::abs(pose.y()) < kFarthest && std::abs(pose.z()) < kFarthest;
+    const bool rotation =
+        ((R * R.transpose() - Eigen::Matrix3d::Identity()).array().abs() < kTolerance).all() &&
+        R.determinant() > 0;
+    if (!near || !rotation)
+        throw std::runtime_error(std::string("the observation's ") + name +
+                                 " is not rigid (a rotation and a translation): damaged recording");
+}
+
 bool camerasCoincide(const CObservation3DRangeScan& scan, const PinholeCamera& depth_camera,
                      const PinholeCamera& colour_camera) {
     return depth_camera == colour_camera && scan.doDepthAndIntensityCamerasCoincide();
@@ -119,6 +139,9 @@ std::vector<StampedPose> robotTrajectory(const std::vector<StampedPose>& camera_
 RgbdFrame toRgbdFrame(const CObservation3DRangeScan& scan) {
     const PinholeCamera colour_camera = colourCameraOf(scan);
     const PinholeCamera depth_camera = depthCameraOf(scan);
+
+    checkRigid(scan.sensorPose, "sensor pose");
+    checkRigid(scan.relativePoseIntensityWRTDepth, "pose of the colour camera");
 
     RgbdFrame frame;
     frame.timestamp = fromMrptTime(scan.timestamp);

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "input/regular_file.h"
+
 namespace roevo {
 namespace {
 
@@ -18,6 +20,7 @@ Outcome readBinary(const std::string& file, mrpt::obs::CObservation3DRangeScan& 
     constexpr std::uint32_t kLargest = 1 << 14;  // pixels
     mrpt::io::CFileGZInputStream stream;
     std::array<std::uint32_t, 2> size{};
+    if (!otherThanFile(file).empty()) return Outcome::kDamaged;
     if (!stream.open(file) || stream.Read(size.data(), sizeof size) != sizeof size) return Outcome::kDamaged;
     const auto [rows, cols] = size;
     if (rows == 0 || cols == 0 || rows > kLargest || cols > kLargest) return Outcome::kOtherFormat;
@@ -37,7 +40,8 @@ void loadRangeFile(mrpt::obs::CObservation3DRangeScan& scan, const std::string& 
     Outcome outcome = Outcome::kOtherFormat;
     try {
         const std::string file = scan.rangeImage_getExternalStorageFileAbsolutePath("");
-        if (std::filesystem::path(file).extension() != ".txt") outcome = readBinary(file, scan);
+        if (std::filesystem::path(file).extension() != ".txt" || !otherThanFile(file).empty())
+            outcome = readBinary(file, scan);
         if (outcome == Outcome::kOtherFormat) {
             scan.hasPoints3D = false;  // load() would want their file, too
             scan.points3D_overrideExternalStoredFlag(false);

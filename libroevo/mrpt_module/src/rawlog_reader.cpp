@@ -12,9 +12,13 @@
 #include <deque>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
+#include "checked_memory.h"
+#include "input/excerpt.h"
+#include "input/regular_file.h"
 #include "range_file.h"
 #include "roevo_mrpt/rawlog_writer.h"
 
@@ -79,7 +83,8 @@ double statedSize(const std::string& file) {
 std::string listCounts(const std::map<std::string, std::size_t>& counts) {
     std::string text;
     for (const auto& [name, count] : counts)
-        text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + (name.empty() ? kNoName : name);
+        text += (text.empty() ? "" : ", ") + std::to_string(count) + " " +
+                (name.empty() ? kNoName : excerpt(name));
     return text.empty() ? "nothing" : text;
 }
 
@@ -98,8 +103,8 @@ void append(std::string& text, const std::string& more) {
 std::string RawlogReport::warning() const {
     std::string text = fault;
     if (labels.size() > 1 && !label_chosen)
-        append(text, "several sensors have range images (" + listCounts(labels) + "), using '" + label +
-                         "' (choose with --sensor-label)");
+        append(text, "several sensors have range images (" + listCounts(labels) + "), using '" +
+                         excerpt(label) + "' (choose with --sensor-label)");
     if (const std::size_t left_out = sumOf(points_only); left_out > 0)
         append(text, std::to_string(left_out) + " scan(s) with 3D points but no range image left out (" +
                          listCounts(points_only) + ")");
@@ -132,6 +137,8 @@ struct RawlogReader::Impl {
         mrpt::serialization::CSerializable::Ptr object;
         try {
             object = mrpt::serialization::archiveFrom(stream).ReadObject();
+        } catch (const std::bad_alloc&) {
+            throw;  // there may be nothing wrong with the file
         } catch (const std::exception&) {
             noteEnd(stream.bytes - start);
             return false;
@@ -221,7 +228,7 @@ struct RawlogReader::Impl {
     [[noreturn]] void throwNothingFound() const {
         const std::string note = report.fault.empty() ? "" : " (" + report.fault + ")";
         if (!report.labels.empty())
-            throw std::runtime_error(path + ": no range images of sensor '" + report.label +
+            throw std::runtime_error(path + ": no range images of sensor '" + excerpt(report.label) +
                                      "'; sensors with range images: " + listCounts(report.labels) + note);
         if (!report.points_only.empty())
             throw std::runtime_error(
@@ -235,11 +242,12 @@ struct RawlogReader::Impl {
 
 RawlogReader::RawlogReader(const std::string& path, const std::string& sensor_label)
     : impl_(std::make_unique<Impl>()) {
+    useCheckedMrptMemory();
     std::error_code error;
     if (!fs::exists(path, error))
         throw std::runtime_error(error ? "cannot read " + path + ": " + error.message()
                                        : "rawlog not found: " + path);
-    if (fs::is_directory(path)) throw std::runtime_error("not a rawlog but a folder: " + path);
+    requireRegularInput(path);
     if (!impl_->stream.file.open(path)) throw std::runtime_error("cannot read " + path);
     impl_->path = path;
     impl_->compressed_size = static_cast<double>(fs::file_size(path));

@@ -1,9 +1,7 @@
 #include "roevo_mrpt/rawlog_writer.h"
 
-#include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationIMU.h>
-#include <mrpt/serialization/CArchive.h>
 
 #include <array>
 #include <cctype>
@@ -11,12 +9,14 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "gz_file.h"
+#include "input/regular_file.h"
 #include "roevo_mrpt/camera_conversions.h"
 #include "roevo_mrpt/file_copy.h"
+#include "roevo_mrpt/image_conversions.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/time_conversions.h"
 
@@ -24,31 +24,6 @@ namespace fs = std::filesystem;
 
 namespace roevo {
 namespace {
-
-/// Counts what goes into the compressor: a gz stream closes without a word when the disk is full.
-class CountingStream {
-  public:
-    mrpt::io::CFileGZOutputStream file;
-    std::uint64_t bytes = 0;
-
-    size_t Write(const void* data, size_t count) {
-        const size_t written = file.Write(data, count);
-        bytes += written;
-        return written;
-    }
-    size_t Read(void*, size_t) { throw std::logic_error("output stream"); }
-    std::string getStreamDescription() const { return file.getStreamDescription(); }
-};
-
-/// The length of the uncompressed data (modulo 2^32) as the trailer of a gz file states it.
-std::uint32_t gzTrailerLength(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::array<unsigned char, 4> b{};
-    in.seekg(-4, std::ios::end);
-    in.read(reinterpret_cast<char*>(b.data()), 4);
-    if (!in) return 0;
-    return static_cast<std::uint32_t>(b[0] | b[1] << 8 | b[2] << 16) | static_cast<std::uint32_t>(b[3]) << 24;
-}
 
 std::string fileNamePart(std::string label) {
     for (char& c : label)
@@ -64,11 +39,11 @@ struct RawlogWriter::Impl {
     PinholeCamera camera;
     RawlogWriterOptions options;
     mrpt::img::TCamera mrpt_camera;
-    CountingStream stream;
+    GzFile stream;
     bool closed = false, finished = false;
 
     void removeTemporaries() {
-        stream.file.close();
+        if (!closed) stream.close();
         std::error_code ignored;
         fs::remove_all(temporary, ignored);
     }
@@ -133,11 +108,8 @@ struct RawlogWriter::Impl {
     }
 
     void append(const mrpt::serialization::CSerializable& object) {
-        try {
-            mrpt::serialization::archiveFrom(stream) << object;
-        } catch (const std::exception&) {
+        if (!stream.write(object))
             throw std::runtime_error("cannot write " + temporary_path.string() + ": disk full?");
-        }
     }
 
     void checkDepth(const cv::Mat& depth_u16) const {
@@ -176,7 +148,7 @@ RawlogWriter::RawlogWriter(const std::string& path, const PinholeCamera& camera,
     m.options = options;
     m.mrpt_camera = toMrptCamera(camera, options.sensor_label);
 
-    if (fs::is_directory(m.path)) throw std::runtime_error("cannot write " + path + ": it is a directory");
+    requireReplaceable(m.path);
     if (fs::exists(m.images) && !fs::exists(m.path))
         throw std::runtime_error(m.images.string() +
                                  " exists, but its rawlog does not: move it away or choose another output");
@@ -185,7 +157,7 @@ RawlogWriter::RawlogWriter(const std::string& path, const PinholeCamera& camera,
     fs::create_directory(m.temporary, error);
     if (!error) fs::create_directory(m.temporary_images, error);
     if (error) throw std::runtime_error("cannot create " + m.temporary.string() + ": " + error.message());
-    if (!m.stream.file.open(m.temporary_path.string(), options.gz_level)) {
+    if (!m.stream.open(m.temporary_path, options.gz_level)) {
         fs::remove_all(m.temporary, error);
         throw std::runtime_error("cannot write " + m.temporary_path.string());
     }
@@ -206,8 +178,7 @@ void RawlogWriter::add(double timestamp, const cv::Mat& depth_u16, const cv::Mat
     const std::string file = (m.temporary_images / name).string();
     const std::vector<int> parameters =
         quality > 0 ? std::vector<int>{cv::IMWRITE_JPEG_QUALITY, quality} : std::vector<int>{};
-    if (!cv::imwrite(file, colour_or_grey, parameters))
-        throw std::runtime_error("cannot write " + file + ": disk full?");
+    writeImageFile(file, colour_or_grey, parameters);
     m.write(timestamp, depth_u16, name);
 }
 
@@ -243,10 +214,8 @@ std::string RawlogWriter::temporaryPath() const {
 void RawlogWriter::close() {
     Impl& m = *impl_;
     if (m.closed) return;
-    m.stream.file.close();
     m.closed = true;
-    if (m.options.gz_level > 0 &&
-        gzTrailerLength(m.temporary_path) != static_cast<std::uint32_t>(m.stream.bytes))
+    if (!m.stream.close())
         throw std::runtime_error("cannot write " + m.temporary_path.string() + ": disk full?");
 }
 

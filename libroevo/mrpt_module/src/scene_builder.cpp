@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "edge_layers.h"
+#include "gz_file.h"
 #include "tubes.h"
 #include "whole_file.h"
 
@@ -140,7 +141,11 @@ compat::Scene::Ptr buildScene(const SceneContent& content) {
 }
 
 void saveScene(const std::string& file, const compat::Scene& scene) {
-    writeWholeFile(file, [&](const std::string& temporary) { return scene.saveToFile(temporary); });
+    writeWholeFile(file, [&](const std::string& temporary) {
+        constexpr int kLevel = 1;  // as scene.saveToFile(), which does not see that a disk is full
+        GzFile out;
+        return out.open(temporary, kLevel) && out.write(scene) && out.close();
+    });
 }
 
 }  // namespace roevo

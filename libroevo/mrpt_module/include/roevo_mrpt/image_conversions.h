@@ -4,6 +4,7 @@
 
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <vector>
 
 namespace roevo {
 
@@ -15,6 +16,11 @@ cv::Mat readColourFile(const std::string& file);
 /// @throws std::runtime_error naming the file when it is missing, cannot be decoded or is not 16-bit with one
 /// channel.
 cv::Mat readDepthFile(const std::string& file);
+
+/// Writes an image in the format of the file's ending. @param parameters  as cv::imwrite() has them
+/// @throws std::runtime_error naming the file when not all of it could be written: cv::imwrite() does not
+/// tell.
+void writeImageFile(const std::string& file, const cv::Mat& image, const std::vector<int>& parameters = {});
 
 /// Metres per unit for a depth image of `units_per_metre`, as the float that every reader multiplies with.
 float depthUnit(double units_per_metre);

@@ -27,7 +27,7 @@ Pose colourFromDepthAsStored(const Pose& T_depth_colour);
 /// when both cameras coincide), ranges along the ray turned into depth, 8-bit grey. External images are
 /// decoded here and not kept by the scan.
 /// @throws std::runtime_error in one line: no depth, no image, a missing or damaged file (named), no
-/// intrinsics, sizes that do not fit the intrinsics.
+/// intrinsics, sizes that do not fit the intrinsics, a pose of sensor or colour camera that is not rigid.
 RgbdFrame toRgbdFrame(const mrpt::obs::CObservation3DRangeScan& scan);
 
 /// Whether toRgbdFrame() takes the depth as stored: both cameras coincide, and it is no range along the ray.
