@@ -18,6 +18,8 @@ std::size_t numbersOf(Fault::Kind kind) {
         case Kind::kColourSize:
         case Kind::kDepthSize:
             return 4;
+        case Kind::kUnconfirmed:
+            return 1;
         case Kind::kFewPointsWithDepth:
         case Kind::kFewPointsInView:
         case Kind::kFewInliers:
