@@ -178,6 +178,15 @@ void LocalMapper::setRowMotion(int keyframe, const RowMotion& rows) {
     roevo::setRowMotion(at->second, rows, camera_);
 }
 
+void LocalMapper::join(int begin, const Pose& motion) {
+    for (auto it = keyframes_.lower_bound(begin); it != keyframes_.end(); ++it)
+        it->second.T_world_camera = motion * it->second.T_world_camera;
+    keyframes_.at(begin).begins_track = false;
+    track_begin_ = 0;
+    for (const auto& [id, keyframe] : keyframes_)
+        if (keyframe.begins_track) track_begin_ = id;
+}
+
 MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     const int id = inserted.id;
     if (const auto parent = keyframes_.find(inserted.parent); parent != keyframes_.end()) {

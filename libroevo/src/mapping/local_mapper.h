@@ -31,6 +31,9 @@ class LocalMapper {
 
     MapUpdate insert(MapKeyframe keyframe);
 
+    /// Moves all keyframes from `begin` on, a track of their own until now, into the world of those before.
+    void join(int begin, const Pose& motion);
+
     /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
     void setFound(int keyframe, std::vector<float> shares);
 

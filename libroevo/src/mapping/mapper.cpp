@@ -31,6 +31,12 @@ class CollectingMapper : public Mapper {
             map_.push_back(std::move(edge));
         }
     }
+    void join(int begin, const Pose& motion) override {
+        const Eigen::Isometry3f T = motion.cast<float>();
+        for (MapEdge& edge : map_)
+            if (edge.keyframe_id >= begin)
+                for (Eigen::Vector3f& point : edge.points) point = T * point;
+    }
     std::vector<MapUpdate> due(double, double&) override { return {}; }
     const std::deque<MapUpdate>& outstanding() override { return none_; }
     EdgeMap fusedMap() const override { return map_; }
@@ -57,13 +63,17 @@ class RefiningMapper : public Mapper {
     }
 
     void insert(NewKeyframe fresh, double timestamp) override;
+    void join(int begin, const Pose& motion) override;
     std::vector<MapUpdate> due(double timestamp, double& waited_ms) override;
     const std::deque<MapUpdate>& outstanding() override;
     EdgeMap fusedMap() const override { return finished().fusedMap(); }
     EdgeMap keyframeEdges() const override { return finished().keyframeEdges(); }
 
   private:
+    /// A keyframe to be inserted, or a track to be joined.
     struct Job {
+        int begin = -1;  ///< of the track
+        Pose motion;
         MapKeyframe keyframe;
         int previous = -1;
         std::vector<float> found;  ///< MapKeyframe::found of `previous`
@@ -71,6 +81,7 @@ class RefiningMapper : public Mapper {
         double seconds_per_row = 0;
     };
     void work();
+    void push(Job job);
     MapUpdate run(Job job);
     MapUpdate take();
     bool ready() const;
@@ -105,10 +116,21 @@ void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
         job.previous_rows = fresh.previous->row_motion;
     }
     job.seconds_per_row = fresh.seconds_per_row;
+    due_.push_back(timestamp + (options_.latency - 0.5) / kFrameRate);
+    push(std::move(job));
+}
+
+void RefiningMapper::join(int begin, const Pose& motion) {
+    Job job;
+    job.begin = begin;
+    job.motion = motion;
+    push(std::move(job));
+}
+
+void RefiningMapper::push(Job job) {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [&] { return jobs_.size() < kMostWaiting; });
     jobs_.push_back(std::move(job));
-    due_.push_back(timestamp + (options_.latency - 0.5) / kFrameRate);
     changed_.notify_all();
 }
 
@@ -154,17 +176,21 @@ void RefiningMapper::work() {
         jobs_.pop_front();
         busy_ = true;
         lock.unlock();
+        const bool joins = job.begin >= 0;
         MapUpdate update;
         std::exception_ptr thrown;
         try {
-            update = run(std::move(job));
+            if (joins)
+                mapper_.join(job.begin, job.motion);
+            else
+                update = run(std::move(job));
         } catch (...) {
             thrown = std::current_exception();
         }
         lock.lock();
         busy_ = false;
         if (thrown) failure_ = thrown;
-        updates_.push_back(std::move(update));
+        if (!joins || thrown) updates_.push_back(std::move(update));
         changed_.notify_all();
     }
 }

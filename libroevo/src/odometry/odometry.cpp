@@ -57,13 +57,15 @@ struct Odometry::Impl {
     double last_timestamp = -std::numeric_limits<double>::infinity();
     std::int32_t next_cluster = 0;
     int lost_frames = 0;
-    double lost_since = 0;  // s
+    double lost_since = 0, lost_for = 0;  // s
 
     FrameResult processFrame(const RgbdFrame& images);
     FrameResult applyMapUpdates();
     Outcome start();
+    Tracking confirmed(Tracking tracking, const Prediction& prediction);
     Outcome findAgain(Tracking failed, double since_measured);
-    Outcome bridge(Tracking failed);
+    Outcome bridge(Tracking failed, double since_measured);
+    void join(Outcome& outcome);
     Outcome renewReference(Tracking tracking);
     void learn(const Tracking& tracking, const RollingShutter& shutter);
     void settle(const Outcome& outcome, const PoseUncertainty& measured);
@@ -90,9 +92,7 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     const Prediction prediction = motion.predict(images.timestamp);
     Tracking tracking = tracker->track(*reference, *frame, prediction);  // Sec. V
     if (tracking.lost()) tracking = tracker->search(*reference, *frame, prediction, std::move(tracking));
-    if (tracking.tracked && prediction.blind &&
-        !relocaliser.confirms(*reference, *frame, tracking.pose.T_keyframe_camera))
-        tracking.reject({Fault::Kind::kUnconfirmed, {static_cast<int>(1e3 * prediction.since_measured)}});
+    if (tracking.tracked && prediction.blind) tracking = confirmed(std::move(tracking), prediction);
     if (tracking.lost())
         return report(std::move(result), findAgain(std::move(tracking), prediction.since_measured));
 
@@ -105,6 +105,7 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     else
         outcome.tracking = std::move(tracking);
     settle(outcome, measured);
+    if (outcome.is_keyframe) join(outcome);
     result = report(std::move(result), outcome);
     if (!outcome.is_keyframe) candidate = std::move(outcome.tracking);
     return result;
@@ -142,18 +143,45 @@ Outcome Odometry::Impl::start() {
     return outcome;
 }
 
+/// A track that was begun after a loss is moved to where one of its keyframes is recognised.
+void Odometry::Impl::join(Outcome& outcome) {
+    const int begin = trajectory.beginOfTrack(reference->id);
+    if (begin == 0) return;
+    const Whereabouts near{trajectory.keyframePose(reference->id).translation(),
+                           kReach + kTopSpeed * lost_for};
+    const auto pose = relocaliser.find(*frame, trajectory, near, begin);
+    if (!pose) return;
+    mapper->join(begin, trajectory.join(begin, reference->id, *pose));
+    outcome.joined_at = pose->keyframe;
+    lost_for = 0;
+}
+
+/// After a gap in time any pose may look right to tracking: the edges must agree without what is likely.
+Tracking Odometry::Impl::confirmed(Tracking tracking, const Prediction& prediction) {
+    const int gap_ms = static_cast<int>(1e3 * prediction.since_measured);
+    const auto pose = relocaliser.confirm(*reference, *frame, tracking.pose.T_keyframe_camera);
+    if (!pose) {
+        tracking.reject({Fault::Kind::kUnconfirmed, {gap_ms}});
+        return tracking;
+    }
+    Tracking again = tracker->trackFrom(*reference, *frame, prediction, *pose);
+    again.searched = true;
+    if (again.tracked) again.fault = tracking.fault ? tracking.fault : Fault{Fault::Kind::kGap, {gap_ms}};
+    return again;
+}
+
 /// Where tracking lost the camera, a keyframe that it has seen before may tell where it is.
 Outcome Odometry::Impl::findAgain(Tracking failed, double since_measured) {
     const RelativePose last{reference->id, motion.lastPose(), {}};
     const Whereabouts near{trajectory.worldPose(last).translation(), kReach + kTopSpeed * since_measured};
-    const auto pose = relocaliser.find(*frame, trajectory, near);
-    if (!pose) return bridge(std::move(failed));
+    const auto pose = relocaliser.find(*frame, trajectory, near, reference->id + 1);
+    if (!pose) return bridge(std::move(failed), since_measured);
     Outcome outcome;
     outcome.tracking = failed;
     outcome.tracking.pose = *pose;
     outcome.tracking.matches = {};  // with another keyframe
     outcome.tracking.rows = motion.stillRows();
-    if (promote(*frame, outcome.tracking)) return bridge(std::move(failed));
+    if (promote(*frame, outcome.tracking)) return bridge(std::move(failed), since_measured);
     motion.anchor(frame->timestamp(), Pose::Identity());
     lost_frames = 0;
     outcome.tracking.pose = {reference->id, Pose::Identity(), {}};
@@ -162,7 +190,7 @@ Outcome Odometry::Impl::findAgain(Tracking failed, double since_measured) {
     return outcome;
 }
 
-Outcome Odometry::Impl::bridge(Tracking failed) {
+Outcome Odometry::Impl::bridge(Tracking failed, double since_measured) {
     Outcome outcome;
     outcome.lost_frames = ++lost_frames;
     candidate.reset();
@@ -179,6 +207,7 @@ Outcome Odometry::Impl::bridge(Tracking failed) {
     if (!bridging && !beginTrack(trajectory.worldPose(pose), trajectory.worldCovariance(pose))) {
         outcome.status = FrameStatus::kInitialised;
         outcome.new_keyframe = true;
+        lost_for += since_measured;
         lost_frames = 0;
         pose = {reference->id, Pose::Identity(), {}};
     }

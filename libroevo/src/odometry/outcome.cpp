@@ -21,6 +21,9 @@ std::string describe(const Outcome& outcome) {
         text = "found again at keyframe " + std::to_string(outcome.found_at) + ": " + why;
     else if (outcome.tracking.searched)
         text = "found by searching around the last pose: " + why;
+    if (outcome.joined_at >= 0)
+        text += std::string(text.empty() ? "" : "; ") +
+                "the new track is joined to the old one at keyframe " + std::to_string(outcome.joined_at);
     if (!outcome.no_keyframe) return text;
     return text + (text.empty() ? "" : "; ") + "a new keyframe is due, but " + describe(outcome.no_keyframe);
 }

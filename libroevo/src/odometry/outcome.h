@@ -13,6 +13,7 @@ struct Outcome {
     bool new_keyframe = false;  ///< this frame brought a new keyframe: itself or the frame before it
     int lost_frames = 0;        ///< until this one
     int found_at = -1;          ///< keyframe that a lost frame was recognised by
+    int joined_at = -1;         ///< keyframe of an older track that this one was joined at
 };
 
 /// The reason of a frame's status in words: the one place where they are made.

@@ -74,21 +74,27 @@ EdgePoints3D Relocaliser::lifted(const Frame& frame) const {
     return liftEdges(frame.edges, frame.images.depth, camera_, RowMotion(), options_.edges, options_.sensor);
 }
 
-bool Relocaliser::confirms(const Keyframe& keyframe, const Frame& frame, const Pose& T_keyframe_camera) {
+std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& frame,
+                                         const Pose& T_keyframe_camera) {
     const EdgePoints3D edges = lifted(frame);
-    return edges.size() > 0 &&
-           registrar_.registerEdges(keyframe, frame, edges, T_keyframe_camera.inverse()).accepted;
+    if (edges.size() == 0) return std::nullopt;
+    const EdgeRegistration found =
+        registrar_.registerEdges(keyframe, frame, edges, T_keyframe_camera.inverse());
+    if (!found.accepted) return std::nullopt;
+    return found.T_frame_keyframe.inverse();
 }
 
 std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajectory& trajectory,
-                                              const Whereabouts& whereabouts) {
+                                              const Whereabouts& whereabouts, int end) {
     collect();
     const EdgePoints3D edges = lifted(frame);
     if (edges.size() == 0) return std::nullopt;
     describer_.describe(edges, frame.pyramid.level(0), points_);
     if (points_.size() > kPoints) points_.resize(kPoints);
+    std::vector<int> excluded;
+    for (int id = end; id < static_cast<int>(places_.size()); ++id) excluded.push_back(id);
     std::vector<PlaceCandidate> candidates;
-    index_.query(points_, kCandidates, {}, candidates);
+    index_.query(points_, kCandidates, excluded, candidates);
     std::vector<std::pair<Verification, int>> alike;
     for (const PlaceCandidate& candidate : candidates) {
         const auto& place = places_[static_cast<std::size_t>(candidate.id)];
@@ -105,7 +111,7 @@ std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajecto
         const double confidence = placeConfidence(points, found);
         if (confidence <= 0) continue;
         const RelativePose pose{id, found.T_frame_keyframe.inverse(), {found.covariance, {}}};
-        recognised.push_back({pose, trajectory.worldPose(pose), confidence});
+        recognised.push_back({pose, trajectory.worldPose(pose), confidence, found.accepted});
     }
     return surest(recognised, whereabouts);
 }
@@ -116,7 +122,7 @@ std::optional<RelativePose> Relocaliser::surest(const std::vector<Recognition>& 
         recognised.begin(), recognised.end(),
         [](const Recognition& a, const Recognition& b) { return a.confidence < b.confidence; });
     if (best == recognised.end()) return std::nullopt;
-    if (best->confidence >= kUnambiguousConfidence) return best->pose;
+    if (best->accepted && best->confidence >= kUnambiguousConfidence) return best->pose;
     const auto isRival = [&](const Recognition& other) {
         const Pose apart = best->T_world_camera.inverse() * other.T_world_camera;
         return apart.translation().norm() > kSamePlace || rotationAngle(apart) > kSameDirection;

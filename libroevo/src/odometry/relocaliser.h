@@ -36,11 +36,14 @@ class Relocaliser {
 
     /// The keyframe that the frame shows, and its pose relative to that.
     /// @param trajectory  with the keyframes
+    /// @param end  only keyframes before this one
     [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, const Trajectory& trajectory,
-                                                   const Whereabouts& whereabouts);
+                                                   const Whereabouts& whereabouts, int end);
 
-    /// Whether the edges of keyframe and frame, both ways, and their depths agree on a pose about this one.
-    [[nodiscard]] bool confirms(const Keyframe& keyframe, const Frame& frame, const Pose& T_keyframe_camera);
+    /// The pose about this one that the edges of keyframe and frame, both ways, and their depths agree on, if
+    /// they do.
+    [[nodiscard]] std::optional<Pose> confirm(const Keyframe& keyframe, const Frame& frame,
+                                              const Pose& T_keyframe_camera);
 
   private:
     struct Place {
@@ -53,6 +56,7 @@ class Relocaliser {
         RelativePose pose;
         Pose T_world_camera;
         double confidence = 0;
+        bool accepted = false;
     };
     static std::optional<RelativePose> surest(const std::vector<Recognition>& recognised,
                                               const Whereabouts& whereabouts);

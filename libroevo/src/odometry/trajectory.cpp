@@ -94,9 +94,32 @@ Matrix6d Trajectory::motionCovariance(std::size_t from, std::size_t to) const {
     return changeReference(last, first, -1).covariance();
 }
 
+int Trajectory::beginOfTrack(int keyframe) const {
+    while (links_[static_cast<std::size_t>(keyframe)].keyframe >= 0)
+        keyframe = links_[static_cast<std::size_t>(keyframe)].keyframe;
+    return keyframe;
+}
+
+Pose Trajectory::join(int begin, int recognised, const RelativePose& pose) {
+    const Pose motion = worldPose(pose) * keyframePose(recognised).inverse();
+    const auto first = static_cast<std::size_t>(begin);
+    for (std::size_t id = first; id < keyframes_.size(); ++id)
+        keyframes_[id].T_world_camera = motion * keyframes_[id].T_world_camera;
+    // As well known as what was recognised
+    links_[first] = {
+        pose.keyframe, keyframePose(pose.keyframe).inverse() * keyframePose(begin), {pose.covariance(), {}}};
+    for (std::size_t id = first; id < links_.size(); ++id) in_world_[id] = inWorld(links_[id]).uncertainty;
+    joins_.push_back({begin, static_cast<int>(keyframes_.size()) - 1, motion});
+    return motion;
+}
+
 void Trajectory::apply(const MapUpdate& update) {
-    for (const auto& [id, pose] : update.poses)
-        keyframes_[static_cast<std::size_t>(id)].T_world_camera = pose;
+    for (const auto& [id, pose] : update.poses) {
+        Pose& placed = keyframes_[static_cast<std::size_t>(id)].T_world_camera;
+        placed = pose;
+        for (const Join& join : joins_)
+            if (update.keyframe <= join.last && id >= join.begin) placed = join.motion * placed;
+    }
     for (auto id = static_cast<std::size_t>(update.keyframe) + 1; id < keyframes_.size(); ++id) {
         if (links_[id].keyframe < 0) continue;
         keyframes_[id].T_world_camera = keyframePose(links_[id].keyframe) * links_[id].T_keyframe_camera;

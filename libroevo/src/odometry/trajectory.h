@@ -19,6 +19,13 @@ class Trajectory {
     /// @param measured  else its final pose is interpolated between measured ones, where there are any
     void addFrame(double timestamp, const RelativePose& pose, bool measured = true);
 
+    /// First keyframe of a keyframe's track.
+    int beginOfTrack(int keyframe) const;
+    /// Moves the track that begins with this keyframe to where one of its keyframes was recognised.
+    /// @param pose  of `recognised`, relative to a keyframe of another track
+    /// @return how the world of the track moves
+    Pose join(int begin, int recognised, const RelativePose& pose);
+
     /// Moves the keyframes as the map has it; younger ones follow the one that they were tracked from.
     void apply(const MapUpdate& update);
 
@@ -49,7 +56,14 @@ class Trajectory {
     bool sameTrack(int first_keyframe, int last_keyframe) const;
     Pose finalPose(const Frame& frame) const;
 
+    /// Tracks that were moved: what the map knew of them before is in their old place.
+    struct Join {
+        int begin = 0, last = 0;  ///< keyframes
+        Pose motion;
+    };
+
     std::vector<KeyframeInfo> keyframes_;
+    std::vector<Join> joins_;
     std::vector<PoseUncertainty> in_world_;  ///< of the keyframes; influences of the newest alone
     std::vector<RelativePose> links_;        ///< of the keyframes, to the ones before; -1: to the world
     std::vector<Frame> frames_;

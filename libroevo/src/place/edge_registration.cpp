@@ -19,6 +19,8 @@ constexpr double kOverRelaxation = 1.6;  ///< of the steps once the radius is th
 // What it takes to be accepted
 constexpr int kLeastInliers = 150;
 constexpr double kLeastMatched = 0.4;  ///< of the edges, both ways
+/// Of the edges, both ways, where twenty points agree: no two rooms had more than eleven such points.
+constexpr double kLeastPlausible = 0.25;
 constexpr double kLeastVisible = 0.25;
 constexpr double kLeastDepthAgreement = 0.7;
 constexpr double kMostSigmaTranslation = 0.02;  ///< m
@@ -41,7 +43,7 @@ double worstSigma(const Eigen::Matrix3d& covariance) {
 }  // namespace
 
 double placeConfidence(const Verification& points, const EdgeRegistration& edges) {
-    if (!edges.accepted || points.inliers < kLeastSimilarPoints) return 0;
+    if (!edges.plausible || points.inliers < kLeastSimilarPoints) return 0;
     return (static_cast<double>(points.inliers) / points.matches + edges.keyframe_matched +
             edges.frame_matched) /
            3;
@@ -79,10 +81,12 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     out.inliers = term_.inliers();
     out.keyframe_matched = term_.matches().matchedRatio();
     lookBack(keyframe, frame_edges, out);
-    out.accepted = out.inliers >= kLeastInliers && out.keyframe_matched >= kLeastMatched &&
-                   out.frame_matched >= kLeastMatched && out.visible >= kLeastVisible &&
-                   out.depth_agreement >= kLeastDepthAgreement &&
-                   out.sigma_translation <= kMostSigmaTranslation && out.sigma_rotation <= kMostSigmaRotation;
+    const double matched = std::min(out.keyframe_matched, out.frame_matched);
+    out.plausible = out.inliers >= kLeastInliers && matched >= kLeastPlausible &&
+                    out.visible >= kLeastVisible && out.depth_agreement >= kLeastDepthAgreement &&
+                    out.sigma_translation <= kMostSigmaTranslation &&
+                    out.sigma_rotation <= kMostSigmaRotation;
+    out.accepted = out.plausible && matched >= kLeastMatched;
     return out;
 }
 

@@ -17,15 +17,17 @@ struct EdgeRegistration {
     double depth_agreement = 0;    ///< share of the associated points whose depths agree
     double sigma_translation = 0;  ///< m, in the worst direction
     double sigma_rotation = 0;     ///< rad, about the worst axis
+    bool plausible = false;        ///< the edges do not contradict what points that look alike say
     bool accepted = false;         ///< the edges agree; those of a place that looks alike do, too
 };
 
 /// How sure it is that this is the place, 0 to 1: the mean of the shares of similar points that agree and of
-/// edges found, both ways; 0 where the edges do not agree or few points do.
+/// edges found, both ways; 0 where the edges contradict or few points agree.
 double placeConfidence(const Verification& points, const EdgeRegistration& edges);
 
-/// Confidence from which on no other place looked so much alike (0.63 was the most, in a corridor with equal
-/// doors). Below it, something else must tell: how far the camera may have moved, or a second keyframe.
+/// Confidence from which on no other place looked so much alike where the edges were accepted (0.63 was the
+/// most, in a corridor with equal doors). Below it, something else must tell: how far the camera may have
+/// moved, or a second keyframe.
 inline constexpr double kUnambiguousConfidence = 0.68;
 
 /// Registers a frame to a keyframe that it may never have been tracked against, by their edges only: from a

@@ -26,7 +26,8 @@ struct Fault {
         kFewInliers,  ///< numbers: found, needed
         kFewMatched,  ///< numbers: found, needed, percent of the edges
         kDiverged,
-        kUnconfirmed  ///< after a gap in time; number: its length, ms
+        kGap,         ///< number: how long no pose was measured, ms
+        kUnconfirmed  ///< the same
     };
     Kind kind = Kind::kNone;
     std::array<int, 4> numbers{};
