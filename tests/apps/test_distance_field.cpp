@@ -192,7 +192,7 @@ TEST(DistanceFieldTracker, FindsThePoseFromAnyDirection) {
                 EXPECT_LT(error.translation().norm(), 0.003) << k << ' ' << side;
                 EXPECT_LT(rotationAngle(error), 0.0015) << k << ' ' << side;
                 EXPECT_GT(found.matched_ratio, 0.8);
-                EXPECT_TRUE(found.covariance.allFinite());
+                EXPECT_TRUE(found.uncertainty.covariance().allFinite());
             }
         }
     }

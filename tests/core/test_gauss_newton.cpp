@@ -96,9 +96,9 @@ TEST(PosePrior, PullsOnlyWhereNothingElseDecides) {
 }
 
 TEST(PosePrior, WeighsByItsSigmasAndItsWeight) {
-    PosePrior prior{Pose::Identity(), 0.1, 0.2};
+    PosePrior prior{Pose::Identity(), 0.1, 0.2, 5};
     PoseSystem system;
-    ASSERT_TRUE(PriorTerm(prior, 5).linearise({Pose::Identity(), RowMotion(), 0}, system));
+    ASSERT_TRUE(PriorTerm(prior).linearise({Pose::Identity(), RowMotion(), 0}, system));
     EXPECT_NEAR(system.hessian(0, 0), 500, 1e-9);
     EXPECT_NEAR(system.hessian(5, 5), 125, 1e-9);
     EXPECT_LT(system.gradient.norm(), 1e-12);

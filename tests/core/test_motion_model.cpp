@@ -107,11 +107,11 @@ TEST(MotionModel, NoPriorIsNarrowerThanAMillimetreAndAMilliradian) {
 TEST(MotionModel, ErrorsOfTheMeasuredPosesWidenThePrior) {
     const MotionOptions options;
     constexpr double kStep_s = 0.03, kSigma = 0.01;
-    const Matrix6d covariance = kSigma * kSigma * Matrix6d::Identity();
+    const PoseUncertainty uncertainty{kSigma * kSigma * Matrix6d::Identity(), {}};
     MotionModel model = makeModel();
     model.anchor(0, Pose());
-    model.measure(kStep_s, Pose(), covariance);
-    model.measure(2 * kStep_s, Pose(), covariance);
+    model.measure(kStep_s, Pose(), uncertainty);
+    model.measure(2 * kStep_s, Pose(), uncertainty);
     const double by_motion = options.acceleration * kStep_s * kStep_s;
     // The last pose enters twice: as the start, and in the velocity
     EXPECT_NEAR(model.predict(3 * kStep_s).prior.sigma_translation,

@@ -14,7 +14,7 @@ Pose at(double x) {
 }
 
 RelativePose from(int keyframe, const Pose& T_keyframe_camera) {
-    return {keyframe, T_keyframe_camera, Matrix6d::Zero()};
+    return {keyframe, T_keyframe_camera, {}};
 }
 
 int beginTrack(Trajectory& trajectory, double timestamp, const Pose& pose) {
@@ -27,7 +27,7 @@ Trajectory walk(int count, double length, double correction) {
     Trajectory trajectory;
     beginTrack(trajectory, 0, at(0));
     for (int i = 0; i < count; ++i) trajectory.addFrame(0.1 * i, from(0, at(length * i / (count - 1))));
-    trajectory.addKeyframe(0.1 * (count - 1), from(0, at(length)));
+    trajectory.addKeyframe(0.1 * (count - 1), from(0, at(length)), {});
     MapUpdate update;
     update.keyframe = 1;
     Pose moved = at(length);
@@ -75,7 +75,7 @@ TEST(Trajectory, ACameraThatStandsStillDoesNotJitterByItsCorrection) {
     Trajectory trajectory;
     beginTrack(trajectory, 0, at(0));
     for (int i = 0; i <= 30; ++i) trajectory.addFrame(0.1 * i, from(0, at(i % 2 == 0 ? 0 : 0.0005)));
-    trajectory.addKeyframe(3, from(0, at(0)));
+    trajectory.addKeyframe(3, from(0, at(0)), {});
     MapUpdate update;
     update.keyframe = 1;
     Pose moved = Pose::Identity();
@@ -102,10 +102,10 @@ TEST(Trajectory, PosesAreKeptAsTheyWereKnownAtFirst) {
 TEST(Trajectory, YoungerKeyframesFollowTheOneTheyWereTrackedFrom) {
     Trajectory trajectory;
     beginTrack(trajectory, 0, at(0));
-    EXPECT_EQ(trajectory.addKeyframe(1, from(0, at(1))), 1);
-    EXPECT_EQ(trajectory.addKeyframe(2, from(1, at(1))), 2);
+    EXPECT_EQ(trajectory.addKeyframe(1, from(0, at(1)), {}), 1);
+    EXPECT_EQ(trajectory.addKeyframe(2, from(1, at(1)), {}), 2);
     EXPECT_EQ(beginTrack(trajectory, 3, at(10)), 3);
-    EXPECT_EQ(trajectory.addKeyframe(4, from(3, at(1))), 4);
+    EXPECT_EQ(trajectory.addKeyframe(4, from(3, at(1)), {}), 4);
     MapUpdate update;  // of keyframe 1, late: 2 to 4 are there already
     update.keyframe = 1;
     update.poses.emplace_back(1, at(1.5));

@@ -33,6 +33,7 @@ class FieldTerm : public ResidualTerm {
         system.gradient += own.gradient;
         return static_cast<int>(tracker_.numNear()) >= options_.min_inliers;
     }
+    void addTo(EdgeClusters& clusters) const override { tracker_.addTo(keyframe_, clusters); }
 
   private:
     DistanceFieldTracker& tracker_;
@@ -96,6 +97,7 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
     const auto inverse = static_cast<float>(1 / (scale_ * scale_));
     const auto chi2 = static_cast<float>(options_.chi2);
     rows_.reset(near_.size());
+    double weights = 0, slopes = 0;
     const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
     for (std::size_t k = 0; k < near_.size(); ++k) {
         const std::size_t i = near_[k];
@@ -103,6 +105,8 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
         if (squared > chi2) continue;
         ++inliers_;
         const float w = studentWeight(edges.weight[i] * inverse, squared);
+        weights += static_cast<double>(w);
+        slopes += static_cast<double>(w * studentSlope(squared));
         const float du = gradient_u_[k], dv = gradient_v_[k];
         float matrix[6], vector[3];
         const float x = projected_.x[i], y = projected_.y[i], z = projected_.z[i];
@@ -110,8 +114,15 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
                         matrix, vector);
         rows_.set(k, matrix, vector, x, y, z);
     }
+    slope_ = weights > 0 ? std::max(slopes / weights, kLeastSlope) : 1;
     system.add(rows_.sum());
     return system;
+}
+
+void DistanceFieldTracker::addTo(const Keyframe& keyframe, EdgeClusters& clusters) const {
+    rows_.addTo(clusters, near_.size(), [&](std::size_t k) {
+        return static_cast<std::size_t>(keyframe.edges.image.edge_of[near_[k]]);
+    });
 }
 
 void DistanceFieldTracker::prepare(const Frame& frame) {
@@ -131,7 +142,7 @@ FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const Frame& fr
     PhotometricTerm photometric(photometric_, keyframe.photometric, 0, frame.pyramid.level(0), ideal_,
                                 brightness);
     photometric.balance(photometric_weight_, [this] { return near_.size(); });
-    PriorTerm likely(prior, kCorrelatedPoints);
+    PriorTerm likely(prior);
     std::vector<ResidualTerm*> terms{&field, &likely};
     if (photometric_weight_ > 0 && keyframe.photometric.size() > 0) terms.push_back(&photometric);
     GaussNewtonOptions loop;
@@ -147,7 +158,11 @@ FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const Frame& fr
     result.matched_ratio = visible_ > 0 ? static_cast<double>(near_.size()) / visible_ : 0;
     result.converged = inliers_ >= options_.min_inliers && pose.isFinite();
     result.T_current_keyframe = result.converged ? pose : T_start;
-    if (result.converged) result.covariance = kCorrelatedPoints * found.system.hessian.inverse();
+    if (result.converged) {
+        clusters_.start(keyframe.clusters);
+        for (const ResidualTerm* term : terms) term->addTo(clusters_);
+        result.uncertainty = clusters_.uncertainty(found.system, slope_);
+    }
     times_.registration += millisecondsSince(begin);
     return result;
 }

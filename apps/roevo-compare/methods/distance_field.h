@@ -54,6 +54,8 @@ class DistanceFieldTracker {
                          const Pose& T_current_keyframe, const RowMotion& rows, double radius);
     /// Points that counted in the last linearisation.
     std::size_t numNear() const { return near_.size(); }
+    /// Adds the points of the last linearisation to the edges that they belong to.
+    void addTo(const Keyframe& keyframe, EdgeClusters& clusters) const;
 
     /// Milliseconds since the last call, of building fields and of registering.
     struct Times {
@@ -72,6 +74,8 @@ class DistanceFieldTracker {
     std::vector<std::size_t> near_;  // points that count
     std::vector<float> gradient_u_, gradient_v_, residual_, magnitudes_;
     InformationRows rows_;
+    EdgeClusters clusters_;
+    double slope_ = 1;  ///< see studentSlope()
     double scale_ = 1;
     int visible_ = 0, inliers_ = 0;
     Times times_;
