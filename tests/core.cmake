@@ -9,7 +9,7 @@ roevo_test(test_core_edges
 roevo_test(test_core_tracking
   SOURCES core/test_kernels.cpp core/test_photometric.cpp core/test_fine_jacobians.cpp core/test_gauss_newton.cpp
           core/test_se3.cpp core/test_motion_model.cpp core/test_edge_association.cpp core/test_rolling_shutter.cpp core/test_motion_blur.cpp core/test_edge_points.cpp core/test_options.cpp
-          core/test_relative_pose.cpp core/test_fault.cpp
+          core/test_relative_pose.cpp core/test_edge_clusters.cpp core/test_fault.cpp
   LIBS roevo_internal)
 # Ceres solves the bundle adjustment once more, as an independent oracle.
 find_package(Ceres REQUIRED)
@@ -27,9 +27,9 @@ foreach(suite Trajectory KeyframeChanges FineTracking OdometryAccuracy OdometryS
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
 add_executable(test_core_mapped_runs core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp
-               core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp)
+               core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp core/test_relocalisation.cpp)
 target_link_libraries(test_core_mapped_runs PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout)
+foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout Relocalisation)
   add_test(NAME ${suite} COMMAND test_core_mapped_runs --gtest_filter=*${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tracking/fine_tracker.h"
 #include "tracking/se3.h"
 #include "window_equations.h"
 
@@ -63,8 +62,6 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
         if (equations.numRows() == 0) continue;  // all poses are fixed: only the points are fitted
         Eigen::MatrixXd& hessian = equations.hessian;
         Eigen::VectorXd& gradient = equations.gradient;
-        hessian /= kCorrelatedPoints;
-        gradient /= kCorrelatedPoints;
         for (const RelativePrior& prior : priors) {
             addPrior(prior, window, equations.origin(), equations.row(static_cast<std::size_t>(prior.from)),
                      equations.row(static_cast<std::size_t>(prior.to)), hessian, gradient);

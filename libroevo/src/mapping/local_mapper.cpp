@@ -39,11 +39,10 @@ LocalMapper::LocalMapper(const PinholeCamera& camera, const OdometryOptions& opt
       adjuster_(options.mapping, options.sensor, camera),
       judge_(options.mapping, options.sensor, camera) {}
 
-std::vector<const MapKeyframe*> LocalMapper::recentOf(int id) const {
+std::vector<const MapKeyframe*> LocalMapper::recentOf(const MapKeyframe& newest) const {
     std::vector<const MapKeyframe*> recent;
     for (auto it = keyframes_.rbegin(); it != keyframes_.rend(); ++it) {
-        if (it->first >= id) continue;
-        if (it->first < track_begin_) break;
+        if (it->first >= newest.id || it->second.track != newest.track) continue;
         if (static_cast<int>(recent.size()) >= options_.mapping.window - 1) break;
         recent.push_back(&it->second);
     }
@@ -76,7 +75,10 @@ void LocalMapper::prepare(const std::vector<const MapKeyframe*>& members) {
 
 void LocalMapper::leaveWindow(MapKeyframe& newest) {
     compact(newest);
-    const std::vector<const MapKeyframe*> held = recentOf(newest.id + 1);
+    // What the window of the next one begins with
+    std::vector<const MapKeyframe*> held = recentOf(newest);
+    held.insert(held.begin(), &newest);
+    if (static_cast<int>(held.size()) >= options_.mapping.window) held.pop_back();
     for (auto& [id, keyframe] : keyframes_) {
         if (keyframe.size() == 0 || std::find(held.begin(), held.end(), &keyframe) != held.end()) continue;
         // What was unpacked has not changed since
@@ -94,12 +96,12 @@ std::map<int, MapKeyframe> LocalMapper::unpacked() const {
     return all;
 }
 
-std::vector<const MapKeyframe*> LocalMapper::nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const {
+std::vector<const MapKeyframe*> LocalMapper::nearbyOf(const MapKeyframe& keyframe,
+                                                      const std::vector<const MapKeyframe*>& recent) const {
     std::vector<std::pair<double, const MapKeyframe*>> found;
-    const auto begin = keyframes_.lower_bound(track_begin_);
-    auto last = keyframes_.find(keyframe.id);
-    for (std::size_t i = 0; i < recent && last != begin; ++i) --last;
-    for (auto it = begin; it != last; ++it) {
+    const int end = recent.empty() ? keyframe.id : recent.back()->id;  // the oldest of them
+    for (auto it = keyframes_.begin(); it->first < end; ++it) {
+        if (it->second.track != keyframe.track) continue;
         const Pose T = it->second.T_world_camera.inverse() * keyframe.T_world_camera;
         const double distance = T.translation().norm() / std::max(0.1, keyframe.median_depth);
         const double degrees = rotationAngle(T) / kDegree;
@@ -125,7 +127,7 @@ void LocalMapper::buildWindow(int newest, const std::vector<const MapKeyframe*>&
     std::sort(members.begin(), members.end(),
               [](const MapKeyframe* a, const MapKeyframe* b) { return a->id < b->id; });
     const std::size_t fixed = members.size() + 1;  // and the oldest of the newest
-    const std::vector<const MapKeyframe*> recent = recentOf(newest);
+    const std::vector<const MapKeyframe*> recent = recentOf(keyframes_.at(newest));
     members.insert(members.end(), recent.rbegin(), recent.rend());
     members.push_back(&keyframes_.at(newest));
     for (const MapKeyframe* keyframe : members) {
@@ -159,8 +161,8 @@ void LocalMapper::addPriors() {
             const Eigen::Matrix3d R = window_[to].T_world_camera.linear();
             Matrix6d to_world = Matrix6d::Zero();
             to_world.topLeftCorner<3, 3>() = to_world.bottomRightCorner<3, 3>() = R;
-            prior.information =
-                options_.mapping.prior_weight * to_world * keyframe.parent_information * to_world.transpose();
+            prior.information = options_.mapping.prior_weight * keyframe.design_effect * to_world *
+                                keyframe.parent_information * to_world.transpose();
             priors_.push_back(prior);
         }
     }
@@ -178,28 +180,29 @@ void LocalMapper::setRowMotion(int keyframe, const RowMotion& rows) {
     roevo::setRowMotion(at->second, rows, camera_);
 }
 
-void LocalMapper::join(int begin, const Pose& motion) {
-    for (auto it = keyframes_.lower_bound(begin); it != keyframes_.end(); ++it)
-        it->second.T_world_camera = motion * it->second.T_world_camera;
-    keyframes_.at(begin).begins_track = false;
-    track_begin_ = 0;
-    for (const auto& [id, keyframe] : keyframes_)
-        if (keyframe.begins_track) track_begin_ = id;
+void LocalMapper::join(const TrackJoin& join) {
+    for (const int id : join.keyframes) {
+        MapKeyframe& keyframe = keyframes_.at(id);
+        keyframe.T_world_camera = join.motion * keyframe.T_world_camera;
+        keyframe.track = keyframes_.at(join.into).track;
+    }
 }
 
 MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     const int id = inserted.id;
     if (const auto parent = keyframes_.find(inserted.parent); parent != keyframes_.end()) {
         inserted.T_world_camera = parent->second.T_world_camera * inserted.T_parent_camera;
+        inserted.track = parent->second.track;
+    } else {
+        inserted.track = id;
     }
-    if (inserted.begins_track) track_begin_ = id;
     MapKeyframe& keyframe = keyframes_.emplace(id, std::move(inserted)).first->second;
-    const std::vector<const MapKeyframe*> recent = recentOf(id);
+    const std::vector<const MapKeyframe*> recent = recentOf(keyframe);
     prepare(recent);
     graph_.insert(keyframe, recent, camera_, options_.fine.final_radius);
     std::vector<const MapKeyframe*> reused;
     if (options_.mapping.reuse_keyframes) {
-        reused = nearbyOf(keyframe, recent.size());
+        reused = nearbyOf(keyframe, recent);
         prepare(reused);
         graph_.insert(keyframe, reused, camera_, options_.fine.final_radius);
     }

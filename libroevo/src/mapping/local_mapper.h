@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -23,6 +24,17 @@ struct MapUpdate {
     double milliseconds = 0;  ///< of work on it
 };
 
+/// A track that turned out to be in the same world as another.
+struct TrackJoin {
+    std::vector<int> keyframes;  ///< of the track, in order
+    int into = 0;                ///< a keyframe of the other
+    Pose motion;                 ///< how the track moves
+
+    bool moves(int keyframe) const {
+        return std::binary_search(keyframes.begin(), keyframes.end(), keyframe);
+    }
+};
+
 /// Local mapping: keeps the keyframes, relates the edges of a new one to those of its neighbours, fuses them
 /// and refines the poses of the window. No threads, no clocks: the same keyframes give the same map.
 class LocalMapper {
@@ -31,8 +43,7 @@ class LocalMapper {
 
     MapUpdate insert(MapKeyframe keyframe);
 
-    /// Moves all keyframes from `begin` on, a track of their own until now, into the world of those before.
-    void join(int begin, const Pose& motion);
+    void join(const TrackJoin& join);
 
     /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
     void setFound(int keyframe, std::vector<float> shares);
@@ -51,13 +62,14 @@ class LocalMapper {
     EdgeMap keyframeEdges() const;
 
   private:
-    std::vector<const MapKeyframe*> recentOf(int id) const;
+    std::vector<const MapKeyframe*> recentOf(const MapKeyframe& newest) const;
     void unpack(int id);
     bool bringToReadout(MapKeyframe& keyframe) const;
     void prepare(const std::vector<const MapKeyframe*>& members);
     void leaveWindow(MapKeyframe& newest);
     std::map<int, MapKeyframe> unpacked() const;
-    std::vector<const MapKeyframe*> nearbyOf(const MapKeyframe& keyframe, std::size_t recent) const;
+    std::vector<const MapKeyframe*> nearbyOf(const MapKeyframe& keyframe,
+                                             const std::vector<const MapKeyframe*>& recent) const;
     void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
     void takePoses(MapUpdate& update);
     std::optional<MapRefusal> refusalOf(const WindowKeyframe& view, int inliers) const;
@@ -73,7 +85,6 @@ class LocalMapper {
     std::map<int, MapKeyframe> keyframes_;
     std::map<int, PackedKeyframe> packed_;  ///< the points of those that have left the window once
     double seconds_per_row_ = 0;            ///< see setReadout()
-    int track_begin_ = 0;                   ///< first keyframe of the present track
     std::map<int, std::vector<EdgeVerdict>> verdicts_;  ///< of each keyframe's edges
     std::vector<WindowKeyframe> window_;
     std::vector<RelativePrior> priors_;

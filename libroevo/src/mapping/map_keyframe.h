@@ -15,11 +15,12 @@ struct MapKeyframe {
     Pose T_world_camera = Pose::Identity();
     int parent = -1;  ///< keyframe that it was tracked from, -1: none (the first, or re-anchored)
     Pose T_parent_camera = Pose::Identity();  ///< as tracked
-    /// The first, or re-anchored after a loss: where it is relative to older ones is a guess, so that the map
-    /// relates it and those that follow to none of them.
-    bool begins_track = false;
+    /// First keyframe of its track. Where tracks are relative to each other is a guess, so that the map
+    /// relates no edges of one to those of another.
+    int track = 0;
     Matrix6d parent_information =
         Matrix6d::Zero();       ///< of T_parent_camera: position, then orientation, along the camera's axes
+    double design_effect = 1;   ///< how many points count as one (see PoseUncertainty)
     OrganizedEdges image;       ///< where the points would be seen at the reference row's time, ideal px
     Points3 points;             ///< camera frame, m; padded
     std::vector<float> weight;  ///< w_s(depth), Eq. (20)

@@ -31,10 +31,10 @@ class CollectingMapper : public Mapper {
             map_.push_back(std::move(edge));
         }
     }
-    void join(int begin, const Pose& motion) override {
-        const Eigen::Isometry3f T = motion.cast<float>();
+    void join(const TrackJoin& join) override {
+        const Eigen::Isometry3f T = join.motion.cast<float>();
         for (MapEdge& edge : map_)
-            if (edge.keyframe_id >= begin)
+            if (join.moves(edge.keyframe_id))
                 for (Eigen::Vector3f& point : edge.points) point = T * point;
     }
     std::vector<MapUpdate> due(double, double&) override { return {}; }
@@ -63,7 +63,7 @@ class RefiningMapper : public Mapper {
     }
 
     void insert(NewKeyframe fresh, double timestamp) override;
-    void join(int begin, const Pose& motion) override;
+    void join(const TrackJoin& join) override;
     std::vector<MapUpdate> due(double timestamp, double& waited_ms) override;
     const std::deque<MapUpdate>& outstanding() override;
     EdgeMap fusedMap() const override { return finished().fusedMap(); }
@@ -72,8 +72,7 @@ class RefiningMapper : public Mapper {
   private:
     /// A keyframe to be inserted, or a track to be joined.
     struct Job {
-        int begin = -1;  ///< of the track
-        Pose motion;
+        TrackJoin join;
         MapKeyframe keyframe;
         int previous = -1;
         std::vector<float> found;  ///< MapKeyframe::found of `previous`
@@ -107,9 +106,9 @@ void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
     job.keyframe = toMapKeyframe(fresh.keyframe, coloursOf(fresh.edges), camera_, options_.max_points);
     job.keyframe.T_world_camera = fresh.T_world_camera;
     job.keyframe.parent = fresh.tracked.keyframe;
-    job.keyframe.begins_track = fresh.tracked.keyframe < 0;
     job.keyframe.T_parent_camera = fresh.tracked.T_keyframe_camera;
-    if (!job.keyframe.begins_track) job.keyframe.parent_information = fresh.tracked.covariance().inverse();
+    job.keyframe.design_effect = fresh.tracked.uncertainty.designEffect();
+    if (fresh.tracked.keyframe >= 0) job.keyframe.parent_information = fresh.tracked.covariance().inverse();
     if (fresh.previous != nullptr) {
         job.previous = fresh.previous->id;
         job.found = fresh.previous->foundShares();
@@ -120,10 +119,9 @@ void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
     push(std::move(job));
 }
 
-void RefiningMapper::join(int begin, const Pose& motion) {
+void RefiningMapper::join(const TrackJoin& join) {
     Job job;
-    job.begin = begin;
-    job.motion = motion;
+    job.join = join;
     push(std::move(job));
 }
 
@@ -176,12 +174,12 @@ void RefiningMapper::work() {
         jobs_.pop_front();
         busy_ = true;
         lock.unlock();
-        const bool joins = job.begin >= 0;
+        const bool joins = !job.join.keyframes.empty();
         MapUpdate update;
         std::exception_ptr thrown;
         try {
             if (joins)
-                mapper_.join(job.begin, job.motion);
+                mapper_.join(job.join);
             else
                 update = run(std::move(job));
         } catch (...) {

@@ -28,9 +28,8 @@ class Mapper {
     /// @param timestamp  s, of the frame at work
     virtual void insert(NewKeyframe keyframe, double timestamp) = 0;
 
-    /// Moves all keyframes from `begin` on, a track of their own until now, into the world of those before.
     /// After what was inserted before.
-    virtual void join(int begin, const Pose& motion) = 0;
+    virtual void join(const TrackJoin& join) = 0;
 
     /// What takes effect with the frame at this time.
     /// @param waited_ms  grows by the time that was waited for it

@@ -151,7 +151,7 @@ void Odometry::Impl::join(Outcome& outcome) {
                            kReach + kTopSpeed * lost_for};
     const auto pose = relocaliser.find(*frame, trajectory, near, begin);
     if (!pose) return;
-    mapper->join(begin, trajectory.join(begin, reference->id, *pose));
+    mapper->join(trajectory.join(reference->id, *pose));
     outcome.joined_at = pose->keyframe;
     lost_for = 0;
 }

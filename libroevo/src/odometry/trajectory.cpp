@@ -100,25 +100,35 @@ int Trajectory::beginOfTrack(int keyframe) const {
     return keyframe;
 }
 
-Pose Trajectory::join(int begin, int recognised, const RelativePose& pose) {
-    const Pose motion = worldPose(pose) * keyframePose(recognised).inverse();
-    const auto first = static_cast<std::size_t>(begin);
-    for (std::size_t id = first; id < keyframes_.size(); ++id)
-        keyframes_[id].T_world_camera = motion * keyframes_[id].T_world_camera;
+TrackJoin Trajectory::join(int keyframe, const RelativePose& pose) {
+    TrackJoin join;
+    join.into = pose.keyframe;
+    join.motion = worldPose(pose) * keyframePose(keyframe).inverse();
+    const int begin = beginOfTrack(keyframe);
+    for (int id = begin; id < static_cast<int>(keyframes_.size()); ++id)
+        if (beginOfTrack(id) == begin) join.keyframes.push_back(id);
+    for (const int id : join.keyframes) {
+        Pose& placed = keyframes_[static_cast<std::size_t>(id)].T_world_camera;
+        placed = join.motion * placed;
+    }
     // As well known as what was recognised
-    links_[first] = {
+    links_[static_cast<std::size_t>(begin)] = {
         pose.keyframe, keyframePose(pose.keyframe).inverse() * keyframePose(begin), {pose.covariance(), {}}};
-    for (std::size_t id = first; id < links_.size(); ++id) in_world_[id] = inWorld(links_[id]).uncertainty;
-    joins_.push_back({begin, static_cast<int>(keyframes_.size()) - 1, motion});
-    return motion;
+    for (const int id : join.keyframes) {
+        const auto at = static_cast<std::size_t>(id);
+        in_world_[at] = inWorld(links_[at]).uncertainty;
+    }
+    joins_.push_back(join);
+    return join;
 }
 
 void Trajectory::apply(const MapUpdate& update) {
     for (const auto& [id, pose] : update.poses) {
         Pose& placed = keyframes_[static_cast<std::size_t>(id)].T_world_camera;
         placed = pose;
-        for (const Join& join : joins_)
-            if (update.keyframe <= join.last && id >= join.begin) placed = join.motion * placed;
+        // What the map did before a track was moved
+        for (const TrackJoin& join : joins_)
+            if (update.keyframe <= join.keyframes.back() && join.moves(id)) placed = join.motion * placed;
     }
     for (auto id = static_cast<std::size_t>(update.keyframe) + 1; id < keyframes_.size(); ++id) {
         if (links_[id].keyframe < 0) continue;

@@ -21,10 +21,9 @@ class Trajectory {
 
     /// First keyframe of a keyframe's track.
     int beginOfTrack(int keyframe) const;
-    /// Moves the track that begins with this keyframe to where one of its keyframes was recognised.
-    /// @param pose  of `recognised`, relative to a keyframe of another track
-    /// @return how the world of the track moves
-    Pose join(int begin, int recognised, const RelativePose& pose);
+    /// Moves a keyframe's track to where the keyframe was recognised.
+    /// @param pose  of the keyframe, relative to one of another track
+    TrackJoin join(int keyframe, const RelativePose& pose);
 
     /// Moves the keyframes as the map has it; younger ones follow the one that they were tracked from.
     void apply(const MapUpdate& update);
@@ -56,14 +55,8 @@ class Trajectory {
     bool sameTrack(int first_keyframe, int last_keyframe) const;
     Pose finalPose(const Frame& frame) const;
 
-    /// Tracks that were moved: what the map knew of them before is in their old place.
-    struct Join {
-        int begin = 0, last = 0;  ///< keyframes
-        Pose motion;
-    };
-
     std::vector<KeyframeInfo> keyframes_;
-    std::vector<Join> joins_;
+    std::vector<TrackJoin> joins_;
     std::vector<PoseUncertainty> in_world_;  ///< of the keyframes; influences of the newest alone
     std::vector<RelativePose> links_;        ///< of the keyframes, to the ones before; -1: to the world
     std::vector<Frame> frames_;

@@ -6,9 +6,6 @@
 
 namespace roevo {
 
-/// Neighbouring points of an edge err together: this many of them tell as much as one independent point.
-inline constexpr double kCorrelatedPoints = 5;
-
 struct FineResult {
     bool converged = false;
     Pose T_current_keyframe = Pose::Identity();
