@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <random>
 
@@ -27,12 +28,11 @@ struct Scene {
         for (int e = 0; e < edges; ++e) {
             const Eigen::Vector3d centre(testing::uniform(random, -2, 2), testing::uniform(random, -2, 2),
                                          testing::uniform(random, 1, 4));
-            const Eigen::Vector3d normal = Eigen::Vector3d::NullaryExpr([&] {
-                                               return testing::uniform(random, -1, 1);
-                                           }).normalized();
+            const Eigen::Vector3d normal =
+                Eigen::Vector3d::NullaryExpr([&] { return testing::uniform(random, -1, 1); }).normalized();
             for (int k = 0; k < kPoints; ++k) {
-                const Eigen::Vector3d off = Eigen::Vector3d::NullaryExpr(
-                    [&] { return testing::uniform(random, -0.2, 0.2); });
+                const Eigen::Vector3d off =
+                    Eigen::Vector3d::NullaryExpr([&] { return testing::uniform(random, -0.2, 0.2); });
                 points.push_back({centre + off, normal, 0, e});
             }
         }
@@ -186,7 +186,8 @@ TEST(EdgeClusters, AnEdgeThatIsOutOfSightErrsOnItsOwnFromThenOn) {
     for (const bool seen_again : {true, false}) {
         Trajectory trajectory;
         trajectory.beginTrack(0, Pose(), Matrix6d::Zero());
-        trajectory.addKeyframe(1, step(0, 0.01, 1), seen_again ? std::vector<std::int32_t>{1} : std::vector<std::int32_t>{2});
+        trajectory.addKeyframe(1, step(0, 0.01, 1),
+                               seen_again ? std::vector<std::int32_t>{1} : std::vector<std::int32_t>{2});
         const double sigma = std::sqrt(trajectory.worldCovariance(step(1, 0.01, 1))(0, 0));
         EXPECT_NEAR(sigma, seen_again ? 0.02 : 0.01 * std::sqrt(2), 1e-6);
     }

@@ -54,7 +54,8 @@ class Relocalisation : public ::testing::TestWithParam<Mode> {
 };
 
 TEST_P(Relocalisation, AfterAGapTheCameraIsFoundWhereItWasBefore) {
-    for (std::size_t i = 0; i < 130; ++i) ASSERT_EQ(showRoom(i).status, i == 0 ? FrameStatus::kInitialised : FrameStatus::kOk);
+    for (std::size_t i = 0; i < 130; ++i)
+        ASSERT_EQ(showRoom(i).status, i == 0 ? FrameStatus::kInitialised : FrameStatus::kOk);
     time_ += 2;
     const FrameResult found = showRoom(10);
     EXPECT_EQ(found.status, FrameStatus::kOk) << found.reason;

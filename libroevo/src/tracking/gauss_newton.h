@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -31,11 +32,11 @@ class InformationRows {
         points_.set(point, x, y, z);
     }
     kernels::NormalEquations sum() const;
-    /// Adds each of them to its edge.
+    /// Adds each of them to its edge; none before anything was set.
     /// @param edge_of(point)  index of its edge
     template <class EdgeOf>
     void addTo(EdgeClusters& clusters, std::size_t count, EdgeOf&& edge_of) const {
-        for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t i = 0; i < std::min(count, points_.size()); ++i) {
             float matrix[6], vector[3];
             for (int a = 0; a < 6; ++a) matrix[a] = matrix_[a][i];
             for (int a = 0; a < 3; ++a) vector[a] = vector_[a][i];
