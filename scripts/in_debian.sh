@@ -41,6 +41,7 @@ unshare --mount --propagation private --pid --fork --kill-child sh -eu -c '
     shift 2
     mount --rbind /dev "$root/dev"
     mount -t proc proc "$root/proc"
+    mount -o ro -t sysfs sysfs "$root/sys"
     [ ! -d "$data" ] || mount -o bind,ro "$data" "$root/data"
     exec chroot "$root" env -i HOME=/root LC_ALL=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin TERM="${TERM:-dumb}" \
         ROEVO_DATA_DIR=/data sh -c "cd /roevo && exec \"\$@\"" sh "$@"
