@@ -1,6 +1,6 @@
 #!/bin/sh
-# From a bare Debian 12 to a trajectory and a picture of the map: simulates an RGB-D recording of a living room, runs
-# the odometry on it, says how far it is from the truth and renders what was mapped. Results are in demo_output/.
+# From a bare Debian 12 or 13 to a trajectory and a picture of the map: simulates an RGB-D recording of a living room,
+# runs the odometry on it, says how far it is from the truth and renders what was mapped. Results are in demo_output/.
 set -eu
 cd "$(dirname "$0")"
 . scripts/set_up.sh

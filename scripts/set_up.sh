@@ -13,7 +13,7 @@ die() {
 
 # Installs the packages above that are missing; does not touch apt when nothing is.
 install_packages() {
-    command -v dpkg-query >/dev/null || die "this set-up is for Debian 12; install by hand: $(echo $roevo_packages)"
+    command -v dpkg-query >/dev/null || die "this set-up is for Debian 12 and 13; install by hand: $(echo $roevo_packages)"
     missing=
     for package in $roevo_packages; do
         case "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" in

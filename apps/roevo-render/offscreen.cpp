@@ -9,6 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "roevo_mrpt/mrpt_compat.h"
+
 namespace roevo {
 namespace {
 
@@ -39,9 +41,9 @@ cv::Mat renderOffscreen(mrpt::opengl::COpenGLScene& scene, const View& view, int
     viewport->setCustomBackgroundColor({0.055f, 0.067f, 0.09f});
     viewport->setViewportClipDistances(static_cast<float>(view.near), static_cast<float>(view.far));
     auto& lights = viewport->lightParameters();
-    lights.ambient = {0.6f, 0.6f, 0.6f};
-    lights.diffuse = {0.7f, 0.7f, 0.7f};
-    lights.specular = {0.1f, 0.1f, 0.1f};
+    compat::setWhiteLight(lights.ambient, 0.6f);
+    compat::setWhiteLight(lights.diffuse, 0.7f);
+    compat::setWhiteLight(lights.specular, 0.1f);
 
     mrpt::opengl::CCamera camera;
     camera.set6DOFMode(true);

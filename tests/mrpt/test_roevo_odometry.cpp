@@ -88,7 +88,7 @@ TEST_F(RoevoOdometryTest, TheSimpleMapHoldsTheMapsPoints) {
     ASSERT_TRUE(loaded.loadFromFile(folder / "a.simplemap"));
     ASSERT_EQ(loaded.size(), 1u);
     mrpt::maps::CColouredPointsMap rebuilt;
-    rebuilt.loadFromProbabilisticPosesAndObservations(loaded);
+    rebuilt.loadFromSimpleMap(loaded);
     const auto map = odometry_.getMap();
     ASSERT_EQ(rebuilt.size(), map->size());
     for (std::size_t i = 0; i < map->size(); i += 50) {
@@ -131,12 +131,9 @@ TEST_F(RoevoOdometryTest, TheMapLeavesOutPseudoEdgesTheSimpleMapDoesNot) {
     mrpt::maps::CSimpleMap map;
     odometry_.getCurrentlyBuiltMap(map);
     EXPECT_GT(map.size(), 3u);
-    for (std::size_t i = 0; i < map.size(); i++) {
-        mrpt::poses::CPose3DPDF::Ptr pose;
-        mrpt::obs::CSensoryFrame::Ptr frame;
-        map.get(i, pose, frame);
+    for (const auto& keyframe : map) {
         mrpt::maps::CColouredPointsMap cloud;
-        frame->insertObservationsInto(cloud);
+        keyframe.sf->insertObservationsInto(cloud);
         in_simple_map += cloud.size();
     }
     EXPECT_EQ(in_simple_map, of_keyframes);
@@ -205,7 +202,7 @@ TEST_F(RoevoOdometryTest, SensoryFramesAndStartPosesOfMrpt) {
     odometry_.initialize();
     EXPECT_EQ(odometry_.getCurrentlyBuiltMapSize(), 0u);
     mrpt::maps::CSimpleMap not_empty;
-    not_empty.insert(mrpt::poses::CPose3DPDFGaussian(), frame);
+    not_empty.insert(mrpt::poses::CPose3DPDFGaussian::Create(), mrpt::obs::CSensoryFrame::Create(frame));
     EXPECT_THROW(odometry_.initialize(not_empty), std::invalid_argument);
 }
 

@@ -1,5 +1,6 @@
 #include "roevo_mrpt/config_file.h"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>

@@ -138,9 +138,9 @@ void CRoevoOdometry::getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out) const {
         const auto pose = toMrptGaussian(
             keyframe.T_world_camera, covariance == keyframe_covariances_.end() ? zero : covariance->second,
             T_robot_optical.inverse());
-        mrpt::obs::CSensoryFrame frame;
-        frame.insert(cloud);
-        out.insert(pose, frame);
+        const auto frame = mrpt::obs::CSensoryFrame::Create();
+        frame->insert(cloud);
+        out.insert(mrpt::poses::CPose3DPDFGaussian::Create(pose), frame);
     }
 }
 
