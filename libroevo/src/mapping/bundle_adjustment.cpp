@@ -10,6 +10,9 @@
 namespace roevo {
 namespace {
 
+/// How many points tell as much as one independent one, against the priors. What tracking measures of it
+/// (PoseUncertainty::designEffect) was no better here.
+constexpr double kCorrelatedPoints = 5;
 constexpr double kStill = 0.005;  ///< px of image motion; smaller steps end the refinement
 
 /// Adds the error of T_world_to against T_world_from * T_from_to, as a perturbation in the world's axes.
@@ -62,6 +65,8 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
         if (equations.numRows() == 0) continue;  // all poses are fixed: only the points are fitted
         Eigen::MatrixXd& hessian = equations.hessian;
         Eigen::VectorXd& gradient = equations.gradient;
+        hessian /= kCorrelatedPoints;
+        gradient /= kCorrelatedPoints;
         for (const RelativePrior& prior : priors) {
             addPrior(prior, window, equations.origin(), equations.row(static_cast<std::size_t>(prior.from)),
                      equations.row(static_cast<std::size_t>(prior.to)), hessian, gradient);

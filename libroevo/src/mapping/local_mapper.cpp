@@ -161,8 +161,8 @@ void LocalMapper::addPriors() {
             const Eigen::Matrix3d R = window_[to].T_world_camera.linear();
             Matrix6d to_world = Matrix6d::Zero();
             to_world.topLeftCorner<3, 3>() = to_world.bottomRightCorner<3, 3>() = R;
-            prior.information = options_.mapping.prior_weight * keyframe.design_effect * to_world *
-                                keyframe.parent_information * to_world.transpose();
+            prior.information =
+                options_.mapping.prior_weight * to_world * keyframe.parent_information * to_world.transpose();
             priors_.push_back(prior);
         }
     }

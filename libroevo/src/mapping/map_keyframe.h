@@ -20,7 +20,6 @@ struct MapKeyframe {
     int track = 0;
     Matrix6d parent_information =
         Matrix6d::Zero();       ///< of T_parent_camera: position, then orientation, along the camera's axes
-    double design_effect = 1;   ///< how many points count as one (see PoseUncertainty)
     OrganizedEdges image;       ///< where the points would be seen at the reference row's time, ideal px
     Points3 points;             ///< camera frame, m; padded
     std::vector<float> weight;  ///< w_s(depth), Eq. (20)

@@ -107,7 +107,6 @@ void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
     job.keyframe.T_world_camera = fresh.T_world_camera;
     job.keyframe.parent = fresh.tracked.keyframe;
     job.keyframe.T_parent_camera = fresh.tracked.T_keyframe_camera;
-    job.keyframe.design_effect = fresh.tracked.uncertainty.designEffect();
     if (fresh.tracked.keyframe >= 0) job.keyframe.parent_information = fresh.tracked.covariance().inverse();
     if (fresh.previous != nullptr) {
         job.previous = fresh.previous->id;
