@@ -55,6 +55,7 @@ struct Odometry::Impl {
     std::unique_ptr<Keyframe> reference;
     std::optional<Tracking> candidate;  // of the frame before, if it can still become a keyframe
     double last_timestamp = -std::numeric_limits<double>::infinity();
+    bool recognising = true;
     std::int32_t next_cluster = 0;
     int lost_frames = 0;
     double lost_since = 0, lost_for = 0;  // s
@@ -92,7 +93,8 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     const Prediction prediction = motion.predict(images.timestamp);
     Tracking tracking = tracker->track(*reference, *frame, prediction);  // Sec. V
     if (tracking.lost()) tracking = tracker->search(*reference, *frame, prediction, std::move(tracking));
-    if (tracking.tracked && prediction.blind) tracking = confirmed(std::move(tracking), prediction);
+    if (tracking.tracked && prediction.blind && recognising)
+        tracking = confirmed(std::move(tracking), prediction);
     if (tracking.lost())
         return report(std::move(result), findAgain(std::move(tracking), prediction.since_measured));
 
@@ -146,7 +148,7 @@ Outcome Odometry::Impl::start() {
 /// A track that was begun after a loss is moved to where one of its keyframes is recognised.
 void Odometry::Impl::join(Outcome& outcome) {
     const int begin = trajectory.beginOfTrack(reference->id);
-    if (begin == 0) return;
+    if (begin == 0 || !recognising) return;
     const Whereabouts near{trajectory.keyframePose(reference->id).translation(),
                            kReach + kTopSpeed * lost_for};
     const auto pose = relocaliser.find(*frame, trajectory, near, begin);
@@ -174,7 +176,8 @@ Tracking Odometry::Impl::confirmed(Tracking tracking, const Prediction& predicti
 Outcome Odometry::Impl::findAgain(Tracking failed, double since_measured) {
     const RelativePose last{reference->id, motion.lastPose(), {}};
     const Whereabouts near{trajectory.worldPose(last).translation(), kReach + kTopSpeed * since_measured};
-    const auto pose = relocaliser.find(*frame, trajectory, near, reference->id + 1);
+    const auto pose =
+        recognising ? relocaliser.find(*frame, trajectory, near, reference->id + 1) : std::nullopt;
     if (!pose) return bridge(std::move(failed), since_measured);
     Outcome outcome;
     outcome.tracking = failed;
@@ -294,7 +297,7 @@ Fault Odometry::Impl::promote(const Frame& promoted, const Tracking& tracked) {
 }
 
 void Odometry::Impl::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
-    relocaliser.add(*fresh, of);
+    if (recognising) relocaliser.add(*fresh, of);
     semi_dense.add(fresh->edges.image, of, fresh->row_motion);
     mapper->insert({*fresh, ownEdges(*fresh, of.images, camera), trajectory.keyframePose(fresh->id), tracked,
                     reference.get(), motion.secondsPerRow()},
@@ -339,8 +342,11 @@ Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, 
     if (const auto fault = camera.check(); !fault.empty()) throw std::invalid_argument(fault);
     if (const auto fault = checkOptions(options); !fault.empty()) throw std::invalid_argument(fault);
     if (!T_world_start.isFinite()) throw std::invalid_argument("the start pose is not finite");
+    // What the tracker of an experiment loses stays lost: what is found without it is not its merit
+    const bool recognising = tracker == nullptr;
     if (!tracker) tracker = std::make_unique<Tracker>(camera, options);
     impl_ = std::make_unique<Impl>(camera, options, T_world_start, std::move(tracker));
+    impl_->recognising = recognising;
 }
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;

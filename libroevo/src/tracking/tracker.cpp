@@ -24,6 +24,24 @@ Fault describeFailure(const FineResult& refined, const FineOptions& options) {
     return {Fault::Kind::kDiverged, {}};
 }
 
+/// Of a coarse pose, from its residuals on the finest level. What they do not see is not known at all.
+PoseUncertainty photometricUncertainty(const Keyframe& reference, const Frame& frame,
+                                       const PinholeCamera& camera, const RowMotion& rows,
+                                       const CoarseResult& aligned) {
+    constexpr double kNothingKnown = 1;  // m and rad
+    PhotometricResiduals residuals;
+    PhotometricTerm term(residuals, reference.photometric, 0, frame.pyramid.level(0), camera,
+                         aligned.brightness);
+    DampingTerm unknown(kNothingKnown, kNothingKnown);
+    PoseSystem system;
+    const Linearisation at{aligned.T_current_keyframe, rows, 0};
+    if (!term.linearise(at, system) || !unknown.linearise(at, system)) return {};
+    EdgeClusters clusters;
+    clusters.start(reference.clusters);
+    term.addTo(clusters);
+    return clusters.uncertainty(system, residuals.slope());
+}
+
 }  // namespace
 
 Tracker::Tracker(const PinholeCamera& camera, const OdometryOptions& options)
@@ -106,7 +124,7 @@ Fault Tracker::runCoarse(const Keyframe& reference, const Frame& frame, const Co
     out.inliers = static_cast<int>(out.matches.size());
     if (out.matchedRatio() < options_.fine.min_matched_ratio / 2) return {Fault::Kind::kCoarseAstray, {}};
     out.pose.T_keyframe_camera = T.inverse();
-    out.pose.uncertainty = coarse_.uncertainty(reference, aligned);
+    out.pose.uncertainty = photometricUncertainty(reference, frame, ideal_, shutter.motion(T), aligned);
     return out.pose.covariance().allFinite() ? Fault() : Fault{Fault::Kind::kDiverged, {}};
 }
 
