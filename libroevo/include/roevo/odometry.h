@@ -19,7 +19,7 @@ class Odometry {
     /// @throws std::invalid_argument when the camera or an option is unusable (one line that names it).
     Odometry(const PinholeCamera& camera, const OdometryOptions& options,
              const Pose& T_world_start = Pose::Identity());
-    /// With another tracker, for experiments.
+    /// With another tracker, for experiments: frames that it loses are not looked up among the keyframes.
     Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start,
              std::unique_ptr<Tracker> tracker);
     ~Odometry();

@@ -38,12 +38,6 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
     return found.cost;
 }
 
-PoseUncertainty CoarseTracker::uncertainty(const Keyframe& keyframe, const CoarseResult& result) {
-    clusters_.start(keyframe.clusters);
-    residuals_.addTo(clusters_, keyframe.photometric);
-    return clusters_.uncertainty(result.system, residuals_.slope());
-}
-
 std::vector<std::size_t> CoarseTracker::mostSimilar(const Keyframe& keyframe, const cv::Mat& image, int level,
                                                     const PinholeCamera& camera,
                                                     const std::vector<Pose>& guesses,

@@ -27,9 +27,6 @@ class CoarseTracker {
                        const RollingShutter& shutter, const std::vector<Pose>& guesses,
                        const Brightness& start);
 
-    /// Of the pose that track() has just come to.
-    PoseUncertainty uncertainty(const Keyframe& keyframe, const CoarseResult& result);
-
   private:
     /// Indices of the guesses worth aligning.
     std::vector<std::size_t> mostSimilar(const Keyframe& keyframe, const cv::Mat& image, int level,
@@ -40,7 +37,6 @@ class CoarseTracker {
 
     CoarseOptions options_;
     PhotometricResiduals residuals_;
-    EdgeClusters clusters_;
 };
 
 }  // namespace roevo
