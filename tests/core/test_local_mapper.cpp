@@ -218,7 +218,7 @@ TEST_F(Mapper, ATrackThatBeganAnewIsNotRelatedToTheOldOne) {
     for (int k = 4; k < 9; ++k) {
         MapKeyframe keyframe = keyframeAt(k, k % 4);
         keyframe.T_world_camera = off * keyframe.T_world_camera;
-        if (k == 4) keyframe.parent = -1;
+        keyframe.track = 4;
         const MapUpdate update = mapper.insert(keyframe);
         EXPECT_EQ(reasonOf(update), "");
         for (const auto& [id, pose] : update.poses)

@@ -89,7 +89,7 @@ TEST_F(PlaceRegistration, ParallelEdgesAloneAreNotAccepted) {
     EXPECT_FALSE(found.accepted);
 }
 
-TEST_F(PlaceRegistration, ConfidenceIsTheMeanShareAndNothingWithoutAcceptance) {
+TEST_F(PlaceRegistration, ConfidenceIsTheMeanShareAndNothingWhereEdgesContradict) {
     Verification points;
     points.matches = 50;
     points.inliers = 25;
@@ -97,7 +97,7 @@ TEST_F(PlaceRegistration, ConfidenceIsTheMeanShareAndNothingWithoutAcceptance) {
     edges.keyframe_matched = 0.8;
     edges.frame_matched = 0.5;
     EXPECT_EQ(placeConfidence(points, edges), 0);
-    edges.accepted = true;
+    edges.plausible = true;
     EXPECT_NEAR(placeConfidence(points, edges), 0.6, 1e-12);
     points.inliers = 10;
     EXPECT_EQ(placeConfidence(points, edges), 0);

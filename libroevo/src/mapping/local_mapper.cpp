@@ -193,8 +193,6 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     if (const auto parent = keyframes_.find(inserted.parent); parent != keyframes_.end()) {
         inserted.T_world_camera = parent->second.T_world_camera * inserted.T_parent_camera;
         inserted.track = parent->second.track;
-    } else {
-        inserted.track = id;
     }
     MapKeyframe& keyframe = keyframes_.emplace(id, std::move(inserted)).first->second;
     const std::vector<const MapKeyframe*> recent = recentOf(keyframe);
