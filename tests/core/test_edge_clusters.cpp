@@ -154,6 +154,18 @@ TEST(EdgeClusters, WhatNothingObservesIsAsUncertainAsThePrior) {
     }
 }
 
+TEST(EdgeClusters, WhatOneEdgeAloneTellsIsNotKnownWithoutAPrior) {
+    std::mt19937 random(305);
+    Scene scene(random, 6);
+    for (auto& point : scene.points)  // only the first sees along x, and turns about y and z
+        if (point.edge > 0) point.normal.x() = 0;
+    scene.disturb(random, 0.001, 0.001);
+    EdgeClusters clusters;
+    clusters.start(numbers(6));
+    const PoseSystem all = scene.system(1e6, &clusters);
+    EXPECT_FALSE(clusters.uncertainty(all, 1).covariance().allFinite());
+}
+
 TEST(EdgeClusters, WithNoEdgesThereIsOnlyWhatTheSystemSays) {
     PoseSystem system;
     system.hessian = 4 * Matrix6d::Identity();

@@ -115,5 +115,80 @@ TEST(Trajectory, YoungerKeyframesFollowTheOneTheyWereTrackedFrom) {
     EXPECT_NEAR(trajectory.keyframePose(4).translation().x(), 11, 1e-12);
 }
 
+TEST(Trajectory, FramesWithoutAMeasuredPoseAreInterpolatedInTime) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    trajectory.addFrame(0, from(0, at(0)));
+    for (const double t : {1.0, 3.0}) trajectory.addFrame(t, from(0, at(-7)), false);
+    trajectory.addFrame(4, from(0, at(8)));
+    trajectory.addFrame(5, from(0, at(-7)), false);
+    const auto frames = trajectory.frames();
+    EXPECT_NEAR(frames[1].T_world_camera.translation().x(), 2, 1e-12);
+    EXPECT_NEAR(frames[2].T_world_camera.translation().x(), 6, 1e-12);
+    EXPECT_NEAR(frames[4].T_world_camera.translation().x(), -7, 1e-12) << "no other end is known";
+    EXPECT_NEAR(trajectory.live()[1].T_world_camera.translation().x(), -7, 1e-12);
+}
+
+/// Keyframes 0 and 1 of one track, 2 of another, and 3, which was recognised at keyframe 0.
+Trajectory foundAgain() {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    trajectory.addFrame(0, from(0, at(0)));
+    trajectory.addKeyframe(1, from(0, at(1)), {});
+    trajectory.addFrame(1, from(1, at(0)));
+    beginTrack(trajectory, 2, at(50));
+    trajectory.addFrame(2, from(2, at(0)));
+    trajectory.addFrame(3, from(2, at(-9)), false);
+    trajectory.addKeyframe(4, from(0, at(2)), {});
+    trajectory.addFrame(4, from(3, at(0)));
+    return trajectory;
+}
+
+TEST(Trajectory, NothingIsInterpolatedBetweenTracks) {
+    EXPECT_NEAR(foundAgain().frames()[3].T_world_camera.translation().x(), 41, 1e-12);
+}
+
+TEST(Trajectory, MotionIsKnownBetweenAllFramesOfATrack) {
+    const Trajectory trajectory = foundAgain();
+    for (const auto [a, b] : {std::pair{0, 1}, {0, 4}, {1, 4}, {4, 1}, {2, 3}})
+        EXPECT_TRUE(
+            trajectory.motionCovariance(static_cast<std::size_t>(a), static_cast<std::size_t>(b)).allFinite())
+            << a << " " << b;
+    for (const auto [a, b] : {std::pair{0, 2}, {2, 4}, {1, 3}})
+        EXPECT_FALSE(
+            trajectory.motionCovariance(static_cast<std::size_t>(a), static_cast<std::size_t>(b)).allFinite())
+            << a << " " << b;
+}
+
+TEST(Trajectory, AJoinedTrackMovesAsAWholeAndSoDoesWhatTheMapSaysOfItLater) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    trajectory.addFrame(0, from(0, at(0)));
+    beginTrack(trajectory, 1, at(50));
+    trajectory.addFrame(1, from(1, at(0)));
+    trajectory.addKeyframe(2, from(1, at(1)), {});
+    trajectory.addFrame(2, from(2, at(0)));
+    EXPECT_EQ(trajectory.beginOfTrack(2), 1);
+    const TrackJoin join = trajectory.join(2, from(0, at(3)));  // keyframe 2 is at x = 3
+    EXPECT_EQ(join.keyframes, (std::vector<int>{1, 2}));
+    EXPECT_EQ(join.into, 0);
+    EXPECT_NEAR(join.motion.translation().x(), -48, 1e-12);
+    EXPECT_EQ(trajectory.beginOfTrack(2), 0);
+    EXPECT_NEAR(trajectory.frames()[1].T_world_camera.translation().x(), 2, 1e-12);
+    EXPECT_NEAR(trajectory.frames()[2].T_world_camera.translation().x(), 3, 1e-12);
+    MapUpdate late;  // from before the join, in the old place
+    late.keyframe = 2;
+    late.poses = {{1, at(50.5)}, {2, at(51.5)}};
+    trajectory.apply(late);
+    EXPECT_NEAR(trajectory.keyframePose(1).translation().x(), 2.5, 1e-12);
+    EXPECT_NEAR(trajectory.keyframePose(2).translation().x(), 3.5, 1e-12);
+    EXPECT_EQ(trajectory.addKeyframe(3, from(2, at(1)), {}), 3);
+    MapUpdate after;  // of a keyframe that came after the join
+    after.keyframe = 3;
+    after.poses = {{2, at(3.6)}, {3, at(4.6)}};
+    trajectory.apply(after);
+    EXPECT_NEAR(trajectory.keyframePose(2).translation().x(), 3.6, 1e-12);
+}
+
 }  // namespace
 }  // namespace roevo

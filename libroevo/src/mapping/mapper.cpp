@@ -107,8 +107,10 @@ void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
     job.keyframe.T_world_camera = fresh.T_world_camera;
     job.keyframe.parent = fresh.tracked.keyframe;
     job.keyframe.T_parent_camera = fresh.tracked.T_keyframe_camera;
-    if (fresh.tracked.keyframe < 0) job.keyframe.track = fresh.keyframe.id;
-    if (fresh.tracked.keyframe >= 0) job.keyframe.parent_information = fresh.tracked.covariance().inverse();
+    if (fresh.tracked.keyframe < 0)
+        job.keyframe.track = fresh.keyframe.id;
+    else
+        job.keyframe.parent_information = fresh.tracked.covariance().inverse();
     if (fresh.previous != nullptr) {
         job.previous = fresh.previous->id;
         job.found = fresh.previous->foundShares();

@@ -168,6 +168,8 @@ Tracking Odometry::Impl::confirmed(Tracking tracking, const Prediction& predicti
     }
     Tracking again = tracker->trackFrom(*reference, *frame, prediction, *pose);
     again.searched = true;
+    again.ms_coarse += tracking.ms_coarse;
+    again.ms_fine += tracking.ms_fine;
     if (again.tracked) again.fault = tracking.fault ? tracking.fault : Fault{Fault::Kind::kGap, {gap_ms}};
     return again;
 }
@@ -187,6 +189,8 @@ Outcome Odometry::Impl::findAgain(Tracking failed, double since_measured) {
     if (promote(*frame, outcome.tracking)) return bridge(std::move(failed), since_measured);
     motion.anchor(frame->timestamp(), Pose::Identity());
     lost_frames = 0;
+    lost_for = 0;
+    outcome.tracking.inliers = 0;  // they were another keyframe's
     outcome.tracking.pose = {reference->id, Pose::Identity(), {}};
     outcome.found_at = pose->keyframe;
     outcome.is_keyframe = outcome.new_keyframe = true;

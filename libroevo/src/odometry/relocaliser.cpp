@@ -27,9 +27,14 @@ Relocaliser::Relocaliser(const PinholeCamera& camera, const OdometryOptions& opt
 
 void Relocaliser::add(const Keyframe& keyframe, const Frame& frame) {
     collect();
-    newest_ = std::async(std::launch::async, [this, copy = keyframe, grey = frame.pyramid.level(0).clone()] {
-        return describe(copy, grey);
-    });
+    Keyframe copy;  // of what is remembered
+    copy.edges = keyframe.edges;
+    copy.median_depth = keyframe.median_depth;
+    copy.row_motion = keyframe.row_motion;
+    newest_ =
+        std::async(std::launch::async, [this, copy = std::move(copy), grey = frame.pyramid.level(0).clone()] {
+            return describe(copy, grey);
+        });
 }
 
 Relocaliser::Place Relocaliser::describe(const Keyframe& keyframe, const cv::Mat& grey) {

@@ -31,6 +31,10 @@ void forget(PoseUncertainty& uncertainty, Chosen&& chosen) {
     if (edges.empty()) edges.shrink_to_fit();
 }
 
+void forgetAll(PoseUncertainty& uncertainty) {
+    forget(uncertainty, [](std::int32_t) { return true; });
+}
+
 double changeOfView(const Pose& motion) {
     return motion.translation().norm() + kTypicalDepth * rotationAngle(motion);
 }
@@ -52,7 +56,7 @@ int Trajectory::addKeyframe(double timestamp, const RelativePose& pose,
     forget(in_world.uncertainty, [&](std::int32_t cluster) {
         return std::find(clusters.begin(), clusters.end(), cluster) == clusters.end();
     });
-    forget(in_world_.back(), [](std::int32_t) { return true; });
+    forgetAll(in_world_.back());
     in_world_.push_back(std::move(in_world.uncertainty));
     links_.push_back(pose);
     const int id = static_cast<int>(keyframes_.size());
@@ -64,7 +68,7 @@ void Trajectory::addFrame(double timestamp, const RelativePose& pose, bool measu
     frames_.push_back({timestamp, pose, measured});
     live_.push_back({timestamp, worldPose(pose)});
     if (frames_.size() <= kRecentFrames) return;
-    forget(frames_[frames_.size() - kRecentFrames - 1].pose.uncertainty, [](std::int32_t) { return true; });
+    forgetAll(frames_[frames_.size() - kRecentFrames - 1].pose.uncertainty);
 }
 
 RelativePose Trajectory::inWorld(const RelativePose& pose) const {
@@ -83,14 +87,13 @@ Matrix6d Trajectory::worldCovariance(const RelativePose& pose) const {
 }
 
 Matrix6d Trajectory::motionCovariance(std::size_t from, std::size_t to) const {
-    const RelativePose& first = frames_.at(from).pose;
-    RelativePose last = frames_.at(to).pose;
-    while (last.keyframe > first.keyframe) {
-        const RelativePose& link = links_[static_cast<std::size_t>(last.keyframe)];
-        if (link.keyframe < 0) break;
-        last = compose(link, last);
+    RelativePose first = frames_.at(from).pose, last = frames_.at(to).pose;
+    while (first.keyframe != last.keyframe) {  // back to the newest keyframe that both come from
+        RelativePose& later = first.keyframe > last.keyframe ? first : last;
+        const RelativePose& link = links_[static_cast<std::size_t>(later.keyframe)];
+        if (link.keyframe < 0) return Matrix6d::Constant(std::numeric_limits<double>::infinity());
+        later = compose(link, later);
     }
-    if (last.keyframe != first.keyframe) return Matrix6d::Constant(std::numeric_limits<double>::infinity());
     return changeReference(last, first, -1).covariance();
 }
 
@@ -118,6 +121,8 @@ TrackJoin Trajectory::join(int keyframe, const RelativePose& pose) {
         const auto at = static_cast<std::size_t>(id);
         in_world_[at] = inWorld(links_[at]).uncertainty;
     }
+    for (const int id : join.keyframes)
+        if (id != keyframe) forgetAll(in_world_[static_cast<std::size_t>(id)]);
     joins_.push_back(join);
     return join;
 }
@@ -151,11 +156,6 @@ Pose Trajectory::finalPose(const Frame& frame) const {
     return interpolate(from_parent, from_next, since / (since + left));
 }
 
-bool Trajectory::sameTrack(int first_keyframe, int last_keyframe) const {
-    const auto begin = links_.begin() + first_keyframe + 1, end = links_.begin() + last_keyframe + 1;
-    return begin >= end || std::none_of(begin, end, [](const auto& link) { return link.keyframe < 0; });
-}
-
 std::vector<StampedPose> Trajectory::frames() const {
     std::vector<StampedPose> poses;
     for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame)});
@@ -163,7 +163,8 @@ std::vector<StampedPose> Trajectory::frames() const {
     for (std::size_t next = 1; next < frames_.size(); ++next) {
         if (!frames_[next].measured) continue;
         const StampedPose &from = poses[last], &to = poses[next];
-        const bool known = sameTrack(frames_[last].pose.keyframe, frames_[next].pose.keyframe);
+        const bool known =
+            beginOfTrack(frames_[last].pose.keyframe) == beginOfTrack(frames_[next].pose.keyframe);
         for (std::size_t i = last + 1; known && i < next; ++i)
             poses[i].T_world_camera =
                 interpolate(from.T_world_camera, to.T_world_camera,

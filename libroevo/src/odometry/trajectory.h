@@ -52,7 +52,6 @@ class Trajectory {
         bool measured = true;
     };
     RelativePose inWorld(const RelativePose& pose) const;
-    bool sameTrack(int first_keyframe, int last_keyframe) const;
     Pose finalPose(const Frame& frame) const;
 
     std::vector<KeyframeInfo> keyframes_;

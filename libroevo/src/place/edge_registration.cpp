@@ -19,7 +19,7 @@ constexpr double kOverRelaxation = 1.6;  ///< of the steps once the radius is th
 // What it takes to be accepted
 constexpr int kLeastInliers = 150;
 constexpr double kLeastMatched = 0.4;  ///< of the edges, both ways
-/// Of the edges, both ways, where twenty points agree: no two rooms had more than eleven such points.
+/// Of the edges, both ways, where twenty points agree: no two different rooms had more than ten such points.
 constexpr double kLeastPlausible = 0.25;
 constexpr double kLeastVisible = 0.25;
 constexpr double kLeastDepthAgreement = 0.7;

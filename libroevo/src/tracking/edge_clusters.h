@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "roevo/types.h"
+#include "tracking/kernels.h"
 
 namespace roevo {
 
@@ -30,7 +31,7 @@ struct PoseUncertainty {
 /// the keyframe, its association, the lens), so that edges are what is independent, not their points.
 class EdgeClusters {
   public:
-    /// @param cluster_of  of each edge (see Keyframe::clusters); must outlive the use
+    /// @param cluster_of  of each edge (see Keyframe::clusters)
     void start(const std::vector<std::int32_t>& cluster_of);
     /// @param matrix,vector  as in kernels::PointInformation, of a point (m)
     void add(std::size_t edge, const float (&matrix)[6], const float (&vector)[3],
@@ -38,19 +39,20 @@ class EdgeClusters {
 
     /// Of the pose that solves the system: as of independent points, and what the pose would move by if any
     /// one edge were left out (the jackknife over clusters, which is the sandwich estimator with its
-    /// small-sample correction). What nothing but a prior tells has the prior's variance.
+    /// small-sample correction). What nothing but a prior tells has the prior's variance; with no prior, what
+    /// one edge alone tells is not finite.
     /// @param slope  of all residuals' pull (see studentSlope()): weights alone overstate the Hessian
     PoseUncertainty uncertainty(const PoseSystem& system, double slope) const;
 
   private:
     struct Sum {
-        std::int32_t cluster = 0;
         bool used = false;
-        Matrix6d hessian = Matrix6d::Zero();
-        Vector6d gradient = Vector6d::Zero();
+        kernels::NormalEquations equations{};
     };
-    std::vector<Sum> sums_;              // in the order of clusters
-    std::vector<std::int32_t> slot_of_;  // of each edge: its cluster's place in sums_
+    std::vector<std::int32_t> cluster_of_;  // of each edge; what follows is made of it
+    std::vector<std::int32_t> clusters_;    // in order, each once
+    std::vector<std::int32_t> slot_of_;     // of each edge: its cluster's place in clusters_
+    std::vector<Sum> sums_;                 // of each cluster
 };
 
 }  // namespace roevo
