@@ -1,5 +1,7 @@
 #include "coarse_points.h"
 
+#include <algorithm>
+
 #include "point_selection.h"
 
 namespace roevo {
@@ -36,6 +38,8 @@ PhotometricPoints CoarsePointsTracker::choosePoints(const EdgePoints3D& edges, c
     }
     PhotometricPoints sample = samplePhotometricPoints(points, frame.pyramid, most);
     sample.source.clear();  // they are no edge points of the keyframe
+    if (kind_ != CoarsePoints::kOrganized)
+        std::fill(sample.edge_of.begin(), sample.edge_of.end(), -1);  // no edge
     sample.turning = false;
     return sample;
 }

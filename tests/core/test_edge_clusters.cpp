@@ -155,15 +155,22 @@ TEST(EdgeClusters, WhatNothingObservesIsAsUncertainAsThePrior) {
 }
 
 TEST(EdgeClusters, WhatOneEdgeAloneTellsIsNotKnownWithoutAPrior) {
-    std::mt19937 random(305);
-    Scene scene(random, 6);
-    for (auto& point : scene.points)  // only the first sees along x, and turns about y and z
-        if (point.edge > 0) point.normal.x() = 0;
-    scene.disturb(random, 0.001, 0.001);
-    EdgeClusters clusters;
-    clusters.start(numbers(6));
-    const PoseSystem all = scene.system(1e6, &clusters);
-    EXPECT_FALSE(clusters.uncertainty(all, 1).covariance().allFinite());
+    for (const int edges : {1, 6}) {
+        std::mt19937 random(305);
+        Scene scene(random, edges);
+        for (auto& point : scene.points) {  // only the first sees along x, and turns about y and z
+            if (point.edge > 0) point.normal.x() = 0;
+            if (edges == 1)
+                point.normal = Eigen::Vector3d::NullaryExpr([&] { return testing::uniform(random, -1, 1); });
+        }
+        scene.disturb(random, 0.001, 0.001);
+        EdgeClusters clusters;
+        clusters.start(numbers(edges));
+        const PoseSystem all = scene.system(1e6, &clusters);
+        const Matrix6d covariance = clusters.uncertainty(all, 1).covariance();
+        ASSERT_TRUE(covariance.allFinite()) << edges;
+        EXPECT_GT(covariance(0, 0), 0.5) << edges;
+    }
 }
 
 TEST(EdgeClusters, WithNoEdgesThereIsOnlyWhatTheSystemSays) {

@@ -4,11 +4,15 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "tracking/gauss_newton.h"
 
 namespace roevo {
+namespace {
+
+constexpr double kNothingKnown = 1;  // m and rad
+
+}  // namespace
 
 Matrix6d PoseUncertainty::covariance() const {
     Matrix6d sum = independent;
@@ -90,12 +94,11 @@ PoseUncertainty EdgeClusters::uncertainty(const PoseSystem& system, double slope
         const Eigen::LLT<Matrix6d> others(by_slopes - slope * edge.hessian);
         // Without this edge there may be no pose at all
         const bool solvable = others.info() == Eigen::Success;
-        out.influences.push_back(
-            {clusters_[k], solvable ? Vector6d(others.solve(at_optimum))
-                                    : Vector6d::Constant(std::numeric_limits<double>::infinity())});
+        out.influences.push_back({clusters_[k], solvable ? Vector6d(others.solve(at_optimum))
+                                                         : Vector6d::Constant(kNothingKnown)});
     }
     const auto used = static_cast<double>(out.influences.size());
-    for (EdgeInfluence& edge : out.influences) edge.moved *= std::sqrt((used - 1) / used);
+    for (EdgeInfluence& edge : out.influences) edge.moved *= std::sqrt(std::max(1.0, used - 1) / used);
     out.independent = system.hessian.inverse();
     return out;
 }

@@ -40,7 +40,7 @@ class EdgeClusters {
     /// Of the pose that solves the system: as of independent points, and what the pose would move by if any
     /// one edge were left out (the jackknife over clusters, which is the sandwich estimator with its
     /// small-sample correction). What nothing but a prior tells has the prior's variance; with no prior, what
-    /// one edge alone tells is not finite.
+    /// one edge alone tells is as uncertain as if nothing were known (1 m, 1 rad).
     /// @param slope  of all residuals' pull (see studentSlope()): weights alone overstate the Hessian
     PoseUncertainty uncertainty(const PoseSystem& system, double slope) const;
 

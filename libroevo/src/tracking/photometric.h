@@ -19,7 +19,7 @@ struct PhotometricPoints {
     std::vector<float> weight;                         ///< w_i of Eq. (3)
     std::vector<std::vector<kernels::Patch>> patches;  ///< [level][point]
     std::vector<std::int32_t> source;                  ///< index of the edge point
-    std::vector<std::int32_t> edge_of;                 ///< index of its edge
+    std::vector<std::int32_t> edge_of;                 ///< index of its edge, -1 for none
     bool turning = true;  ///< patches turn with the camera about its optical axis, Eq. (2)
 
     std::size_t size() const { return axis_x.size(); }
