@@ -16,7 +16,7 @@ find_package(Ceres REQUIRED)
 roevo_test(test_core_mapping
   SOURCES core/test_disjoint_set.cpp core/test_covisibility.cpp core/test_semi_dense.cpp
           core/test_edge_smoothing.cpp core/test_edge_fusion.cpp core/test_bundle_adjustment.cpp core/test_bundle_ceres.cpp core/test_pseudo_edges.cpp
-          core/test_local_mapper.cpp core/test_packed_keyframe.cpp
+          core/test_local_mapper.cpp core/test_packed_keyframe.cpp core/test_pose_graph.cpp
   LIBS roevo_internal Ceres::ceres)
 # One ctest entry per suite, since the cases of a suite share a rendered sequence.
 add_executable(test_core_odometry core/test_trajectory.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp core/test_odometry_accuracy.cpp core/test_odometry_status.cpp
@@ -27,9 +27,9 @@ foreach(suite Trajectory KeyframeChanges FineTracking OdometryAccuracy OdometryS
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
 add_executable(test_core_mapped_runs core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp
-               core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp core/test_relocalisation.cpp)
+               core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp core/test_relocalisation.cpp core/test_loop_closing.cpp)
 target_link_libraries(test_core_mapped_runs PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout Relocalisation)
+foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout Relocalisation LoopClosing)
   add_test(NAME ${suite} COMMAND test_core_mapped_runs --gtest_filter=*${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()

@@ -28,6 +28,24 @@ std::string joined(const std::vector<MapRefusal>& refusals) {
 
 }  // namespace
 
+Losses RunReport::losses() const {
+    Losses out;
+    bool tracked = false;
+    for (const FrameRecord& f : frames) {
+        const FrameResult& r = f.result;
+        if (r.status == FrameStatus::kRejected) continue;
+        const bool failed = r.status == FrameStatus::kPredicted || r.status == FrameStatus::kLost;
+        if ((failed || r.found_at >= 0) && tracked) ++out.lost;
+        tracked = !failed;
+        if (r.status == FrameStatus::kInitialised) ++out.pieces;
+        if (r.found_at >= 0) ++out.found_again;
+        if (r.joined_at >= 0) ++out.joined;
+        if (r.closed_at >= 0) ++out.loops_closed;
+    }
+    out.pieces -= std::min(out.pieces, out.joined);
+    return out;
+}
+
 std::size_t RunReport::count(FrameStatus status) const {
     return static_cast<std::size_t>(std::count_if(
         frames.begin(), frames.end(), [&](const FrameRecord& f) { return f.result.status == status; }));

@@ -14,6 +14,15 @@ struct FrameRecord {
     double ms_decode = 0;
 };
 
+/// How often the camera was lost, and what became of it.
+struct Losses {
+    std::size_t lost = 0;         ///< times that tracking failed after it had worked
+    std::size_t found_again = 0;  ///< of them, those that ended at a keyframe that was recognised
+    std::size_t joined = 0;       ///< tracks that were begun anew and later joined to an older one
+    std::size_t loops_closed = 0;
+    std::size_t pieces = 0;  ///< of the trajectory; where they are relative to each other was not measured
+};
+
 /// All that a run came to.
 struct RunReport {
     std::string input, kind, camera_source, warning, sensor_label;
@@ -35,9 +44,10 @@ struct RunReport {
     std::string scale_warning;             ///< the ground truth has another scale, in one line, or empty
 
     std::size_t count(FrameStatus status) const;
+    Losses losses() const;
 
-    /// Empty when at least one frame was tracked (or the only frame initialised), else the commonest reason. Poses
-    /// that are not numbers are a failure, too: no result is printed then.
+    /// Empty when at least one frame was tracked (or the only frame initialised), else the commonest reason.
+    /// Poses that are not numbers are a failure, too: no result is printed then.
     std::string failure() const;
 };
 

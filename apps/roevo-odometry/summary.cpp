@@ -160,6 +160,12 @@ std::string summaryJson(const RunReport& report) {
     json["mode"] = toString(report.mode);
     json["camera"] = cameraJson(report);
     json["frames"] = framesJson(report);
+    const Losses losses = report.losses();
+    json["losses"] = {{"lost", losses.lost},
+                      {"found_again", losses.found_again},
+                      {"joined", losses.joined},
+                      {"loops_closed", losses.loops_closed},
+                      {"pieces", losses.pieces}};
     json["timings_ms"] = timingsJson(report);
     json["mapping"] = mappingJson(report);
     json["dropped_frames"] = report.dropped;
@@ -187,6 +193,15 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
     for (const auto& [reason, count] : reasonsOf(report))
         if (reason.compare(0, initialised.size(), initialised) != 0 || count > 1)
             std::printf("            %zu %s\n", count, reason.c_str());
+    const Losses losses = report.losses();
+    if (losses.lost > 0)
+        std::printf("losses      lost %zu times, found again %zu times, joined later %zu times\n",
+                    losses.lost, losses.found_again, losses.joined);
+    if (losses.pieces > 1)
+        std::printf(
+            "            the trajectory is in %zu pieces; where they are relative to each other is a guess\n",
+            losses.pieces);
+    if (losses.loops_closed > 0) std::printf("loops       %zu closed\n", losses.loops_closed);
     const auto total = stageTimes(report, kTotal);
     std::printf(
         "time        %.1f ms per frame (median), %.1f ms (95 %%), decoding apart; %.1f s in all, %.0f MB\n",

@@ -242,6 +242,8 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
         {"mapping", "reuse_keyframes", "", "old keyframes that look at the same place take part again", 0, 1,
          &m.reuse_keyframes},
         {"mapping", "max_reused", "keyframes", "at most this many of them", 0, 100, &m.max_reused},
+        {"mapping", "close_loops", "", "places that are recognised correct the whole path since", 0, 1,
+         &m.close_loops},
         {"mapping", "deterministic", "", "the tracker waits for the map; else it takes what is ready", 0, 1,
          &m.deterministic},
         {"mapping", "latency", "frames", "frames after which the mapping of a keyframe takes effect", 1, 100,
@@ -253,6 +255,7 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
          &m.semi_dense_points},
         {"loss", "max_predicted", "frames", "frames bridged by constant velocity before re-anchoring", 0,
          1000, &o.loss.max_predicted},
+        {"loss", "recognise", "", "a lost camera is looked for at all keyframes", 0, 1, &o.loss.recognise},
     };
 }
 

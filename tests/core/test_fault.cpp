@@ -18,6 +18,7 @@ std::size_t numbersOf(Fault::Kind kind) {
         case Kind::kColourSize:
         case Kind::kDepthSize:
             return 4;
+        case Kind::kDepthContradicts:
         case Kind::kGap:
         case Kind::kUnconfirmed:
             return 1;

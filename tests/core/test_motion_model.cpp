@@ -261,5 +261,28 @@ TEST(MotionModel, RowMotionIsExactAtTheFramesTimeUnderConstantAcceleration) {
     }
 }
 
+/// Frames at these times, each tracked by a search, which tells no velocity.
+bool isBlindAfter(const std::vector<double>& times) {
+    MotionModel model = makeModel();
+    bool blind = false;
+    for (const double time : times) {
+        model.expect(time);
+        blind = model.predict(time).blind;
+        model.anchor(time, Pose());
+    }
+    return blind;
+}
+
+TEST(MotionModel, AGapIsWhatIsLongAndLongerThanUsual) {
+    EXPECT_FALSE(isBlindAfter({10, 10.03, 10.06, 10.09}));
+    EXPECT_FALSE(isBlindAfter({10, 10.03, 10.06, 10.4})) << "velocity is worth something for so long";
+    EXPECT_TRUE(isBlindAfter({10, 10.03, 10.06, 10.7}));
+    EXPECT_FALSE(isBlindAfter({10, 10.7, 11.4, 12.1})) << "frames are always so far apart";
+    EXPECT_TRUE(isBlindAfter({10, 10.7, 11.4, 13.4}));
+    std::vector<double> slower{10, 10.03, 10.06, 10.09};
+    for (int i = 1; i <= 20; ++i) slower.push_back(10 + i);
+    EXPECT_FALSE(isBlindAfter(slower)) << "the rate has changed";
+}
+
 }  // namespace
 }  // namespace roevo

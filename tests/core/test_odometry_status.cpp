@@ -268,5 +268,28 @@ TEST_F(OdometryStatus, TrajectoryIsSortedUniqueAndKeyframesAreOfIt) {
     }
 }
 
+TEST_F(OdometryStatus, DepthThatContradictsTheKeyframeIsLeftOutAndNamed) {
+    for (const bool noise : {true, false}) {
+        odometry_ = Odometry(room().camera, OdometryOptions(), room().start());
+        feedRoom(0, 10);
+        for (int i = 10; i < 15; ++i) {
+            RgbdFrame frame = frameAt(i);
+            frame.depth = 2 * frame.depth;
+            if (noise) cv::randu(frame.depth, 0.5, 5.0);
+            const FrameResult result = feed(frame);
+            EXPECT_EQ(result.status, FrameStatus::kOk) << result.reason;
+            EXPECT_NE(result.reason.find("depth image contradicts"), std::string::npos) << result.reason;
+            EXPECT_LT(errorAt(result, i), 0.01) << "the edges alone hold the camera";
+            EXPECT_FALSE(result.new_keyframe);
+        }
+        for (int i = 15; i < 20; ++i) {
+            const FrameResult result = feed(frameAt(i));
+            EXPECT_EQ(result.status, FrameStatus::kOk);
+            EXPECT_EQ(result.reason, "");
+            EXPECT_LT(errorAt(result, i), 0.005);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace roevo

@@ -169,10 +169,10 @@ TEST(Trajectory, AJoinedTrackMovesAsAWholeAndSoDoesWhatTheMapSaysOfItLater) {
     trajectory.addKeyframe(2, from(1, at(1)), {});
     trajectory.addFrame(2, from(2, at(0)));
     EXPECT_EQ(trajectory.beginOfTrack(2), 1);
-    const TrackJoin join = trajectory.join(2, from(0, at(3)));  // keyframe 2 is at x = 3
+    const Correction join = trajectory.join(2, from(0, at(3)));  // keyframe 2 is at x = 3
     EXPECT_EQ(join.keyframes, (std::vector<int>{1, 2}));
-    EXPECT_EQ(join.into, 0);
-    EXPECT_NEAR(join.motion.translation().x(), -48, 1e-12);
+    EXPECT_EQ(join.recognised, 0);
+    EXPECT_NEAR(join.motions.front().translation().x(), -48, 1e-12);
     EXPECT_EQ(trajectory.beginOfTrack(2), 0);
     EXPECT_NEAR(trajectory.frames()[1].T_world_camera.translation().x(), 2, 1e-12);
     EXPECT_NEAR(trajectory.frames()[2].T_world_camera.translation().x(), 3, 1e-12);
@@ -188,6 +188,68 @@ TEST(Trajectory, AJoinedTrackMovesAsAWholeAndSoDoesWhatTheMapSaysOfItLater) {
     after.poses = {{2, at(3.6)}, {3, at(4.6)}};
     trajectory.apply(after);
     EXPECT_NEAR(trajectory.keyframePose(2).translation().x(), 3.6, 1e-12);
+}
+
+/// Out along x in ten steps and back, with a step that is told too long; keyframe 20 is where keyframe 0 is.
+Trajectory thereAndBack(double error) {
+    Trajectory trajectory;
+    const auto known = [](const Pose& pose) {
+        return RelativePose{-1, pose, {1e-6 * Matrix6d::Identity(), {}}};
+    };
+    beginTrack(trajectory, 0, at(0));
+    trajectory.addFrame(0, from(0, at(0)));
+    for (int i = 1; i <= 20; ++i) {
+        RelativePose step = known(at(i <= 10 ? 1 : -1));
+        step.T_keyframe_camera.translation().y() = error;
+        step.keyframe = i - 1;
+        trajectory.addFrame(i, step);
+        trajectory.addKeyframe(i, step, {});
+    }
+    return trajectory;
+}
+
+RelativePose seen(int keyframe, const Pose& pose) {
+    return {keyframe, pose, {1e-8 * Matrix6d::Identity(), {}}};
+}
+
+TEST(Trajectory, ALoopSharesOutWhatHasGoneWrong) {
+    Trajectory trajectory = thereAndBack(0.01);
+    EXPECT_NEAR(trajectory.keyframePose(20).translation().y(), 0.2, 1e-12);
+    const Matrix6d before = trajectory.worldCovariance(from(20, Pose()));
+    const Correction correction = trajectory.closeLoop({{19, seen(1, Pose())}, {20, seen(0, Pose())}});
+    ASSERT_EQ(correction.keyframes.size(), 21U);
+    EXPECT_NEAR(trajectory.keyframePose(20).translation().norm(), 0, 1e-3);
+    EXPECT_NEAR((trajectory.keyframePose(19).translation() - trajectory.keyframePose(1).translation()).norm(),
+                0, 1e-3);
+    for (int id = 0; id <= 20; ++id) {  // two steps in one place, each as wrong as the other way
+        EXPECT_LT(std::abs(trajectory.keyframePose(id).translation().y()), 0.06) << id;
+        EXPECT_NEAR(trajectory.keyframePose(id).translation().x(), id <= 10 ? id : 20 - id, 0.02) << id;
+    }
+    EXPECT_NEAR(trajectory.frames()[20].T_world_camera.translation().norm(), 0, 1e-3);
+    EXPECT_LT(trajectory.worldCovariance(from(20, Pose())).trace(), before.trace() / 5);
+
+    MapUpdate late;  // from before the loop
+    late.keyframe = 20;
+    late.poses = {{20, at(0)}};
+    late.poses[0].second.translation().y() = 0.21;
+    trajectory.apply(late);
+    EXPECT_NEAR(trajectory.keyframePose(20).translation().y(), 0.01, 2e-3);
+}
+
+TEST(Trajectory, ALoopThatContradictsAllElseMovesNothing) {
+    Trajectory trajectory = thereAndBack(0.001);
+    const Correction correction = trajectory.closeLoop({{19, seen(10, Pose())}, {20, seen(10, Pose())}});
+    EXPECT_TRUE(correction.keyframes.empty());
+    EXPECT_NEAR(trajectory.keyframePose(20).translation().y(), 0.02, 1e-12);
+}
+
+TEST(Trajectory, ALoopMovesNoOtherTrack) {
+    Trajectory trajectory = thereAndBack(0.01);
+    beginTrack(trajectory, 21, at(7));
+    const Correction correction = trajectory.closeLoop({{19, seen(1, Pose())}, {20, seen(0, Pose())}});
+    EXPECT_EQ(correction.motionOf(21), nullptr);
+    EXPECT_NE(correction.motionOf(20), nullptr);
+    EXPECT_NEAR(trajectory.keyframePose(21).translation().x(), 7, 1e-12);
 }
 
 }  // namespace

@@ -35,6 +35,9 @@ struct FrameResult {
     Matrix6d covariance = Matrix6d::Zero();
     bool new_keyframe = false;          ///< this frame brought a new keyframe: itself or the frame before it
     int num_edges = 0, num_points = 0;  ///< organized edges and their points in this frame
+    int found_at = -1;                  ///< keyframe that a lost camera was recognised by
+    int joined_at = -1;                 ///< keyframe of an older track that this frame's track was joined to
+    int closed_at = -1;                 ///< keyframe that a loop was closed to
     double matched_ratio = 0;           ///< share of the keyframe's visible edges that were associated, 0..1
     int inliers = 0;                    ///< associated edge points (in tr: that passed the chi-square test)
     /// m: how far the map moved the camera before this frame was tracked (mode ba); positions before and

@@ -91,6 +91,7 @@ struct MotionOptions {
 
 struct LossOptions {
     int max_predicted = 10;  ///< frames bridged by constant velocity
+    bool recognise = true;   ///< a lost camera is looked for at all keyframes
 };
 
 /// Local mapping, in mode ba (except where said).
@@ -108,6 +109,7 @@ struct MappingOptions {
     int min_looks = 3;             ///< fewer such keyframes cannot judge
     bool reuse_keyframes = true;   ///< old keyframes that look at the same place take part again
     int max_reused = 4;            ///< at most this many of them
+    bool close_loops = true;       ///< places that are recognised correct the whole path since
     bool deterministic = true;     ///< the tracker waits for the map; else it takes what is ready
     int latency = 4;               ///< frames after which the mapping of a keyframe takes effect
     double pseudo_weight = 0.3;    ///< what pseudo-edges of the keyframe still count in tracking

@@ -180,11 +180,11 @@ void LocalMapper::setRowMotion(int keyframe, const RowMotion& rows) {
     roevo::setRowMotion(at->second, rows, camera_);
 }
 
-void LocalMapper::join(const TrackJoin& join) {
-    for (const int id : join.keyframes) {
-        MapKeyframe& keyframe = keyframes_.at(id);
-        keyframe.T_world_camera = join.motion * keyframe.T_world_camera;
-        keyframe.track = keyframes_.at(join.into).track;
+void LocalMapper::correct(const Correction& correction) {
+    for (std::size_t i = 0; i < correction.keyframes.size(); ++i) {
+        MapKeyframe& keyframe = keyframes_.at(correction.keyframes[i]);
+        keyframe.T_world_camera = correction.motions[i] * keyframe.T_world_camera;
+        keyframe.track = keyframes_.at(correction.recognised).track;
     }
 }
 
@@ -207,7 +207,8 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
 
     MapUpdate update;
     update.keyframe = id;
-    update.reused = static_cast<int>(reused.size());
+    for (const MapKeyframe* old : reused)
+        if (graph_.sharedPoints(id, old->id) >= options_.fine.min_inliers) update.reused.push_back(old->id);
     buildWindow(id, reused);
     addPriors();
     if (window_.size() < 2) {

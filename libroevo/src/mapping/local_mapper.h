@@ -18,20 +18,23 @@ struct MapUpdate {
     int keyframe = 0;                         ///< the inserted one
     std::vector<std::pair<int, Pose>> poses;  ///< T_world_camera of all keyframes that were refined
     std::vector<EdgeVerdict> verdicts;  ///< of the inserted keyframe's edges; empty while it is the only one
-    int reused = 0;                     ///< old keyframes that took part
+    std::vector<int> reused;            ///< old keyframes that show the same edges
     RefinementResult refinement;
     std::vector<MapRefusal> refusals;
     double milliseconds = 0;  ///< of work on it
 };
 
-/// A track that turned out to be in the same world as another.
-struct TrackJoin {
-    std::vector<int> keyframes;  ///< of the track, in order
-    int into = 0;                ///< a keyframe of the other
-    Pose motion;                 ///< how the track moves
+/// How keyframes move when a place is recognised: a whole track to where it belongs, or each as a loop wants.
+struct Correction {
+    std::vector<int> keyframes;  ///< in order
+    std::vector<Pose> motions;   ///< of each, of the world: T_world_camera <- motion * T_world_camera
+    int recognised = -1;         ///< keyframe; those that move belong to its track from now on
 
-    bool moves(int keyframe) const {
-        return std::binary_search(keyframes.begin(), keyframes.end(), keyframe);
+    /// Null where the keyframe stays.
+    const Pose* motionOf(int keyframe) const {
+        const auto at = std::lower_bound(keyframes.begin(), keyframes.end(), keyframe);
+        if (at == keyframes.end() || *at != keyframe) return nullptr;
+        return &motions[static_cast<std::size_t>(at - keyframes.begin())];
     }
 };
 
@@ -43,7 +46,7 @@ class LocalMapper {
 
     MapUpdate insert(MapKeyframe keyframe);
 
-    void join(const TrackJoin& join);
+    void correct(const Correction& correction);
 
     /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
     void setFound(int keyframe, std::vector<float> shares);

@@ -31,11 +31,10 @@ class CollectingMapper : public Mapper {
             map_.push_back(std::move(edge));
         }
     }
-    void join(const TrackJoin& join) override {
-        const Eigen::Isometry3f T = join.motion.cast<float>();
+    void correct(const Correction& correction) override {
         for (MapEdge& edge : map_)
-            if (join.moves(edge.keyframe_id))
-                for (Eigen::Vector3f& point : edge.points) point = T * point;
+            if (const Pose* motion = correction.motionOf(edge.keyframe_id))
+                for (Eigen::Vector3f& point : edge.points) point = motion->cast<float>() * point;
     }
     std::vector<MapUpdate> due(double, double&) override { return {}; }
     const std::deque<MapUpdate>& outstanding() override { return none_; }
@@ -63,16 +62,16 @@ class RefiningMapper : public Mapper {
     }
 
     void insert(NewKeyframe fresh, double timestamp) override;
-    void join(const TrackJoin& join) override;
+    void correct(const Correction& correction) override;
     std::vector<MapUpdate> due(double timestamp, double& waited_ms) override;
     const std::deque<MapUpdate>& outstanding() override;
     EdgeMap fusedMap() const override { return finished().fusedMap(); }
     EdgeMap keyframeEdges() const override { return finished().keyframeEdges(); }
 
   private:
-    /// A keyframe to be inserted, or a track to be joined.
+    /// A keyframe to be inserted, or a correction of those that were.
     struct Job {
-        TrackJoin join;
+        Correction correction;
         MapKeyframe keyframe;
         int previous = -1;
         std::vector<float> found;  ///< MapKeyframe::found of `previous`
@@ -121,9 +120,9 @@ void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
     push(std::move(job));
 }
 
-void RefiningMapper::join(const TrackJoin& join) {
+void RefiningMapper::correct(const Correction& correction) {
     Job job;
-    job.join = join;
+    job.correction = correction;
     push(std::move(job));
 }
 
@@ -176,12 +175,12 @@ void RefiningMapper::work() {
         jobs_.pop_front();
         busy_ = true;
         lock.unlock();
-        const bool joins = !job.join.keyframes.empty();
+        const bool corrects = !job.correction.keyframes.empty();
         MapUpdate update;
         std::exception_ptr thrown;
         try {
-            if (joins)
-                mapper_.join(job.join);
+            if (corrects)
+                mapper_.correct(job.correction);
             else
                 update = run(std::move(job));
         } catch (...) {
@@ -190,7 +189,7 @@ void RefiningMapper::work() {
         lock.lock();
         busy_ = false;
         if (thrown) failure_ = thrown;
-        if (!joins || thrown) updates_.push_back(std::move(update));
+        if (!corrects || thrown) updates_.push_back(std::move(update));
         changed_.notify_all();
     }
 }

@@ -29,7 +29,7 @@ class Mapper {
     virtual void insert(NewKeyframe keyframe, double timestamp) = 0;
 
     /// After what was inserted before.
-    virtual void join(const TrackJoin& join) = 0;
+    virtual void correct(const Correction& correction) = 0;
 
     /// What takes effect with the frame at this time.
     /// @param waited_ms  grows by the time that was waited for it

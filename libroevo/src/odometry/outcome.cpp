@@ -2,7 +2,9 @@
 
 namespace roevo {
 
-std::string describe(const Outcome& outcome) {
+namespace {
+
+std::string whatBecame(const Outcome& outcome) {
     const std::string why = describe(outcome.tracking.fault);
     switch (outcome.status) {
         case FrameStatus::kInitialised:
@@ -16,16 +18,23 @@ std::string describe(const Outcome& outcome) {
         default:
             break;
     }
-    std::string text;
     if (outcome.found_at >= 0)
-        text = "found again at keyframe " + std::to_string(outcome.found_at) + ": " + why;
-    else if (outcome.tracking.searched)
-        text = "found by searching around the last pose: " + why;
-    if (outcome.joined_at >= 0)
-        text += std::string(text.empty() ? "" : "; ") +
-                "the new track is joined to the old one at keyframe " + std::to_string(outcome.joined_at);
-    if (!outcome.no_keyframe) return text;
-    return text + (text.empty() ? "" : "; ") + "a new keyframe is due, but " + describe(outcome.no_keyframe);
+        return "found again at keyframe " + std::to_string(outcome.found_at) + ": " + why;
+    return outcome.tracking.searched ? "found by searching around the last pose: " + why : "";
+}
+
+}  // namespace
+
+std::string describe(const Outcome& outcome, const WorldChange& change) {
+    std::string text = whatBecame(outcome);
+    const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
+    if (outcome.tracking.tracked && outcome.tracking.depth_fault)
+        add(describe(outcome.tracking.depth_fault) + ", and it is left out");
+    if (change.joined_at >= 0)
+        add("the new track is joined to the old one at keyframe " + std::to_string(change.joined_at));
+    if (change.closed_at >= 0) add("a loop is closed to keyframe " + std::to_string(change.closed_at));
+    if (outcome.no_keyframe) add("a new keyframe is due, but " + describe(outcome.no_keyframe));
+    return text;
 }
 
 FrameResult rejected(double timestamp, const Fault& fault, const char* where) {

@@ -1,6 +1,7 @@
 #pragma once
 #include "roevo/frame_result.h"
 #include "tracking/tracker.h"
+#include "world.h"
 
 namespace roevo {
 
@@ -13,11 +14,11 @@ struct Outcome {
     bool new_keyframe = false;  ///< this frame brought a new keyframe: itself or the frame before it
     int lost_frames = 0;        ///< until this one
     int found_at = -1;          ///< keyframe that a lost frame was recognised by
-    int joined_at = -1;         ///< keyframe of an older track that this one was joined at
 };
 
-/// The reason of a frame's status in words: the one place where they are made.
-std::string describe(const Outcome& outcome);
+/// The reason of a frame's status, and what became of the world, in words: the one place where they are
+/// made.
+std::string describe(const Outcome& outcome, const WorldChange& change);
 
 /// A frame that is not processed.
 FrameResult rejected(double timestamp, const Fault& fault, const char* where = "");

@@ -1,6 +1,8 @@
 #include "relocaliser.h"
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "tracking/camera_scale.h"
 #include "tracking/se3.h"
@@ -25,20 +27,28 @@ Relocaliser::Relocaliser(const PinholeCamera& camera, const OdometryOptions& opt
       verifier_(options.sensor),
       registrar_(camera, options) {}
 
-void Relocaliser::add(const Keyframe& keyframe, const Frame& frame) {
+void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, int end) {
     collect();
     Keyframe copy;  // of what is remembered
+    copy.id = keyframe.id;
     copy.edges = keyframe.edges;
     copy.median_depth = keyframe.median_depth;
     copy.row_motion = keyframe.row_motion;
-    newest_ =
-        std::async(std::launch::async, [this, copy = std::move(copy), grey = frame.pyramid.level(0).clone()] {
-            return describe(copy, grey);
+    auto seen = std::make_unique<Frame>();
+    seen->edges = frame.edges;
+    seen->images.depth = frame.images.depth.clone();
+    seen->pyramid.build(frame.pyramid.level(0).clone(), 1);
+    at_work_ =
+        std::async(std::launch::async, [this, copy = std::move(copy), seen = std::move(seen), end]() mutable {
+            return describe(copy, std::move(seen), end);
         });
 }
 
-Relocaliser::Place Relocaliser::describe(const Keyframe& keyframe, const cv::Mat& grey) {
-    Place place;
+Relocaliser::Described Relocaliser::describe(const Keyframe& keyframe, std::unique_ptr<Frame> frame,
+                                             int end) {
+    Described out;
+    Place& place = out.place;
+    const cv::Mat& grey = frame->pyramid.level(0);
     describer_.describe(keyframe.edges, grey, place.points);
     if (place.points.size() > kPoints) place.points.resize(kPoints);
     place.points.shrink_to_fit();
@@ -46,12 +56,18 @@ Relocaliser::Place Relocaliser::describe(const Keyframe& keyframe, const cv::Mat
     place.edges = PackedKeyframe(toMapKeyframe(keyframe, colours, ideal_, options_.mapping.max_points));
     place.median_depth = keyframe.median_depth;
     place.row_motion = keyframe.row_motion;
-    return place;
+    out.alike = lookUp(place.points, keyframe.id, end);
+    if (out.alike.empty()) return out;
+    frame->grid.build(frame->edges, grey.cols, grey.rows);
+    out.frame = std::move(frame);
+    out.edges = keyframe.edges;
+    return out;
 }
 
 void Relocaliser::collect() {
-    if (!newest_.valid()) return;
-    places_.push_back(newest_.get());
+    if (!at_work_.valid()) return;
+    newest_ = at_work_.get();
+    places_.push_back(std::move(newest_.place));
     index_.insert(static_cast<int>(places_.size()) - 1, places_.back().points);
 }
 
@@ -89,50 +105,80 @@ std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& 
     return found.T_frame_keyframe.inverse();
 }
 
+std::optional<RelativePose> Relocaliser::resembled() {
+    collect();
+    if (newest_.alike.empty() || newest_.alike.front().first.inliers < kLeastSimilarPoints)
+        return std::nullopt;
+    const auto& [points, id] = newest_.alike.front();
+    return RelativePose{id, points.T_candidate_query, {}};
+}
+
+std::optional<RelativePose> Relocaliser::recognised(const Trajectory& trajectory,
+                                                    const Whereabouts& whereabouts) {
+    collect();
+    if (newest_.alike.empty()) return std::nullopt;
+    return surest(registered(newest_.alike, *newest_.frame, newest_.edges), trajectory, whereabouts);
+}
+
 std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajectory& trajectory,
-                                              const Whereabouts& whereabouts, int end) {
+                                              const Whereabouts& whereabouts) {
     collect();
     const EdgePoints3D edges = lifted(frame);
     if (edges.size() == 0) return std::nullopt;
     describer_.describe(edges, frame.pyramid.level(0), points_);
     if (points_.size() > kPoints) points_.resize(kPoints);
+    const int all = static_cast<int>(places_.size());
+    return surest(registered(lookUp(points_, -1, all), frame, edges), trajectory, whereabouts);
+}
+
+/// Keyframes before `end` whose points look alike, those with the most agreeing points first.
+std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, int query_id, int end) {
+    std::vector<Alike> alike;
+    if (end <= 0) return alike;
     std::vector<int> excluded;
     for (int id = end; id < static_cast<int>(places_.size()); ++id) excluded.push_back(id);
     std::vector<PlaceCandidate> candidates;
-    index_.query(points_, kCandidates, excluded, candidates);
-    std::vector<std::pair<Verification, int>> alike;
+    index_.query(points, kCandidates, excluded, candidates);
     for (const PlaceCandidate& candidate : candidates) {
         const auto& place = places_[static_cast<std::size_t>(candidate.id)];
-        const auto found = verifier_.verify(points_, -1, place.points, candidate.id);
+        const auto found = verifier_.verify(points, query_id, place.points, candidate.id);
         if (found) alike.emplace_back(*found, candidate.id);
     }
     std::stable_sort(alike.begin(), alike.end(),
-                     [](const auto& a, const auto& b) { return a.first.inliers > b.first.inliers; });
+                     [](const Alike& a, const Alike& b) { return a.first.inliers > b.first.inliers; });
     if (alike.size() > kRegistered) alike.resize(kRegistered);
+    return alike;
+}
+
+/// Those whose edges do not contradict.
+std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<Alike>& alike,
+                                                              const Frame& frame, const EdgePoints3D& edges) {
     std::vector<Recognition> recognised;
-    for (const auto& [points, id] : alike) {
+    for (const auto& [of_points, id] : alike) {
         const EdgeRegistration found =
-            registrar_.registerEdges(unpacked(id), frame, edges, points.T_candidate_query.inverse());
-        const double confidence = placeConfidence(points, found);
+            registrar_.registerEdges(unpacked(id), frame, edges, of_points.T_candidate_query.inverse());
+        const double confidence = placeConfidence(of_points, found);
         if (confidence <= 0) continue;
         const RelativePose pose{id, found.T_frame_keyframe.inverse(), {found.covariance, {}}};
-        recognised.push_back({pose, trajectory.worldPose(pose), confidence, found.accepted});
+        recognised.push_back({pose, confidence, found.accepted});
     }
-    return surest(recognised, whereabouts);
+    return recognised;
 }
 
 std::optional<RelativePose> Relocaliser::surest(const std::vector<Recognition>& recognised,
+                                                const Trajectory& trajectory,
                                                 const Whereabouts& whereabouts) {
     const auto best = std::max_element(
         recognised.begin(), recognised.end(),
         [](const Recognition& a, const Recognition& b) { return a.confidence < b.confidence; });
     if (best == recognised.end()) return std::nullopt;
     if (best->accepted && best->confidence >= kUnambiguousConfidence) return best->pose;
+    const Pose there = trajectory.worldPose(best->pose);
     const auto isRival = [&](const Recognition& other) {
-        const Pose apart = best->T_world_camera.inverse() * other.T_world_camera;
+        const Pose apart = there.inverse() * trajectory.worldPose(other.pose);
         return apart.translation().norm() > kSamePlace || rotationAngle(apart) > kSameDirection;
     };
-    const double distance = (best->T_world_camera.translation() - whereabouts.centre).norm();
+    const double distance = (there.translation() - whereabouts.centre).norm();
     if (distance > whereabouts.radius || std::any_of(recognised.begin(), recognised.end(), isRival))
         return std::nullopt;
     return best->pose;

@@ -32,13 +32,20 @@ class Relocaliser {
 
     /// In a thread of its own.
     /// @param frame  that the keyframe was made of
-    void add(const Keyframe& keyframe, const Frame& frame);
+    /// @param end    keyframes before this one are looked for in it, see resembled()
+    void add(const Keyframe& keyframe, const Frame& frame, int end);
+
+    /// The older keyframe that the newest one looks most like, and its pose relative to that by points alone:
+    /// about right, with no covariance. Waits for the thread.
+    [[nodiscard]] std::optional<RelativePose> resembled();
+    /// The older keyframe that the newest one shows, and its pose relative to that.
+    [[nodiscard]] std::optional<RelativePose> recognised(const Trajectory& trajectory,
+                                                         const Whereabouts& whereabouts);
 
     /// The keyframe that the frame shows, and its pose relative to that.
     /// @param trajectory  with the keyframes
-    /// @param end  only keyframes before this one
     [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, const Trajectory& trajectory,
-                                                   const Whereabouts& whereabouts, int end);
+                                                   const Whereabouts& whereabouts);
 
     /// The pose about this one that the edges of keyframe and frame, both ways, and their depths agree on, if
     /// they do.
@@ -54,13 +61,22 @@ class Relocaliser {
     };
     struct Recognition {
         RelativePose pose;
-        Pose T_world_camera;
         double confidence = 0;
         bool accepted = false;
     };
+    using Alike = std::pair<Verification, int>;  ///< and the keyframe
+    struct Described {
+        Place place;
+        std::unique_ptr<Frame> frame;  ///< what is registered to older keyframes
+        EdgePoints3D edges;
+        std::vector<Alike> alike;
+    };
     static std::optional<RelativePose> surest(const std::vector<Recognition>& recognised,
-                                              const Whereabouts& whereabouts);
-    Place describe(const Keyframe& keyframe, const cv::Mat& grey);
+                                              const Trajectory& trajectory, const Whereabouts& whereabouts);
+    Described describe(const Keyframe& keyframe, std::unique_ptr<Frame> frame, int end);
+    std::vector<Alike> lookUp(const PlacePoints& points, int query_id, int end);
+    std::vector<Recognition> registered(const std::vector<Alike>& alike, const Frame& frame,
+                                        const EdgePoints3D& edges);
     void collect();
     Keyframe unpacked(int id) const;
     EdgePoints3D lifted(const Frame& frame) const;
@@ -71,9 +87,10 @@ class Relocaliser {
     PlaceIndex index_;
     PlaceVerifier verifier_;
     EdgeRegistrar registrar_;
-    std::vector<Place> places_;  ///< of each keyframe, by its id
-    PlacePoints points_;         ///< of the frame
-    std::future<Place> newest_;  // last: waits for the thread
+    std::vector<Place> places_;       ///< of each keyframe, by its id
+    PlacePoints points_;              ///< of the frame
+    Described newest_;                ///< keyframe; its place is among places_
+    std::future<Described> at_work_;  // last: waits for the thread
 };
 
 }  // namespace roevo

@@ -8,7 +8,9 @@
 namespace roevo {
 namespace {
 
-constexpr double kStill = 0.02;             // m; less change of view than this is hardly any
+constexpr double kMostContradiction =
+    50;                          // squared sigmas; a loop that contradicts all else by more is wrong
+constexpr double kStill = 0.02;  // m; less change of view than this is hardly any
 constexpr std::size_t kRecentFrames = 128;  // of which it is kept which edges their errors come from
 constexpr double kTypicalDepth = 2;  // m; at this depth a turn by 1 rad changes a view like so many metres
 
@@ -103,16 +105,18 @@ int Trajectory::beginOfTrack(int keyframe) const {
     return keyframe;
 }
 
-TrackJoin Trajectory::join(int keyframe, const RelativePose& pose) {
-    TrackJoin join;
-    join.into = pose.keyframe;
-    join.motion = worldPose(pose) * keyframePose(keyframe).inverse();
+Correction Trajectory::join(int keyframe, const RelativePose& pose) {
+    Correction join;
+    join.recognised = pose.keyframe;
+    const Pose motion = worldPose(pose) * keyframePose(keyframe).inverse();
     const int begin = beginOfTrack(keyframe);
+    const std::vector<int> tracks = this->tracks();
     for (int id = begin; id < static_cast<int>(keyframes_.size()); ++id)
-        if (beginOfTrack(id) == begin) join.keyframes.push_back(id);
+        if (tracks[static_cast<std::size_t>(id)] == begin) join.keyframes.push_back(id);
     for (const int id : join.keyframes) {
         Pose& placed = keyframes_[static_cast<std::size_t>(id)].T_world_camera;
-        placed = join.motion * placed;
+        placed = motion * placed;
+        join.motions.push_back(motion);
     }
     // As well known as what was recognised
     links_[static_cast<std::size_t>(begin)] = {
@@ -123,17 +127,81 @@ TrackJoin Trajectory::join(int keyframe, const RelativePose& pose) {
     }
     for (const int id : join.keyframes)
         if (id != keyframe) forgetAll(in_world_[static_cast<std::size_t>(id)]);
-    joins_.push_back(join);
+    corrections_.push_back(join);
     return join;
 }
 
+/// First keyframe of each keyframe's track.
+std::vector<int> Trajectory::tracks() const {
+    std::vector<int> tracks;
+    for (std::size_t id = 0; id < links_.size(); ++id) {
+        const int parent = links_[id].keyframe;  // older
+        tracks.push_back(parent < 0 ? static_cast<int>(id) : tracks[static_cast<std::size_t>(parent)]);
+    }
+    return tracks;
+}
+
+std::vector<PoseConstraint> Trajectory::constraintsOf(const std::vector<int>& tracks, int track) const {
+    std::vector<PoseConstraint> constraints;
+    // As the map has it, and as well known as tracking knows it: the map's own knowledge is in its edges
+    const auto relate = [&](int from, int to, const Matrix6d& covariance) {
+        if (tracks[static_cast<std::size_t>(from)] != track || tracks[static_cast<std::size_t>(to)] != track)
+            return;
+        constraints.push_back({from, to, keyframePose(from).inverse() * keyframePose(to), covariance});
+    };
+    for (std::size_t id = 0; id < links_.size(); ++id)
+        if (links_[id].keyframe >= 0)
+            relate(links_[id].keyframe, static_cast<int>(id), links_[id].covariance());
+    for (const auto& [older, newer] : related_) {
+        const RelativePose& link = links_[static_cast<std::size_t>(newer)];
+        if (link.keyframe >= 0) relate(older, newer, link.covariance());
+    }
+    return constraints;
+}
+
+Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>& recognised) {
+    const std::vector<int> tracks = this->tracks();
+    const int track = tracks[static_cast<std::size_t>(recognised.front().first)];
+    std::vector<PoseConstraint> constraints = constraintsOf(tracks, track), loops = loops_;
+    for (const auto& [keyframe, pose] : recognised)
+        loops.push_back({pose.keyframe, keyframe, pose.T_keyframe_camera, pose.covariance(), true});
+    for (const PoseConstraint& loop : loops)
+        if (tracks[static_cast<std::size_t>(loop.to)] == track) constraints.push_back(loop);
+    std::vector<Pose> poses;
+    for (const KeyframeInfo& keyframe : keyframes_) poses.push_back(keyframe.T_world_camera);
+    if (!optimisePoseGraph(poses, constraints, track)) return {};
+    for (std::size_t k = loops.size() - recognised.size(); k < loops.size(); ++k)
+        if (contradiction(poses, loops[k]) > kMostContradiction) return {};
+    Correction correction;
+    correction.recognised = recognised.front().second.keyframe;
+    for (std::size_t id = 0; id < poses.size(); ++id) {
+        if (tracks[id] != track) continue;
+        Pose& placed = keyframes_[id].T_world_camera;
+        correction.keyframes.push_back(static_cast<int>(id));
+        correction.motions.push_back(poses[id] * placed.inverse());
+        placed = poses[id];
+    }
+    loops_ = std::move(loops);
+    corrections_.push_back(correction);
+    const auto& [keyframe, pose] = recognised.back();
+    const PoseUncertainty by_loop{inWorld(pose).covariance(), {}};
+    PoseUncertainty& known = in_world_[static_cast<std::size_t>(keyframe)];
+    if (by_loop.independent.trace() < known.covariance().trace()) known = by_loop;
+    return correction;
+}
+
 void Trajectory::apply(const MapUpdate& update) {
+    for (const int old : update.reused) related_.emplace_back(old, update.keyframe);
+    // Updates come in order: those of keyframes from before a correction know nothing of it
+    corrections_.erase(
+        std::remove_if(corrections_.begin(), corrections_.end(),
+                       [&](const Correction& c) { return c.keyframes.back() < update.keyframe; }),
+        corrections_.end());
     for (const auto& [id, pose] : update.poses) {
         Pose& placed = keyframes_[static_cast<std::size_t>(id)].T_world_camera;
         placed = pose;
-        // What the map did before a track was moved
-        for (const TrackJoin& join : joins_)
-            if (update.keyframe <= join.keyframes.back() && join.moves(id)) placed = join.motion * placed;
+        for (const Correction& correction : corrections_)
+            if (const Pose* motion = correction.motionOf(id)) placed = *motion * placed;
     }
     for (auto id = static_cast<std::size_t>(update.keyframe) + 1; id < keyframes_.size(); ++id) {
         if (links_[id].keyframe < 0) continue;

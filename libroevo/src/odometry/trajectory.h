@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "mapping/local_mapper.h"
+#include "mapping/pose_graph.h"
 #include "roevo/frame_result.h"
 #include "tracking/relative_pose.h"
 
@@ -23,12 +24,19 @@ class Trajectory {
     int beginOfTrack(int keyframe) const;
     /// Moves a keyframe's track to where the keyframe was recognised.
     /// @param pose  of the keyframe, relative to one of another track
-    TrackJoin join(int keyframe, const RelativePose& pose);
+    Correction join(int keyframe, const RelativePose& pose);
+    /// Moves the keyframes of a track, all a little, so that those that were recognised are where they were
+    /// seen: a pose graph of tracked motions, of what the map relates, and of all loops so far.
+    /// @param recognised  keyframes and their poses relative to older ones of the same track
+    /// @return moves nothing where that contradicts the rest
+    Correction closeLoop(const std::vector<std::pair<int, RelativePose>>& recognised);
 
     /// Moves the keyframes as the map has it; younger ones follow the one that they were tracked from.
     void apply(const MapUpdate& update);
 
     Pose worldPose(const RelativePose& pose) const;
+    /// Of the last frame, with all corrections since; identity where there is none.
+    Pose lastPose() const { return frames_.empty() ? Pose() : worldPose(frames_.back().pose); }
     /// As FrameResult::covariance.
     Matrix6d worldCovariance(const RelativePose& pose) const;
     /// Of the motion from one frame to another (their indices in the order of addFrame()): of T_from_to,
@@ -53,9 +61,13 @@ class Trajectory {
     };
     RelativePose inWorld(const RelativePose& pose) const;
     Pose finalPose(const Frame& frame) const;
+    std::vector<int> tracks() const;
+    std::vector<PoseConstraint> constraintsOf(const std::vector<int>& tracks, int track) const;
 
     std::vector<KeyframeInfo> keyframes_;
-    std::vector<TrackJoin> joins_;
+    std::vector<Correction> corrections_;       ///< that updates to come do not know of yet
+    std::vector<std::pair<int, int>> related_;  ///< keyframes that the map relates, the older one first
+    std::vector<PoseConstraint> loops_;
     std::vector<PoseUncertainty> in_world_;  ///< of the keyframes; influences of the newest alone
     std::vector<RelativePose> links_;        ///< of the keyframes, to the ones before; -1: to the world
     std::vector<Frame> frames_;

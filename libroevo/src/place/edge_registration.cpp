@@ -25,9 +25,8 @@ constexpr double kLeastVisible = 0.25;
 constexpr double kLeastDepthAgreement = 0.7;
 constexpr double kMostSigmaTranslation = 0.02;  ///< m
 constexpr double kMostSigmaRotation = 1 * kDegree;
-constexpr double kDepthSigmas = 3;       ///< within which depths agree
-constexpr int kLeastSimilarPoints = 20;  ///< symmetric furniture, seen from its other side, had up to 15
-constexpr double kDepthFloor = 0.02;     ///< m, one sigma: foregrounds are found differently from elsewhere
+constexpr double kDepthSigmas = 3;    ///< within which depths agree
+constexpr double kDepthFloor = 0.02;  ///< m, one sigma: foregrounds are found differently from elsewhere
 
 OdometryOptions widened(OdometryOptions options, double scale) {
     options.fine.search_radius = std::max(options.fine.search_radius, kSearchRadius * scale);

@@ -30,6 +30,10 @@ double placeConfidence(const Verification& points, const EdgeRegistration& edges
 /// moved, or a second keyframe.
 inline constexpr double kUnambiguousConfidence = 0.68;
 
+/// Fewer similar points that agree prove nothing: symmetric furniture, seen from its other side, had up
+/// to 15.
+inline constexpr int kLeastSimilarPoints = 20;
+
 /// Registers a frame to a keyframe that it may never have been tracked against, by their edges only: from a
 /// pose that is known to some centimetres, with a search radius that narrows down, and no motion prior.
 /// Keeps buffers only.

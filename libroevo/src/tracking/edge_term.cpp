@@ -128,6 +128,22 @@ void EdgeTerm::tangentResiduals(const RowMotion& rows) {
     if (!scratch_.empty()) scale_ = robustScale(scratch_);
 }
 
+double EdgeTerm::depthAgreement() {
+    constexpr double kSigmas = 3, kFloor = 0.02;  // m: foregrounds are found differently from elsewhere
+    int known = 0, agreed = 0;
+    if (!use_depth_ || frame_->images.depth.empty()) return 1;
+    for (std::size_t k = 0; k < matches_.size(); ++k) {
+        if (weight_[k] <= 0) continue;
+        const double seen = static_cast<double>(currentDepth(static_cast<std::size_t>(matches_.current[k])));
+        if (seen <= 0) continue;
+        const auto z = static_cast<double>(projected_.z[static_cast<std::size_t>(matches_.reference[k])]);
+        const double sigma = sensor_.depthSigma(seen);
+        ++known;
+        if ((z - seen) * (z - seen) < kSigmas * kSigmas * (2 * sigma * sigma + kFloor * kFloor)) ++agreed;
+    }
+    return known > 0 ? static_cast<double>(agreed) / known : 1;
+}
+
 float EdgeTerm::currentDepth(std::size_t point) {
     float& measured = current_depth_[point];
     if (measured != kUnknown) return measured;
@@ -142,7 +158,7 @@ void EdgeTerm::depthResiduals() {
     const EdgePoints3D& edges = keyframe_->edges;
     depth_residual_.assign(matches_.size(), 0);
     depth_weight_.assign(matches_.size(), 0);
-    if (options_.depth_weight <= 0 || frame_->images.depth.empty()) return;
+    if (!use_depth_ || options_.depth_weight <= 0 || frame_->images.depth.empty()) return;
     const auto chi2 = static_cast<float>(options_.depth_chi2);
     const auto floor2 = static_cast<float>(sensor_.depth_noise_floor * sensor_.depth_noise_floor);
     const auto noise2 = static_cast<float>(sensor_.depth_noise * sensor_.depth_noise);

@@ -34,6 +34,12 @@ class EdgeTerm : public ResidualTerm {
     /// The same within the final radius, and the weights that follow.
     void assess(const Pose& T_current_keyframe, const RowMotion& rows);
 
+    /// Of the inliers whose depth is known in the frame, the share that is about where it should be; 1 where
+    /// none is known.
+    double depthAgreement();
+    /// The frame's depth counts from now on, or not.
+    void useDepth(bool use) { use_depth_ = use; }
+
     /// Iteration from which on the radius is the final one.
     int narrowed() const;
     const EdgeMatches& matches() const { return matches_; }
@@ -60,7 +66,7 @@ class EdgeTerm : public ResidualTerm {
     EdgeAssociator associator_;
     const Keyframe* keyframe_ = nullptr;
     const Frame* frame_ = nullptr;
-    bool narrowing_ = false, free_readout_ = false;
+    bool use_depth_ = true, narrowing_ = false, free_readout_ = false;
     Pose T_associated_;  ///< pose at which points were associated within the final radius
     bool has_associated_ = false;
 

@@ -41,6 +41,8 @@ std::string describe(const Fault& fault) {
             return "only " + number(0) + " % of the edges associated, " + number(1) + " % needed";
         case Kind::kDiverged:
             return "the pose diverged";
+        case Kind::kDepthContradicts:
+            return "the depth image contradicts the keyframe's: " + number(0) + " % of the points agree";
         case Kind::kGap:
             return "a gap of " + number(0) + " ms";
         case Kind::kUnconfirmed:

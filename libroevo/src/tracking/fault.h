@@ -26,8 +26,9 @@ struct Fault {
         kFewInliers,  ///< numbers: found, needed
         kFewMatched,  ///< numbers: found, needed, percent of the edges
         kDiverged,
-        kGap,         ///< number: how long no pose was measured, ms
-        kUnconfirmed  ///< the same
+        kDepthContradicts,  ///< number: share of points whose depths agree, percent
+        kGap,               ///< number: how long no pose was measured, ms
+        kUnconfirmed        ///< the same
     };
     Kind kind = Kind::kNone;
     std::array<int, 4> numbers{};

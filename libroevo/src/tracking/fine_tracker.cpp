@@ -95,6 +95,7 @@ FineResult FineTracker::assess(const Keyframe& keyframe, const Frame& frame, con
     edges_.look(keyframe, frame);
     edges_.assess(T_current_keyframe, rows);
     FineResult result;
+    result.depth_agreement = edges_.depthAgreement();
     result.T_current_keyframe = T_current_keyframe;
     const int matched = static_cast<int>(matches().size());
     result.inliers = matched < options_.min_inliers ? matched : edges_.inliers();

@@ -12,6 +12,7 @@ struct FineResult {
     int inliers = 0;              ///< associated points that passed the chi-square test
     double scale = 0;             ///< robust spread of the point-to-tangent residual, px, of edges at rest
     double matched_ratio = 0;     ///< see EdgeMatches
+    double depth_agreement = 1;   ///< see EdgeTerm::depthAgreement()
     PoseUncertainty uncertainty;  ///< of the left perturbation (t, phi) of T_current_keyframe
 };
 
@@ -28,10 +29,13 @@ class FineTracker {
                                    const PosePrior& prior, const RollingShutter& shutter,
                                    const Brightness& brightness);
 
-    /// Inliers, scale and matched ratio at a given pose; converged where these are enough. No covariance.
-    /// Fills matches().
+    /// Inliers, scale, matched ratio and agreement of depths at a given pose; converged where these are
+    /// enough. No covariance. Fills matches().
     [[nodiscard]] FineResult assess(const Keyframe& keyframe, const Frame& frame,
                                     const Pose& T_current_keyframe, const RowMotion& rows);
+
+    /// The depth images of frames count from now on, or not.
+    void useDepth(bool use) { edges_.useDepth(use); }
 
     /// Edge-wise association at a given pose, without refining it: fills matches().
     void associate(const Keyframe& keyframe, const Frame& frame, const Pose& T_current_keyframe,

@@ -10,12 +10,12 @@ namespace roevo {
 namespace {
 
 constexpr double kLongestPrediction = 0.5;  ///< s; nobody moves on evenly for longer
-constexpr double kUsual = 2.5;              ///< times the last interval between frames: still a usual one
+constexpr double kUsual = 2.5;              ///< times the mean interval between frames: still a usual one
 constexpr double kShortestStep = 0.005,
                  kLongestStep = 0.35;    ///< s between two poses that make a velocity for the rows
 constexpr double kLeastSigma = 1e-3;     ///< m and rad, of any prior
 constexpr double kLongestReadout = 0.1;  ///< s
-constexpr double kLearning = 0.2;        ///< share of the newest frame in the mean design effect
+constexpr double kLearning = 0.2;        ///< share of the newest frame in means
 
 }  // namespace
 
@@ -24,6 +24,17 @@ MotionModel::MotionModel(const MotionOptions& motion, const SensorOptions& senso
       sensor_(sensor),
       image_height_(image_height),
       readout_(sensor.readout_sigma / image_height, sensor.readout_memory) {}
+
+void MotionModel::expect(double timestamp) {
+    const double interval = timestamp - last_frame_;
+    if (last_frame_ >= 0) {
+        // A gap counts for no more than what is just usual, so that another rate is learned in a few frames
+        const double most = usual_interval_ > 0 ? kUsual * usual_interval_ : interval;
+        const double share = usual_interval_ > 0 ? kLearning : 1;
+        usual_interval_ += share * (std::min(interval, most) - usual_interval_);
+    }
+    last_frame_ = timestamp;
+}
 
 void MotionModel::anchor(double timestamp, const Pose& T_reference_camera) {
     T_reference_last_ = T_reference_assumed_ = T_reference_camera;
@@ -64,7 +75,7 @@ Prediction MotionModel::predict(double timestamp) const {
             shutter(timestamp),
             brightness_,
             dt,
-            dt > std::max(kLongestPrediction, kUsual * interval_)};
+            dt > std::max(kLongestPrediction, kUsual * usual_interval_)};
 }
 
 Pose MotionModel::poseAt(double timestamp) const {

@@ -24,6 +24,8 @@ class MotionModel {
   public:
     MotionModel(const MotionOptions& motion, const SensorOptions& sensor, int image_height);
 
+    /// A frame has come, whatever becomes of it: what is usual between frames shows what is a gap.
+    void expect(double timestamp);
     /// A pose whose motion since the last one was not measured: first frame, re-anchored, or found again by a
     /// search.
     void anchor(double timestamp, const Pose& T_reference_camera);
@@ -71,6 +73,7 @@ class MotionModel {
     Variance last_, before_;    ///< of the last two measured poses
     double design_effect_ = 1;  ///< of the poses so far
     double last_timestamp_ = 0;
+    double last_frame_ = -1, usual_interval_ = 0;  ///< s; negative, 0: not known
     bool has_last_ = false;
     Pose step_ = Pose::Identity();  ///< T_last_current over interval_ seconds
     double interval_ = 0;           ///< s; 0 when no velocity is known

@@ -4,10 +4,6 @@
 
 namespace roevo {
 
-namespace {
-
-/// How an error of the frame that a pose is relative to, along that frame's axes, moves the camera, along its
-/// own: an error of the orientation the more the further off.
 Matrix6d carriedTo(const Pose& T_reference_camera) {
     const Eigen::Matrix3d R = T_reference_camera.linear().transpose();
     Matrix6d carried = Matrix6d::Zero();
@@ -15,6 +11,8 @@ Matrix6d carriedTo(const Pose& T_reference_camera) {
     carried.topRightCorner<3, 3>() = -R * skew(T_reference_camera.translation());
     return carried;
 }
+
+namespace {
 
 /// @param sign  of the reference's errors in the pose
 PoseUncertainty sum(const PoseUncertainty& reference, const Matrix6d& carried, double sign,

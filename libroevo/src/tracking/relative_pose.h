@@ -13,6 +13,10 @@ struct RelativePose {
     Matrix6d covariance() const { return uncertainty.covariance(); }
 };
 
+/// How an error of the frame that a pose is relative to, along that frame's axes, moves the camera, along its
+/// own: an error of the orientation the more the further off.
+Matrix6d carriedTo(const Pose& T_reference_camera);
+
 /// A pose relative to a keyframe whose own pose is relative to another: the errors of both add up.
 RelativePose compose(const RelativePose& keyframe, const RelativePose& camera);
 

@@ -10,6 +10,10 @@
 namespace roevo {
 namespace {
 
+// Frames of recordings that were tracked well agree to 72 % and more, poses that went astray to less than 40
+constexpr double kLeastDepthAgreement = 0.4;
+constexpr double kMatchedWithoutDepth = 0.6;  ///< share of the edges
+
 int percent(double share) {
     return static_cast<int>(std::lround(100 * share));
 }
@@ -132,20 +136,36 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
                        const PosePrior& prior, const RollingShutter& shutter, Tracking& out) {
     const Pose T_start =
         fine_.chooseInitialPose(reference, frame, aligned.T_current_keyframe, prior.mean, shutter);
-    const FineResult refined = refine(reference, frame, T_start, prior, shutter, aligned.brightness);
-    const Pose& T = refined.T_current_keyframe;
-    const FineResult assessed = fine_.assess(reference, frame, T, shutter.motion(T));
+    const auto registered = [&] {
+        const FineResult refined = refine(reference, frame, T_start, prior, shutter, aligned.brightness);
+        const Pose& T = refined.T_current_keyframe;
+        FineResult found = fine_.assess(reference, frame, T, shutter.motion(T));
+        found.converged = found.converged && refined.converged;
+        found.uncertainty = refined.uncertainty;
+        return found;
+    };
+    FineResult found = registered();
+    Fault contradiction;
+    if (found.converged && found.depth_agreement < kLeastDepthAgreement) {
+        // Either the pose is wrong or the depth: without it, the edges must agree all the better
+        contradiction = {Fault::Kind::kDepthContradicts, {percent(found.depth_agreement)}};
+        fine_.useDepth(false);
+        found = registered();
+        fine_.useDepth(true);
+    }
     out.matches = fine_.matches();
-    out.inliers = assessed.inliers;
+    out.inliers = found.inliers;
     out.found.assign(static_cast<std::size_t>(reference.edges.image.numEdges()), 0);
     for (std::size_t k = 0; k < out.matches.size(); ++k) {
         const auto point = static_cast<std::size_t>(out.matches.reference[k]);
         if (fine_.weights()[k] > 0)
             ++out.found[static_cast<std::size_t>(reference.edges.image.edge_of[point])];
     }
-    if (!assessed.converged || !refined.converged) return describeFailure(assessed, options_.fine);
-    out.pose.T_keyframe_camera = T.inverse();
-    out.pose.uncertainty = refined.uncertainty;
+    if (!found.converged) return describeFailure(found, options_.fine);
+    if (contradiction && found.matched_ratio < kMatchedWithoutDepth) return contradiction;
+    out.depth_fault = contradiction;
+    out.pose.T_keyframe_camera = found.T_current_keyframe.inverse();
+    out.pose.uncertainty = found.uncertainty;
     return {};
 }
 

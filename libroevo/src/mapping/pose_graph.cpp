@@ -1,0 +1,109 @@
+#include "mapping/pose_graph.h"
+
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <cmath>
+
+#include "tracking/relative_pose.h"
+
+namespace roevo {
+namespace {
+
+constexpr int kMostIterations = 20;
+constexpr double kSmallStep = 1e-7;        // m and rad
+constexpr double kUsualContradiction = 6;  // of six unknowns
+constexpr double kLeastVariance = 1e-12;   // m^2, rad^2
+
+/// Rotation vector.
+Eigen::Vector3d logarithm(const Eigen::Quaterniond& q) {
+    const Eigen::AngleAxisd turn(q);
+    return turn.angle() * turn.axis();
+}
+
+/// Position and orientation of `to` as the poses have it against the constraint, along its axes.
+Vector6d residual(const std::vector<Pose>& poses, const PoseConstraint& c) {
+    const Pose T_from_to =
+        poses[static_cast<std::size_t>(c.from)].inverse() * poses[static_cast<std::size_t>(c.to)];
+    const Pose error = c.T_from_to.inverse() * T_from_to;
+    Vector6d out;
+    // Along the axes of `to` as it is, so that steps enter with the identity
+    out << error.linear().transpose() * error.translation(), logarithm(error.rotation());
+    return out;
+}
+
+Matrix6d informationOf(const PoseConstraint& c) {
+    return (c.covariance + kLeastVariance * Matrix6d::Identity()).inverse();
+}
+
+struct Equations {
+    std::vector<Eigen::Triplet<double>> hessian;
+    Eigen::VectorXd gradient;
+
+    void add(int row, int column, const Matrix6d& block) {
+        if (row < 0 || column < 0) return;
+        for (int i = 0; i < 6; ++i)
+            for (int j = 0; j < 6; ++j) hessian.emplace_back(6 * row + i, 6 * column + j, block(i, j));
+    }
+};
+
+}  // namespace
+
+double contradiction(const std::vector<Pose>& poses, const PoseConstraint& c) {
+    const Vector6d e = residual(poses, c);
+    return e.dot(informationOf(c) * e);
+}
+
+bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstraint>& constraints, int fixed) {
+    const std::vector<Pose> before = poses;
+    std::vector<int> rows(poses.size(), -1);
+    int count = 0;
+    for (const PoseConstraint& c : constraints)
+        for (const int id : {c.from, c.to})
+            if (id != fixed && rows[static_cast<std::size_t>(id)] < 0)
+                rows[static_cast<std::size_t>(id)] = count++;
+    std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>> information;
+    for (const PoseConstraint& c : constraints) information.push_back(informationOf(c));
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+    for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+        Equations sum;
+        sum.gradient = Eigen::VectorXd::Zero(6 * count);
+        for (std::size_t k = 0; k < constraints.size(); ++k) {
+            const PoseConstraint& c = constraints[k];
+            const Vector6d e = residual(poses, c);
+            const double squared = e.dot(information[k] * e);
+            const double weight = c.recognised ? 1 / (1 + squared / kUsualContradiction) : 1;
+            const Pose T =
+                poses[static_cast<std::size_t>(c.from)].inverse() * poses[static_cast<std::size_t>(c.to)];
+            const Matrix6d from = -carriedTo(T);  // how a step of `from` changes the residual
+            const int i = rows[static_cast<std::size_t>(c.from)], j = rows[static_cast<std::size_t>(c.to)];
+            const Matrix6d W = weight * information[k];
+            sum.add(i, i, from.transpose() * W * from);
+            sum.add(i, j, from.transpose() * W);
+            sum.add(j, i, W * from);
+            sum.add(j, j, W);
+            if (i >= 0) sum.gradient.segment<6>(6 * i) += from.transpose() * W * e;
+            if (j >= 0) sum.gradient.segment<6>(6 * j) += W * e;
+        }
+        Eigen::SparseMatrix<double> hessian(6 * count, 6 * count);
+        hessian.setFromTriplets(sum.hessian.begin(), sum.hessian.end());
+        if (iteration == 0) solver.analyzePattern(hessian);
+        solver.factorize(hessian);
+        const Eigen::VectorXd step =
+            solver.info() == Eigen::Success ? Eigen::VectorXd(solver.solve(-sum.gradient)) : sum.gradient;
+        if (solver.info() != Eigen::Success || !step.allFinite()) {
+            poses = before;
+            return false;
+        }
+        for (std::size_t p = 0; p < poses.size(); ++p) {
+            if (rows[p] < 0) continue;
+            const Eigen::Vector3d t = step.segment<3>(6 * rows[p]), turn = step.segment<3>(6 * rows[p] + 3);
+            const Eigen::AngleAxisd rotation(
+                turn.norm(), turn.norm() > 0 ? Eigen::Vector3d(turn.normalized()) : Eigen::Vector3d::UnitX());
+            poses[p] = poses[p] * Pose(Eigen::Quaterniond(rotation), t);
+        }
+        if (step.lpNorm<Eigen::Infinity>() < kSmallStep) break;
+    }
+    return true;
+}
+
+}  // namespace roevo

@@ -1,0 +1,161 @@
+#include "world.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "tracking/camera_scale.h"
+#include "tracking/se3.h"
+
+namespace roevo {
+namespace {
+
+// How far a lost camera can have come
+constexpr double kReach = 0.3;     // m
+constexpr double kTopSpeed = 1.5;  // m/s
+
+// Two keyframes in a row that were recognised agree on the loop
+constexpr int kInARow = 3;               // keyframes
+constexpr double kAgreedDistance = 0.1;  // m
+constexpr double kAgreedTurn = 3 * kDegree;
+constexpr double kDriftSigmas = 10;  // that the camera can be from where it is thought to be
+
+}  // namespace
+
+World::World(const PinholeCamera& camera, const OdometryOptions& options)
+    : camera_(camera),
+      options_(scaledTo(camera, options)),
+      mapper_(makeMapper(camera.undistorted(), options_)),
+      relocaliser_(camera, options),
+      semi_dense_(camera, options) {}
+
+void World::advance(double timestamp, double seconds_per_row) {
+    timestamp_ = timestamp;
+    seconds_per_row_ = seconds_per_row;
+    const Pose before = trajectory_.lastPose();
+    for (const MapUpdate& update : mapper_->due(timestamp, change_.waiting_ms)) takeUpdate(update);
+    if (recognising_ && timestamp >= recognised_at_) recognise();
+    const Pose after = trajectory_.lastPose();
+    change_.moved += (after.translation() - before.translation()).norm();
+    change_.turned += rotationAngle(after * before.inverse());
+    if (reference_) reference_->setRowMotion(reference_->row_motion.at(seconds_per_row));
+}
+
+void World::takeUpdate(const MapUpdate& update) {
+    trajectory_.apply(update);
+    change_.mapping_ms += update.milliseconds;
+    change_.refusals.insert(change_.refusals.end(), update.refusals.begin(), update.refusals.end());
+    if (update.keyframe != reference_->id || update.verdicts.empty()) return;
+    std::vector<bool> pseudo;
+    for (const EdgeVerdict verdict : update.verdicts) pseudo.push_back(isPseudo(verdict));
+    reference_->weaken(pseudo, options_.mapping.pseudo_weight);
+}
+
+Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker& tracker,
+                        const Pose& T_world_camera, const Matrix6d& covariance) {
+    auto fresh = std::make_unique<Keyframe>();
+    if (const Fault fault = makeKeyframe(frame, rows, camera_, options_, tracker, *fresh)) return fault;
+    numberEdges(*fresh, nullptr, {}, next_cluster_);
+    recognise();
+    fresh->id = trajectory_.beginTrack(frame.timestamp(), T_world_camera, covariance);
+    adopt(std::move(fresh), frame, RelativePose());
+    return {};
+}
+
+Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Tracker& tracker) {
+    auto fresh = std::make_unique<Keyframe>();
+    if (const Fault fault = makeKeyframe(frame, tracked.rows, camera_, options_, tracker, *fresh))
+        return fault;
+    numberEdges(*fresh, reference_.get(), tracked.matches, next_cluster_);
+    recognise();
+    fresh->id = trajectory_.addKeyframe(frame.timestamp(), tracked.pose, fresh->clusters);
+    adopt(std::move(fresh), frame, tracked.pose);
+    return {};
+}
+
+void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
+    if (options_.loss.recognise) {
+        // The map relates the newest keyframes by itself
+        const bool closes = options_.mapping.close_loops && options_.mode == Mode::kBundleAdjustment;
+        const int begin = trajectory_.beginOfTrack(fresh->id);
+        relocaliser_.add(*fresh, of, closes ? std::max(begin, fresh->id - options_.mapping.window) : begin);
+        recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
+        recognising_ = true;
+    }
+    semi_dense_.add(fresh->edges.image, of, fresh->row_motion);
+    mapper_->insert({*fresh, ownEdges(*fresh, of.images, camera_), trajectory_.keyframePose(fresh->id),
+                     tracked, reference_.get(), seconds_per_row_},
+                    timestamp_);
+    reference_ = std::move(fresh);
+}
+
+/// What older keyframe the newest one shows.
+void World::recognise() {
+    if (!std::exchange(recognising_, false)) return;
+    const auto alike = relocaliser_.resembled();
+    if (!alike || (isOfThisTrack(*alike) && isWithinReach(*alike))) return;
+    const RelativePose newest{reference_->id, Pose::Identity(), {}};
+    const Matrix6d covariance = trajectory_.worldCovariance(newest);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance.topLeftCorner<3, 3>(),
+                                                              Eigen::EigenvaluesOnly);
+    const double drift = kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
+    const Whereabouts near{trajectory_.worldPose(newest).translation(),
+                           kReach + kTopSpeed * lost_for_ + drift};
+    const auto pose = relocaliser_.recognised(trajectory_, near);
+    if (!pose) return;
+    if (!isOfThisTrack(*pose))
+        join(*pose);
+    else if (!isWithinReach(*pose) &&
+             (trajectory_.worldPose(*pose).translation() - near.centre).norm() <= near.radius)
+        closeLoop(*pose);
+}
+
+bool World::isOfThisTrack(const RelativePose& pose) const {
+    return trajectory_.beginOfTrack(pose.keyframe) == trajectory_.beginOfTrack(reference_->id);
+}
+
+/// Whether the map can relate the edges of the place by itself, where the newest keyframe is thought to be.
+bool World::isWithinReach(const RelativePose& pose) const {
+    return imageMotion(trajectory_.worldPose(pose).inverse(),
+                       trajectory_.keyframePose(reference_->id).inverse(), camera_.fx,
+                       reference_->typicalDepth()) <= options_.fine.final_radius;
+}
+
+/// A track that was begun after a loss is moved to where one of its keyframes is recognised.
+void World::join(const RelativePose& pose) {
+    mapper_->correct(trajectory_.join(reference_->id, pose));
+    change_.joined_at = pose.keyframe;
+    lost_for_ = 0;
+}
+
+/// Where the map cannot relate the edges of a place that is seen again, since the camera has drifted too far.
+void World::closeLoop(const RelativePose& pose) {
+    const auto motionOf = [&](int keyframe, const RelativePose& recognised) {
+        return trajectory_.worldPose(recognised) * trajectory_.keyframePose(keyframe).inverse();
+    };
+    const int newest = reference_->id;
+    const Pose& T_world_newest = trajectory_.keyframePose(newest);
+    const auto before = std::exchange(loop_, std::pair(newest, pose));
+    if (!before || newest - before->first > kInARow) return;
+    const Pose apart = (motionOf(before->first, before->second) * T_world_newest).inverse() *
+                       motionOf(newest, pose) * T_world_newest;
+    if (apart.translation().norm() > kAgreedDistance || rotationAngle(apart) > kAgreedTurn) return;
+    const Correction correction = trajectory_.closeLoop({*before, *loop_});
+    if (correction.keyframes.empty()) return;
+    mapper_->correct(correction);
+    change_.closed_at = pose.keyframe;
+    loop_.reset();
+}
+
+std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& last, double since_measured) {
+    if (!options_.loss.recognise) return std::nullopt;
+    return relocaliser_.find(
+        frame, trajectory_, {trajectory_.worldPose(last).translation(), kReach + kTopSpeed * since_measured});
+}
+
+Trajectory World::finalTrajectory() const {
+    Trajectory poses = trajectory_;
+    for (const MapUpdate& update : mapper_->outstanding()) poses.apply(update);
+    return poses;
+}
+
+}  // namespace roevo

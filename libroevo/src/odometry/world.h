@@ -1,0 +1,91 @@
+#pragma once
+#include <optional>
+#include <utility>
+
+#include "keyframe_maker.h"
+#include "mapping/mapper.h"
+#include "relocaliser.h"
+#include "semi_dense_store.h"
+#include "trajectory.h"
+
+namespace roevo {
+
+/// What became of the keyframes before a frame was tracked, or while it was.
+struct WorldChange {
+    double moved = 0, turned = 0;           ///< m, rad: the camera, with the keyframes
+    double mapping_ms = 0, waiting_ms = 0;  ///< see StageTimes
+    std::vector<MapRefusal> refusals;
+    int joined_at = -1, closed_at = -1;  ///< see FrameResult
+};
+
+/// Where the camera has been: the keyframe that is tracked against, and with all that were, the trajectory,
+/// the map and what their places look like. It alone puts the world together; tracking knows one keyframe.
+class World {
+  public:
+    /// @param camera   with its lens
+    /// @param options  as given
+    World(const PinholeCamera& camera, const OdometryOptions& options);
+
+    bool empty() const { return !reference_; }
+    Keyframe& reference() { return *reference_; }
+    const Trajectory& trajectory() const { return trajectory_; }
+    void addFrame(double timestamp, const RelativePose& pose, bool measured) {
+        trajectory_.addFrame(timestamp, pose, measured);
+    }
+
+    /// Brings everything to the time of a frame: map updates and recognised places that are due take effect.
+    /// @param seconds_per_row  read-out time as known by now
+    void advance(double timestamp, double seconds_per_row);
+    /// All that was changed since this was asked last.
+    WorldChange changes() { return std::exchange(change_, {}); }
+
+    /// A frame becomes the reference: the first, or one after a loss.
+    Fault beginTrack(const Frame& frame, const RowMotion& rows, const Tracker& tracker,
+                     const Pose& T_world_camera, const Matrix6d& covariance);
+    /// A frame that was tracked, or recognised, becomes the reference.
+    Fault addKeyframe(const Frame& frame, const Tracking& tracked, const Tracker& tracker);
+
+    /// The keyframe that a lost frame shows, and its pose relative to that.
+    /// @param since_measured  s, since the camera's pose was known
+    [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, const RelativePose& last,
+                                                   double since_measured);
+    /// The pose against the reference that edges agree on with nothing known of the motion, if they do.
+    [[nodiscard]] std::optional<Pose> confirm(const Frame& frame, const Pose& T_reference_camera) {
+        return relocaliser_.confirm(*reference_, frame, T_reference_camera);
+    }
+    /// For how long (s) the camera was lost until a track was begun: that is how far it may have come.
+    void setLostFor(double seconds) { lost_for_ = seconds; }
+    double lostFor() const { return lost_for_; }
+
+    /// With what has not taken effect yet.
+    Trajectory finalTrajectory() const;
+    EdgeMap fusedMap() const { return mapper_->fusedMap(); }
+    EdgeMap keyframeEdges() const { return mapper_->keyframeEdges(); }
+    std::vector<ColouredPoint> semiDense() { return semi_dense_.inWorld(finalTrajectory().keyframes()); }
+
+  private:
+    void adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked);
+    void recognise();
+    void join(const RelativePose& pose);
+    void closeLoop(const RelativePose& pose);
+    bool isOfThisTrack(const RelativePose& pose) const;
+    bool isWithinReach(const RelativePose& pose) const;
+    void takeUpdate(const MapUpdate& update);
+
+    PinholeCamera camera_;
+    OdometryOptions options_;  // scaled to the camera
+    std::unique_ptr<Mapper> mapper_;
+    Relocaliser relocaliser_;
+    SemiDenseStore semi_dense_;
+    Trajectory trajectory_;
+    std::unique_ptr<Keyframe> reference_;
+    std::int32_t next_cluster_ = 0;
+    double timestamp_ = 0, seconds_per_row_ = 0;
+    double lost_for_ = 0;
+    double recognised_at_ = 0;  // s; when the place of the newest keyframe is to be known
+    bool recognising_ = false;  // it is not known yet
+    std::optional<std::pair<int, RelativePose>> loop_;  // keyframe and pose that a second one must agree with
+    WorldChange change_;
+};
+
+}  // namespace roevo
