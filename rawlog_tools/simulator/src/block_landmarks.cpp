@@ -76,13 +76,13 @@ void addLandmarks(SceneBuilder& b, const Spot& spot, const Materials& m, int cor
         const int dial =
             b.material(Texture::kClock, {0.95f, 0.94f, 0.90f}, {0.10f, 0.10f, 0.12f}, {0.75f, 0.15f, 0.12f});
         hang(spot, m, -0.35, 1.75, 0.5, 0.5, dial);
-        hang(spot, m, 0.45, 1.5, 0.6, 0.8, poster(b, 107));
+        hang(spot, m, 0.45, 1.5, 0.6, 0.8, poster(b, 112));
         addTable(spot, m, 1.55, -0.55);
     }
     if (corner == 2) {
         addLockers(spot, m);
         hang(spot, m, 0.2, 1.5, 1.2, 0.7, poster(b, 121));
-        last_bay.sheet({3.4, -kHalfWidth + 0.01, 1.65}, 0.7, 0.5, V::UnitY(), poster(b, 118));
+        last_bay.sheet({3.4, -kHalfWidth + 0.01, 1.65}, 0.7, 0.5, V::UnitY(), poster(b, 116));
     }
     if (corner == 3) {
         addVendingMachine(b, spot, m);
