@@ -1,10 +1,15 @@
 add_library(roevo_simulator STATIC
   simulator/src/baked_light.cpp
+  simulator/src/block_bays.cpp
+  simulator/src/block_landmarks.cpp
+  simulator/src/block_spot.cpp
+  simulator/src/block_way.cpp
   simulator/src/camera_path.cpp
   simulator/src/intersect.cpp
   simulator/src/livingroom_furniture.cpp
   simulator/src/occlusion.cpp
   simulator/src/renderer.cpp
+  simulator/src/scene_block.cpp
   simulator/src/scene_builder.cpp
   simulator/src/scene_corridor.cpp
   simulator/src/scene_livingroom.cpp

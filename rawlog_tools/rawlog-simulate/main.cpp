@@ -49,9 +49,12 @@ void addOptions(CLI::App& app, Arguments& a) {
         ->capture_default_str();
     app.add_option("--rolling-shutter", o.rolling_shutter, "Read-out time from first to last row, s")
         ->capture_default_str();
-    app.add_option("--path", a.path, "Camera path")
+    app.add_option(
+           "--path", a.path,
+           "Camera path. loop, in the scene block only, is once round the ring and on past its start: "
+           "4255 frames a circuit, 2003 with --speed 1.2")
         ->capture_default_str()
-        ->check(CLI::IsMember({"handheld", "walk", "back-and-forth"}));
+        ->check(CLI::IsMember({"handheld", "walk", "back-and-forth", "loop"}));
     app.add_option("--speed", o.speed, "Top speed of the camera, m/s")->capture_default_str();
     app.add_option("--size", a.size, "Image size, WIDTHxHEIGHT")->capture_default_str();
     app.add_option("--intrinsics", a.intrinsics, "Camera: fx fy cx cy, pixels")->expected(4);
@@ -64,7 +67,10 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--threads", o.threads, "Threads, 0: one per processor; no influence on the result")
         ->capture_default_str();
     app.footer(
-        "Example:\n  rawlog-simulate --scene livingroom --frames 300 --noise kinect --output room.rawlog");
+        "Examples:\n"
+        "  rawlog-simulate --scene livingroom --frames 300 --noise kinect --output room.rawlog\n"
+        "  rawlog-simulate --scene block --path loop --speed 1.2 --frames 2150 --noise kinect --output "
+        "loop.rawlog");
 }
 
 void applyNames(Arguments& a) {

@@ -202,7 +202,7 @@ TEST(Simulator, ErrorsNameTheOptionAndItsValue) {
     }
     SimulationOptions unknown;
     unknown.scene = "attic";
-    EXPECT_NE(unknown.check().find("livingroom, corridor, shadows"), std::string::npos);
+    EXPECT_NE(unknown.check().find("livingroom, corridor, shadows, block"), std::string::npos);
     EXPECT_THROW(Simulator{unknown}, std::runtime_error);
     EXPECT_THROW(makeScene("attic"), std::runtime_error);
     EXPECT_THROW(pathKindFromName("fly"), std::runtime_error);

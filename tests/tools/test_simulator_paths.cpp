@@ -71,6 +71,8 @@ INSTANTIATE_TEST_SUITE_P(Paths, EveryPath,
                          testing::Combine(testing::ValuesIn(sceneNames()),
                                           testing::Values(PathKind::kHandheld, PathKind::kWalk,
                                                           PathKind::kBackAndForth)));
+INSTANTIATE_TEST_SUITE_P(RoundTheBlock, EveryPath,
+                         testing::Values(std::tuple(std::string("block"), PathKind::kLoop)));
 
 TEST(CameraPaths, DefaultLivingroomPathIsSeveralMetresLong) {
     const Simulator simulator(smallOptions("livingroom"));
@@ -79,7 +81,7 @@ TEST(CameraPaths, DefaultLivingroomPathIsSeveralMetresLong) {
 }
 
 TEST(CameraPaths, WalksAreLong) {
-    for (const std::string scene : {"livingroom", "corridor"}) {
+    for (const std::string scene : {"livingroom", "corridor", "block"}) {
         SimulationOptions options = smallOptions(scene, 3000);
         options.path = PathKind::kWalk;
         EXPECT_GE(pathLength(Simulator(options), 100), 30.0) << scene;

@@ -104,6 +104,17 @@ TEST_F(SimulateProgram, UnwritableOutputIsOneLineAndLeavesNothing) {
     EXPECT_EQ(contents(path("used/precious")), "keep me");
 }
 
+TEST_F(SimulateProgram, LoopIsOfTheSceneBlockOnly) {
+    EXPECT_EQ(run("--scene corridor --path loop --layout tum --output " + path("folder")), 1);
+    EXPECT_EQ(
+        errors_,
+        "rawlog-simulate: error: scene 'corridor' has no path 'loop': there is no way round in it, as in "
+        "'block'\n");
+    EXPECT_FALSE(fs::exists(path("folder")) || fs::exists(path("folder.part")));
+    EXPECT_EQ(run("--scene block --size 64x48 --frames 2 --path loop --output " + path("loop.rawlog")), 0)
+        << errors_;
+}
+
 TEST_F(SimulateProgram, LayoutsHaveTheFilesOfTheirBenchmarks) {
     const std::string options = "--scene shadows --frames 2 --start-time 0 --output ";
     ASSERT_EQ(run(options + path("icl") + " --layout icl"), 0) << errors_;
@@ -128,7 +139,7 @@ TEST_F(SimulateProgram, LayoutsHaveTheFilesOfTheirBenchmarks) {
 TEST_F(SimulateProgram, WrongUsageSaysWhatIsAllowed) {
     const std::string output = " --output " + path("x.rawlog");
     EXPECT_EQ(run("--scene attic" + output), 2);
-    EXPECT_NE(errors_.find("livingroom, corridor, shadows"), std::string::npos) << errors_;
+    EXPECT_NE(errors_.find("livingroom, corridor, shadows, block"), std::string::npos) << errors_;
     EXPECT_EQ(run("--scene shadows --frames 0" + output), 2);
     EXPECT_NE(errors_.find("frames = 0"), std::string::npos) << errors_;
     EXPECT_EQ(run("--scene shadows --size 64by48" + output), 2);
@@ -150,6 +161,8 @@ TEST_F(SimulateProgram, WrongUsageSaysWhatIsAllowed) {
     EXPECT_NE(errors_.find("fy = 0"), std::string::npos) << errors_;
     EXPECT_FALSE(fs::exists(path("folder")) || fs::exists(path("folder.part")));
     EXPECT_EQ(run("--help"), 0);
+    EXPECT_NE(contents(folder_ / "stdout").find("4255"), std::string::npos)
+        << "as test_simulator_block.cpp holds it";
     EXPECT_FALSE(fs::exists(path("x.rawlog")));
 }
 

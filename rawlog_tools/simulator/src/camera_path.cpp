@@ -94,6 +94,10 @@ double CameraPath::parameterAt(double seconds) const {
     return u + rounds * static_cast<double>(loop_.size());
 }
 
+double CameraPath::circuitTime() const {
+    return kind_ == PathKind::kBackAndForth ? kReturnPeriod : node_times_.back();
+}
+
 Pose CameraPath::pose(double seconds) const {
     double along = seconds;
     if (kind_ == PathKind::kBackAndForth) {
@@ -112,7 +116,8 @@ Pose CameraPath::pose(double seconds) const {
         shift[i] = kShift * tremor(seconds, seed_, i);
         tilt[i] = kTilt * tremor(seconds, seed_, 3 + i);
     }
-    return {Eigen::Quaterniond(axes) * Eigen::AngleAxisd(tilt.norm(), tilt.normalized()), point.position + shift};
+    return {Eigen::Quaterniond(axes) * Eigen::AngleAxisd(tilt.norm(), tilt.normalized()),
+            point.position + shift};
 }
 
 }  // namespace roevo::simulator

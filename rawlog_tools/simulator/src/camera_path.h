@@ -18,6 +18,9 @@ class CameraPath {
     /// Pose at `seconds` after the start (any real number).
     Pose pose(double seconds) const;
 
+    /// Seconds after which the path starts over.
+    double circuitTime() const;
+
   private:
     Waypoint at(double u, int derivative) const;
     double pace(double u) const;                     ///< dt/du

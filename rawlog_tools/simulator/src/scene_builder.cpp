@@ -100,7 +100,7 @@ void SceneBuilder::framedPicture(const Eigen::Vector3d& centre, double width, do
 }
 
 const std::vector<std::string>& sceneNames() {
-    static const std::vector<std::string> names = {"livingroom", "corridor", "shadows"};
+    static const std::vector<std::string> names = {"livingroom", "corridor", "shadows", "block"};
     return names;
 }
 
@@ -108,6 +108,7 @@ Scene makeScene(const std::string& name) {
     if (name == "livingroom") return makeLivingroom();
     if (name == "corridor") return makeCorridor();
     if (name == "shadows") return makeShadows();
+    if (name == "block") return makeBlock();
     std::string known;
     for (const std::string& other : sceneNames()) known += (known.empty() ? "" : ", ") + other;
     throw std::runtime_error("unknown scene '" + name + "'; there are: " + known);

@@ -45,5 +45,6 @@ class SceneBuilder {
 Scene makeLivingroom();
 Scene makeCorridor();
 Scene makeShadows();
+Scene makeBlock();
 
 }  // namespace roevo::simulator

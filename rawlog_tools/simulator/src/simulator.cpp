@@ -51,6 +51,15 @@ cv::Mat borderOf(const cv::Mat& shadow, const cv::Mat& objects) {
     return border;
 }
 
+const std::vector<Waypoint>& waypointsOf(const Scene& scene, PathKind kind) {
+    if (kind == PathKind::kWalk) return scene.walk_loop;
+    if (kind != PathKind::kLoop) return scene.handheld_loop;
+    if (scene.round_loop.empty())
+        throw std::runtime_error("scene '" + scene.name +
+                                 "' has no path 'loop': there is no way round in it, as in 'block'");
+    return scene.round_loop;
+}
+
 std::string complain(const std::string& option, const std::string& value, const std::string& allowed) {
     return option + " = " + value + ": must be " + allowed;
 }
@@ -110,7 +119,8 @@ PathKind pathKindFromName(const std::string& name) {
     if (name == "handheld") return PathKind::kHandheld;
     if (name == "walk") return PathKind::kWalk;
     if (name == "back-and-forth") return PathKind::kBackAndForth;
-    throw std::runtime_error("unknown path '" + name + "'; there are: handheld, walk, back-and-forth");
+    if (name == "loop") return PathKind::kLoop;
+    throw std::runtime_error("unknown path '" + name + "'; there are: handheld, walk, back-and-forth, loop");
 }
 
 cv::Mat quantiseDepth(const cv::Mat& depth_metres) {
@@ -129,7 +139,7 @@ struct Simulator::Impl {
         : options(o),
           scene(makeScene(o.scene)),
           camera(makeCamera(o)),
-          path(o.path == PathKind::kWalk ? scene.walk_loop : scene.handheld_loop, o.path, o.speed, o.seed),
+          path(waypointsOf(scene, o.path), o.path, o.speed, o.seed),
           renderer(scene, camera, numThreads(o)) {
         if (o.depth_sensor)
             depth_renderer = std::make_unique<Renderer>(scene, o.depth_sensor->camera, numThreads(o));
@@ -192,6 +202,9 @@ const Scene& Simulator::scene() const {
 }
 Pose Simulator::poseAt(double seconds) const {
     return impl_->path.pose(seconds);
+}
+double Simulator::circuitTime() const {
+    return impl_->path.circuitTime();
 }
 double Simulator::timestamp(int index) const {
     return impl_->options.start_time + index / impl_->options.fps;

@@ -91,6 +91,7 @@ struct Scene {
     double light_spacing = 0.09;          ///< metres between the points for which soft light is computed
     std::vector<Waypoint> handheld_loop;  ///< also of the path back-and-forth
     std::vector<Waypoint> walk_loop;
+    std::vector<Waypoint> round_loop;  ///< of the path loop; empty: there is no way round in this scene
 };
 
 /// Names that makeScene() knows, in order.

@@ -14,7 +14,7 @@
 
 namespace roevo::simulator {
 
-enum class PathKind { kHandheld, kWalk, kBackAndForth };
+enum class PathKind { kHandheld, kWalk, kBackAndForth, kLoop };
 
 /// A depth sensor with a camera of its own, beside the colour camera.
 struct DepthSensor {
@@ -50,7 +50,7 @@ struct SimulationOptions {
     std::string check() const;
 };
 
-/// "handheld", "walk", "back-and-forth". @throws std::runtime_error for another name.
+/// "handheld", "walk", "back-and-forth", "loop". @throws std::runtime_error for another name.
 PathKind pathKindFromName(const std::string& name);
 
 struct SimulatedFrame {
@@ -72,7 +72,7 @@ cv::Mat quantiseDepth(const cv::Mat& depth_metres);
 
 class Simulator {
   public:
-    /// @throws std::runtime_error with SimulationOptions::check()'s line.
+    /// @throws std::runtime_error with SimulationOptions::check()'s line, or if the scene has no such path.
     explicit Simulator(const SimulationOptions& options);
     ~Simulator();
     Simulator(Simulator&&) noexcept;
@@ -87,6 +87,9 @@ class Simulator {
 
     /// Camera pose at any time, seconds after frame 0.
     Pose poseAt(double seconds) const;
+
+    /// Seconds after which the path starts over: the pose is the same again but for the hand tremor.
+    double circuitTime() const;
 
     /// Stamp of frame `index`, seconds.
     double timestamp(int index) const;
