@@ -222,7 +222,7 @@ TEST(Trajectory, ALoopSharesOutWhatHasGoneWrong) {
     EXPECT_NEAR((trajectory.keyframePose(19).translation() - trajectory.keyframePose(1).translation()).norm(),
                 0, 1e-3);
     for (int id = 0; id <= 20; ++id) {  // two steps in one place, each as wrong as the other way
-        EXPECT_LT(std::abs(trajectory.keyframePose(id).translation().y()), 0.06) << id;
+        EXPECT_LT(std::abs(trajectory.keyframePose(id).translation().y()), 0.08) << id;
         EXPECT_NEAR(trajectory.keyframePose(id).translation().x(), id <= 10 ? id : 20 - id, 0.02) << id;
     }
     EXPECT_NEAR(trajectory.frames()[20].T_world_camera.translation().norm(), 0, 1e-3);
@@ -236,11 +236,13 @@ TEST(Trajectory, ALoopSharesOutWhatHasGoneWrong) {
     EXPECT_NEAR(trajectory.keyframePose(20).translation().y(), 0.01, 2e-3);
 }
 
-TEST(Trajectory, ALoopThatContradictsAllElseMovesNothing) {
+TEST(Trajectory, ALoopThatContradictsAnotherMovesNothing) {
     Trajectory trajectory = thereAndBack(0.001);
-    const Correction correction = trajectory.closeLoop({{19, seen(10, Pose())}, {20, seen(10, Pose())}});
-    EXPECT_TRUE(correction.keyframes.empty());
-    EXPECT_NEAR(trajectory.keyframePose(20).translation().y(), 0.02, 1e-12);
+    ASSERT_FALSE(trajectory.closeLoop({{19, seen(1, Pose())}, {20, seen(0, Pose())}}).keyframes.empty());
+    const Pose before = trajectory.keyframePose(20);
+    const Correction wrong = trajectory.closeLoop({{19, seen(10, Pose())}, {20, seen(10, Pose())}});
+    EXPECT_TRUE(wrong.keyframes.empty());
+    EXPECT_EQ(trajectory.keyframePose(20).matrix(), before.matrix());
 }
 
 TEST(Trajectory, ALoopMovesNoOtherTrack) {

@@ -207,8 +207,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
 
     MapUpdate update;
     update.keyframe = id;
-    for (const MapKeyframe* old : reused)
-        if (graph_.sharedPoints(id, old->id) >= options_.fine.min_inliers) update.reused.push_back(old->id);
+    update.reused = static_cast<int>(reused.size());
     buildWindow(id, reused);
     addPriors();
     if (window_.size() < 2) {

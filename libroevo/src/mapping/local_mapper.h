@@ -18,7 +18,7 @@ struct MapUpdate {
     int keyframe = 0;                         ///< the inserted one
     std::vector<std::pair<int, Pose>> poses;  ///< T_world_camera of all keyframes that were refined
     std::vector<EdgeVerdict> verdicts;  ///< of the inserted keyframe's edges; empty while it is the only one
-    std::vector<int> reused;            ///< old keyframes that show the same edges
+    int reused = 0;                     ///< old keyframes that took part
     RefinementResult refinement;
     std::vector<MapRefusal> refusals;
     double milliseconds = 0;  ///< of work on it

@@ -10,9 +10,8 @@ namespace roevo {
 namespace {
 
 constexpr int kMostIterations = 20;
-constexpr double kSmallStep = 1e-7;        // m and rad
-constexpr double kUsualContradiction = 6;  // of six unknowns
-constexpr double kLeastVariance = 1e-12;   // m^2, rad^2
+constexpr double kSmallStep = 1e-7;       // m and rad
+constexpr double kLeastVariance = 1e-12;  // m^2, rad^2
 
 /// Rotation vector.
 Eigen::Vector3d logarithm(const Eigen::Quaterniond& q) {
@@ -70,13 +69,11 @@ bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstrain
         for (std::size_t k = 0; k < constraints.size(); ++k) {
             const PoseConstraint& c = constraints[k];
             const Vector6d e = residual(poses, c);
-            const double squared = e.dot(information[k] * e);
-            const double weight = c.recognised ? 1 / (1 + squared / kUsualContradiction) : 1;
             const Pose T =
                 poses[static_cast<std::size_t>(c.from)].inverse() * poses[static_cast<std::size_t>(c.to)];
             const Matrix6d from = -carriedTo(T);  // how a step of `from` changes the residual
             const int i = rows[static_cast<std::size_t>(c.from)], j = rows[static_cast<std::size_t>(c.to)];
-            const Matrix6d W = weight * information[k];
+            const Matrix6d& W = information[k];
             sum.add(i, i, from.transpose() * W * from);
             sum.add(i, j, from.transpose() * W);
             sum.add(j, i, W * from);

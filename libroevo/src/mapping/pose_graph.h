@@ -10,7 +10,6 @@ struct PoseConstraint {
     int from = 0, to = 0;
     Pose T_from_to = Pose::Identity();
     Matrix6d covariance = Matrix6d::Identity();  ///< position, then orientation, along the axes of `to`
-    bool recognised = false;  ///< may be wrong: counts for the less the more it contradicts
 };
 
 /// Moves poses to where they fit all constraints best: a few steps of Gauss-Newton, sparse. Every constraint

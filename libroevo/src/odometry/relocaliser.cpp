@@ -105,8 +105,17 @@ std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& 
     return found.T_frame_keyframe.inverse();
 }
 
-std::optional<RelativePose> Relocaliser::resembled() {
+std::optional<RelativePose> Relocaliser::resembled(const Trajectory& trajectory,
+                                                   const Whereabouts& whereabouts) {
     collect();
+    const int track = trajectory.beginOfTrack(static_cast<int>(places_.size()) - 1);
+    const auto isTwin = [&](const Alike& alike) {
+        const Pose there = trajectory.worldPose({alike.second, alike.first.T_candidate_query, {}});
+        return trajectory.beginOfTrack(alike.second) == track &&
+               (there.translation() - whereabouts.centre).norm() > whereabouts.radius;
+    };
+    newest_.alike.erase(std::remove_if(newest_.alike.begin(), newest_.alike.end(), isTwin),
+                        newest_.alike.end());
     if (newest_.alike.empty() || newest_.alike.front().first.inliers < kLeastSimilarPoints)
         return std::nullopt;
     const auto& [points, id] = newest_.alike.front();
@@ -115,8 +124,6 @@ std::optional<RelativePose> Relocaliser::resembled() {
 
 std::optional<RelativePose> Relocaliser::recognised(const Trajectory& trajectory,
                                                     const Whereabouts& whereabouts) {
-    collect();
-    if (newest_.alike.empty()) return std::nullopt;
     return surest(registered(newest_.alike, *newest_.frame, newest_.edges), trajectory, whereabouts);
 }
 
@@ -146,7 +153,6 @@ std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, i
     }
     std::stable_sort(alike.begin(), alike.end(),
                      [](const Alike& a, const Alike& b) { return a.first.inliers > b.first.inliers; });
-    if (alike.size() > kRegistered) alike.resize(kRegistered);
     return alike;
 }
 
@@ -154,7 +160,8 @@ std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, i
 std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<Alike>& alike,
                                                               const Frame& frame, const EdgePoints3D& edges) {
     std::vector<Recognition> recognised;
-    for (const auto& [of_points, id] : alike) {
+    for (std::size_t k = 0; k < std::min(kRegistered, alike.size()); ++k) {
+        const auto& [of_points, id] = alike[k];
         const EdgeRegistration found =
             registrar_.registerEdges(unpacked(id), frame, edges, of_points.T_candidate_query.inverse());
         const double confidence = placeConfidence(of_points, found);

@@ -37,8 +37,10 @@ class Relocaliser {
 
     /// The older keyframe that the newest one looks most like, and its pose relative to that by points alone:
     /// about right, with no covariance. Waits for the thread.
-    [[nodiscard]] std::optional<RelativePose> resembled();
-    /// The older keyframe that the newest one shows, and its pose relative to that.
+    /// @param whereabouts  of the newest: places of its own track that are out of reach are twins
+    [[nodiscard]] std::optional<RelativePose> resembled(const Trajectory& trajectory,
+                                                        const Whereabouts& whereabouts);
+    /// The one of them that the newest keyframe shows, and its pose relative to that; after resembled().
     [[nodiscard]] std::optional<RelativePose> recognised(const Trajectory& trajectory,
                                                          const Whereabouts& whereabouts);
 

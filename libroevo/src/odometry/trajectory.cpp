@@ -8,9 +8,8 @@
 namespace roevo {
 namespace {
 
-constexpr double kMostContradiction =
-    50;                          // squared sigmas; a loop that contradicts all else by more is wrong
-constexpr double kStill = 0.02;  // m; less change of view than this is hardly any
+constexpr double kMostContradiction = 50;   // squared sigmas, of a loop
+constexpr double kStill = 0.02;             // m; less change of view than this is hardly any
 constexpr std::size_t kRecentFrames = 128;  // of which it is kept which edges their errors come from
 constexpr double kTypicalDepth = 2;  // m; at this depth a turn by 1 rad changes a view like so many metres
 
@@ -164,14 +163,17 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
     const int track = tracks[static_cast<std::size_t>(recognised.front().first)];
     std::vector<PoseConstraint> constraints = constraintsOf(tracks, track), loops = loops_;
     for (const auto& [keyframe, pose] : recognised)
-        loops.push_back({pose.keyframe, keyframe, pose.T_keyframe_camera, pose.covariance(), true});
+        loops.push_back({pose.keyframe, keyframe, pose.T_keyframe_camera, pose.covariance()});
     for (const PoseConstraint& loop : loops)
         if (tracks[static_cast<std::size_t>(loop.to)] == track) constraints.push_back(loop);
     std::vector<Pose> poses;
     for (const KeyframeInfo& keyframe : keyframes_) poses.push_back(keyframe.T_world_camera);
     if (!optimisePoseGraph(poses, constraints, track)) return {};
-    for (std::size_t k = loops.size() - recognised.size(); k < loops.size(); ++k)
-        if (contradiction(poses, loops[k]) > kMostContradiction) return {};
+    // Tracking may have drifted by more than it knows, but places cannot contradict each other
+    for (const PoseConstraint& loop : loops)
+        if (tracks[static_cast<std::size_t>(loop.to)] == track &&
+            contradiction(poses, loop) > kMostContradiction)
+            return {};
     Correction correction;
     correction.recognised = recognised.front().second.keyframe;
     for (std::size_t id = 0; id < poses.size(); ++id) {
@@ -191,7 +193,6 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
 }
 
 void Trajectory::apply(const MapUpdate& update) {
-    for (const int old : update.reused) related_.emplace_back(old, update.keyframe);
     // Updates come in order: those of keyframes from before a correction know nothing of it
     corrections_.erase(
         std::remove_if(corrections_.begin(), corrections_.end(),

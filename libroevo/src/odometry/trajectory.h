@@ -25,10 +25,13 @@ class Trajectory {
     /// Moves a keyframe's track to where the keyframe was recognised.
     /// @param pose  of the keyframe, relative to one of another track
     Correction join(int keyframe, const RelativePose& pose);
+    /// Two keyframes, the older one first, show the same place, and are where that is: no loop moves them
+    /// apart.
+    void relate(int older, int newer) { related_.emplace_back(older, newer); }
     /// Moves the keyframes of a track, all a little, so that those that were recognised are where they were
-    /// seen: a pose graph of tracked motions, of what the map relates, and of all loops so far.
+    /// seen: a pose graph of tracked motions, of what is related, and of all loops so far.
     /// @param recognised  keyframes and their poses relative to older ones of the same track
-    /// @return moves nothing where that contradicts the rest
+    /// @return moves nothing where loops contradict each other
     Correction closeLoop(const std::vector<std::pair<int, RelativePose>>& recognised);
 
     /// Moves the keyframes as the map has it; younger ones follow the one that they were tracked from.
@@ -66,7 +69,7 @@ class Trajectory {
 
     std::vector<KeyframeInfo> keyframes_;
     std::vector<Correction> corrections_;       ///< that updates to come do not know of yet
-    std::vector<std::pair<int, int>> related_;  ///< keyframes that the map relates, the older one first
+    std::vector<std::pair<int, int>> related_;  ///< see relate()
     std::vector<PoseConstraint> loops_;
     std::vector<PoseUncertainty> in_world_;  ///< of the keyframes; influences of the newest alone
     std::vector<RelativePose> links_;        ///< of the keyframes, to the ones before; -1: to the world

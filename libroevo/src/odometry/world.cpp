@@ -17,6 +17,7 @@ constexpr double kTopSpeed = 1.5;  // m/s
 constexpr int kInARow = 3;               // keyframes
 constexpr double kAgreedDistance = 0.1;  // m
 constexpr double kAgreedTurn = 3 * kDegree;
+constexpr int kStillInView = 10;     // newest keyframes
 constexpr double kDriftSigmas = 10;  // that the camera can be from where it is thought to be
 
 }  // namespace
@@ -74,10 +75,9 @@ Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Trac
 
 void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
     if (options_.loss.recognise) {
-        // The map relates the newest keyframes by itself
         const bool closes = options_.mapping.close_loops && options_.mode == Mode::kBundleAdjustment;
         const int begin = trajectory_.beginOfTrack(fresh->id);
-        relocaliser_.add(*fresh, of, closes ? std::max(begin, fresh->id - options_.mapping.window) : begin);
+        relocaliser_.add(*fresh, of, closes ? std::max(begin, fresh->id - kStillInView) : begin);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
     }
@@ -91,8 +91,6 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
 /// What older keyframe the newest one shows.
 void World::recognise() {
     if (!std::exchange(recognising_, false)) return;
-    const auto alike = relocaliser_.resembled();
-    if (!alike || (isOfThisTrack(*alike) && isWithinReach(*alike))) return;
     const RelativePose newest{reference_->id, Pose::Identity(), {}};
     const Matrix6d covariance = trajectory_.worldCovariance(newest);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance.topLeftCorner<3, 3>(),
@@ -100,12 +98,17 @@ void World::recognise() {
     const double drift = kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
     const Whereabouts near{trajectory_.worldPose(newest).translation(),
                            kReach + kTopSpeed * lost_for_ + drift};
+    const auto alike = relocaliser_.resembled(trajectory_, near);
+    if (!alike) return;
+    if (isOfThisTrack(*alike) && isWithinReach(*alike)) {
+        trajectory_.relate(alike->keyframe, newest.keyframe);
+        return;
+    }
     const auto pose = relocaliser_.recognised(trajectory_, near);
     if (!pose) return;
     if (!isOfThisTrack(*pose))
         join(*pose);
-    else if (!isWithinReach(*pose) &&
-             (trajectory_.worldPose(*pose).translation() - near.centre).norm() <= near.radius)
+    else if (!isWithinReach(*pose))
         closeLoop(*pose);
 }
 
