@@ -65,6 +65,8 @@ TEST_F(OdometryProgram, TheSummaryTellsTheReadoutTime) {
         uneven[i].timestamp = uneven[i - 1].timestamp + (i / 3 % 2 == 0 ? 0.015 : 0.06);
     ASSERT_EQ(runFrames(uneven, {}).exit_code, 0);
     EXPECT_EQ(summary()["camera"]["readout_learned"], true);
+    EXPECT_EQ(summary()["losses"]["lost"], 0);
+    EXPECT_EQ(summary()["losses"]["pieces"], 1);
     const double learned = summary()["camera"]["readout_time_s"];
     EXPECT_NE(learned, 0);
     EXPECT_LT(std::abs(learned), 0.01) << "all rows are drawn at one time";

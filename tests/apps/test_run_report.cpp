@@ -35,5 +35,32 @@ TEST(RunReport, APoseThatIsNotANumberIsAFailureThatSaysWhere) {
     }
 }
 
+TEST(RunReport, LossesAreCountedOnceEach) {
+    RunReport report = trackedReport();
+    const auto add = [&](FrameStatus status) -> FrameResult& {
+        report.frames.emplace_back();
+        report.frames.back().result.status = status;
+        return report.frames.back().result;
+    };
+    EXPECT_EQ(report.losses().lost, 0U);
+    EXPECT_EQ(report.losses().pieces, 1U);
+    add(FrameStatus::kPredicted);
+    add(FrameStatus::kRejected);  // says nothing
+    add(FrameStatus::kLost);
+    add(FrameStatus::kOk).found_at = 3;  // the end of the loss
+    add(FrameStatus::kOk);
+    add(FrameStatus::kOk).found_at = 5;  // lost and found in one
+    add(FrameStatus::kPredicted);
+    add(FrameStatus::kInitialised);
+    EXPECT_EQ(report.losses().lost, 3U);
+    EXPECT_EQ(report.losses().found_again, 2U);
+    EXPECT_EQ(report.losses().pieces, 2U);
+    add(FrameStatus::kOk).joined_at = 1;
+    add(FrameStatus::kOk).closed_at = 2;
+    EXPECT_EQ(report.losses().joined, 1U);
+    EXPECT_EQ(report.losses().loops_closed, 1U);
+    EXPECT_EQ(report.losses().pieces, 1U);
+}
+
 }  // namespace
 }  // namespace roevo

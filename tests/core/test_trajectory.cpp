@@ -150,11 +150,11 @@ TEST(Trajectory, NothingIsInterpolatedBetweenTracks) {
 
 TEST(Trajectory, MotionIsKnownBetweenAllFramesOfATrack) {
     const Trajectory trajectory = foundAgain();
-    for (const auto [a, b] : {std::pair{0, 1}, {0, 4}, {1, 4}, {4, 1}, {2, 3}})
+    for (const auto& [a, b] : {std::pair{0, 1}, {0, 4}, {1, 4}, {4, 1}, {2, 3}})
         EXPECT_TRUE(
             trajectory.motionCovariance(static_cast<std::size_t>(a), static_cast<std::size_t>(b)).allFinite())
             << a << " " << b;
-    for (const auto [a, b] : {std::pair{0, 2}, {2, 4}, {1, 3}})
+    for (const auto& [a, b] : {std::pair{0, 2}, {2, 4}, {1, 3}})
         EXPECT_FALSE(
             trajectory.motionCovariance(static_cast<std::size_t>(a), static_cast<std::size_t>(b)).allFinite())
             << a << " " << b;

@@ -46,9 +46,9 @@ struct Odometry::Impl {
     Tracking confirmed(Tracking tracking, const Prediction& prediction);
     Outcome findAgain(Tracking failed, double since_measured);
     Outcome bridge(Tracking failed, double since_measured);
-    Outcome renewReference(Tracking tracking);
-    void learn(const Tracking& tracking, const RollingShutter& shutter);
-    void settle(const Outcome& outcome, const PoseUncertainty& measured);
+    void renewReference(Outcome& outcome);
+    void learn(const Tracking& tracking, const Prediction& prediction);
+    void settle(const Outcome& outcome);
     Fault beginTrack(const Pose& T_world_camera, const Matrix6d& covariance);
     Fault promote(const Frame& promoted, const Tracking& tracked);
     FrameResult report(const Outcome& outcome);
@@ -65,14 +65,13 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     if (tracking.lost()) return report(findAgain(std::move(tracking), prediction.since_measured));
 
     lost_frames = 0;
-    learn(tracking, prediction.shutter);
-    const PoseUncertainty measured = tracking.pose.uncertainty;
+    learn(tracking, prediction);
     Outcome outcome;
-    if (keyframeIsDue(world.reference(), tracking, options.keyframe))
-        outcome = renewReference(std::move(tracking));  // Sec. VI
-    else
-        outcome.tracking = std::move(tracking);
-    settle(outcome, measured);
+    outcome.tracking = std::move(tracking);
+    outcome.measured = outcome.tracking.pose.uncertainty;
+    if (keyframeIsDue(world.reference(), outcome.tracking, options.keyframe))
+        renewReference(outcome);  // Sec. VI
+    settle(outcome);
     FrameResult result = report(outcome);
     if (!outcome.is_keyframe) candidate = std::move(outcome.tracking);
     return result;
@@ -172,8 +171,9 @@ Outcome Odometry::Impl::bridge(Tracking failed, double since_measured) {
     return outcome;
 }
 
-Outcome Odometry::Impl::renewReference(Tracking tracking) {
-    Outcome outcome;
+/// @param outcome  with the frame's tracking, which is relative to the new reference in the end
+void Odometry::Impl::renewReference(Outcome& outcome) {
+    Tracking& tracking = outcome.tracking;
     // A frame that suddenly sees less is often a blurred one, and a bad keyframe. The frame before it was
     // still tracked well: it takes over, and this frame is tracked once more, from nearer by.
     const bool sees_less = tracking.matchedRatio() < options.keyframe.min_overlap;
@@ -181,57 +181,50 @@ Outcome Odometry::Impl::renewReference(Tracking tracking) {
     const RelativePose promoted = takes_over ? candidate->pose : tracking.pose;
     outcome.no_keyframe = takes_over ? promote(*frame_before, *candidate) : promote(*frame, tracking);
     outcome.new_keyframe = !outcome.no_keyframe;
-    outcome.tracking = std::move(tracking);
-    if (outcome.no_keyframe) return outcome;
-    outcome.tracking.pose = changeReference(outcome.tracking.pose, promoted, world.reference().id);
+    if (outcome.no_keyframe) return;
+    tracking.pose = changeReference(tracking.pose, promoted, world.reference().id);
     outcome.is_keyframe = !takes_over;
     if (outcome.is_keyframe) {
-        outcome.tracking.pose.uncertainty = PoseUncertainty();
-        return outcome;
+        tracking.pose.uncertainty = {};
+        return;
     }
     const Prediction prediction = motion.predict(frame->timestamp());
     Tracking again =
-        tracker->trackFrom(world.reference(), *frame, prediction, outcome.tracking.pose.T_keyframe_camera);
-    again.ms_coarse += outcome.tracking.ms_coarse;
-    again.ms_fine += outcome.tracking.ms_fine;
-    if (again.tracked) {
-        learn(again, prediction.shutter);
-        again.searched = outcome.tracking.searched;
-        again.fault = outcome.tracking.fault;
-        outcome.tracking = std::move(again);
-    }
-    return outcome;
+        tracker->trackFrom(world.reference(), *frame, prediction, tracking.pose.T_keyframe_camera);
+    again.ms_coarse += tracking.ms_coarse;
+    again.ms_fine += tracking.ms_fine;
+    if (!again.tracked) return;
+    learn(again, prediction);
+    again.searched = tracking.searched;
+    again.fault = tracking.fault;
+    tracking = std::move(again);
 }
 
 /// What a tracked frame tells besides its pose.
-void Odometry::Impl::learn(const Tracking& tracking, const RollingShutter& shutter) {
+void Odometry::Impl::learn(const Tracking& tracking, const Prediction& prediction) {
     motion.setBrightness(tracking.brightness);
-    Keyframe& reference = world.reference();
+    auto& reference = world.reference();
     reference.count(tracking.matches.visible, tracking.found);
-    if (!reference.row_motion.known()) {
+    if (!reference.row_motion.known())
         reference.setRowMotion(
             motion.firstRows(frame->timestamp() - reference.timestamp, tracking.pose.T_keyframe_camera));
-    } else if (options.mode != Mode::kCoarse && options.sensor.estimate_readout &&
-               shutter.since_previous > 0) {
-        tracker->learnReadout(reference, *frame, tracking, shutter, motion.readout());
-    }
+    else
+        tracker->learnReadout(reference, *frame, tracking, prediction.shutter, motion.readout());
 }
 
 /// A tracked pose is what the next one is predicted from.
-/// @param measured  its uncertainty, which a keyframe no longer has relative to itself
-void Odometry::Impl::settle(const Outcome& outcome, const PoseUncertainty& measured) {
-    const RelativePose& pose = outcome.tracking.pose;
+void Odometry::Impl::settle(const Outcome& outcome) {
+    const Pose& T_reference_camera = outcome.tracking.pose.T_keyframe_camera;
     if (outcome.tracking.searched)
-        motion.anchor(frame->timestamp(), pose.T_keyframe_camera);
+        motion.anchor(frame->timestamp(), T_reference_camera);
     else
-        motion.measure(frame->timestamp(), pose.T_keyframe_camera, measured);
+        motion.measure(frame->timestamp(), T_reference_camera, outcome.measured);
 }
 
 Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance) {
     const Fault fault = world.beginTrack(*frame, motion.stillRows(), *tracker, T_world_camera, covariance);
     if (fault) return fault;
-    motion.anchor(frame->timestamp(), Pose::Identity());
-    motion.setBrightness(Brightness());
+    motion.begin(frame->timestamp());
     candidate.reset();
     return {};
 }
@@ -246,7 +239,7 @@ Fault Odometry::Impl::promote(const Frame& promoted, const Tracking& tracked) {
 
 FrameResult Odometry::Impl::report(const Outcome& outcome) {
     const Tracking& tracking = outcome.tracking;
-    const WorldChange change = world.changes();
+    const auto change = world.changes();
     FrameResult result;
     result.timestamp = frame->timestamp();
     result.status = outcome.status;

@@ -9,6 +9,7 @@ namespace roevo {
 struct Outcome {
     FrameStatus status = FrameStatus::kOk;
     Tracking tracking;          ///< its pose is relative to the present reference
+    PoseUncertainty measured;   ///< of the pose, also where that has become the reference
     Fault no_keyframe;          ///< why a keyframe that is due was not made
     bool is_keyframe = false;   ///< the frame is the reference now
     bool new_keyframe = false;  ///< this frame brought a new keyframe: itself or the frame before it

@@ -32,17 +32,22 @@ World::World(const PinholeCamera& camera, const OdometryOptions& options)
 void World::advance(double timestamp, double seconds_per_row) {
     timestamp_ = timestamp;
     seconds_per_row_ = seconds_per_row;
-    const Pose before = trajectory_.lastPose();
     for (const MapUpdate& update : mapper_->due(timestamp, change_.waiting_ms)) takeUpdate(update);
     if (recognising_ && timestamp >= recognised_at_) recognise();
-    const Pose after = trajectory_.lastPose();
-    change_.moved += (after.translation() - before.translation()).norm();
-    change_.turned += rotationAngle(after * before.inverse());
     if (reference_) reference_->setRowMotion(reference_->row_motion.at(seconds_per_row));
 }
 
+/// Adds how far the camera has moved with the keyframes.
+void World::noteMotion(const Pose& before) {
+    const Pose after = trajectory_.lastPose();
+    change_.moved += (after.translation() - before.translation()).norm();
+    change_.turned += rotationAngle(after * before.inverse());
+}
+
 void World::takeUpdate(const MapUpdate& update) {
+    const Pose before = trajectory_.lastPose();
     trajectory_.apply(update);
+    noteMotion(before);
     change_.mapping_ms += update.milliseconds;
     change_.refusals.insert(change_.refusals.end(), update.refusals.begin(), update.refusals.end());
     if (update.keyframe != reference_->id || update.verdicts.empty()) return;
@@ -125,7 +130,9 @@ bool World::isWithinReach(const RelativePose& pose) const {
 
 /// A track that was begun after a loss is moved to where one of its keyframes is recognised.
 void World::join(const RelativePose& pose) {
+    const Pose before = trajectory_.lastPose();
     mapper_->correct(trajectory_.join(reference_->id, pose));
+    noteMotion(before);
     change_.joined_at = pose.keyframe;
     lost_for_ = 0;
 }
@@ -137,14 +144,16 @@ void World::closeLoop(const RelativePose& pose) {
     };
     const int newest = reference_->id;
     const Pose& T_world_newest = trajectory_.keyframePose(newest);
-    const auto before = std::exchange(loop_, std::pair(newest, pose));
-    if (!before || newest - before->first > kInARow) return;
-    const Pose apart = (motionOf(before->first, before->second) * T_world_newest).inverse() *
+    const auto first = std::exchange(loop_, std::pair(newest, pose));
+    if (!first || newest - first->first > kInARow) return;
+    const Pose apart = (motionOf(first->first, first->second) * T_world_newest).inverse() *
                        motionOf(newest, pose) * T_world_newest;
     if (apart.translation().norm() > kAgreedDistance || rotationAngle(apart) > kAgreedTurn) return;
-    const Correction correction = trajectory_.closeLoop({*before, *loop_});
+    const Pose before = trajectory_.lastPose();
+    const Correction correction = trajectory_.closeLoop({*first, *loop_});
     if (correction.keyframes.empty()) return;
     mapper_->correct(correction);
+    noteMotion(before);
     change_.closed_at = pose.keyframe;
     loop_.reset();
 }

@@ -71,6 +71,7 @@ class World {
     bool isOfThisTrack(const RelativePose& pose) const;
     bool isWithinReach(const RelativePose& pose) const;
     void takeUpdate(const MapUpdate& update);
+    void noteMotion(const Pose& before);
 
     PinholeCamera camera_;
     OdometryOptions options_;  // scaled to the camera

@@ -28,6 +28,9 @@ EdgeTerm::EdgeTerm(const PinholeCamera& camera, const OdometryOptions& options)
       associator_(options.fine) {}
 
 void EdgeTerm::look(const Keyframe& keyframe, const Frame& frame) {
+    if (frame_ != &frame || looked_at_ != frame.timestamp() || current_depth_.size() != frame.edges.size())
+        current_depth_.assign(frame.edges.size(), kUnknown);
+    looked_at_ = frame.timestamp();
     keyframe_ = &keyframe;
     frame_ = &frame;
     free_readout_ = has_associated_ = false;

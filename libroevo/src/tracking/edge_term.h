@@ -66,6 +66,7 @@ class EdgeTerm : public ResidualTerm {
     EdgeAssociator associator_;
     const Keyframe* keyframe_ = nullptr;
     const Frame* frame_ = nullptr;
+    double looked_at_ = 0;  ///< s; frames use their memory again
     bool use_depth_ = true, narrowing_ = false, free_readout_ = false;
     Pose T_associated_;  ///< pose at which points were associated within the final radius
     bool has_associated_ = false;

@@ -26,14 +26,19 @@ MotionModel::MotionModel(const MotionOptions& motion, const SensorOptions& senso
       readout_(sensor.readout_sigma / image_height, sensor.readout_memory) {}
 
 void MotionModel::expect(double timestamp) {
-    const double interval = timestamp - last_frame_;
-    if (last_frame_ >= 0) {
-        // A gap counts for no more than what is just usual, so that another rate is learned in a few frames
-        const double most = usual_interval_ > 0 ? kUsual * usual_interval_ : interval;
-        const double share = usual_interval_ > 0 ? kLearning : 1;
-        usual_interval_ += share * (std::min(interval, most) - usual_interval_);
-    }
+    const double interval = last_frame_ < 0 ? 0 : timestamp - last_frame_;
+    if (usual_interval_ <= 0)
+        usual_interval_ = interval;
+    else  // a gap counts for no more than what is just usual, so that another rate is learned in a few frames
+        usual_interval_ +=
+            kLearning * (std::min(interval_before_, kUsual * usual_interval_) - usual_interval_);
+    interval_before_ = interval;
     last_frame_ = timestamp;
+}
+
+void MotionModel::begin(double timestamp) {
+    anchor(timestamp, Pose());
+    brightness_ = Brightness();
 }
 
 void MotionModel::anchor(double timestamp, const Pose& T_reference_camera) {

@@ -26,6 +26,8 @@ class MotionModel {
 
     /// A frame has come, whatever becomes of it: what is usual between frames shows what is a gap.
     void expect(double timestamp);
+    /// The first frame of a track, which is the reference.
+    void begin(double timestamp);
     /// A pose whose motion since the last one was not measured: first frame, re-anchored, or found again by a
     /// search.
     void anchor(double timestamp, const Pose& T_reference_camera);
@@ -73,7 +75,8 @@ class MotionModel {
     Variance last_, before_;    ///< of the last two measured poses
     double design_effect_ = 1;  ///< of the poses so far
     double last_timestamp_ = 0;
-    double last_frame_ = -1, usual_interval_ = 0;  ///< s; negative, 0: not known
+    double last_frame_ = -1, interval_before_ = 0;  ///< s; negative: none yet
+    double usual_interval_ = 0;                     ///< s, mean of those before the last frame; 0: none yet
     bool has_last_ = false;
     Pose step_ = Pose::Identity();  ///< T_last_current over interval_ seconds
     double interval_ = 0;           ///< s; 0 when no velocity is known

@@ -171,6 +171,8 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
 
 void Tracker::learnReadout(const Keyframe& reference, const Frame& frame, const Tracking& tracking,
                            const RollingShutter& shutter, ReadoutEstimator& estimator) {
+    if (options_.mode == Mode::kCoarse || !options_.sensor.estimate_readout || shutter.since_previous <= 0)
+        return;
     fine_.addReadoutEvidence(reference, tracking.pose.T_keyframe_camera.inverse(), tracking.matches, shutter,
                              frame, estimator);
 }
