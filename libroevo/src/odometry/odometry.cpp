@@ -230,7 +230,7 @@ Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& cov
 }
 
 Fault Odometry::Impl::promote(const Frame& promoted, const Tracking& tracked) {
-    if (tracked.depth_fault) return tracked.depth_fault;
+    if (tracked.depth_fault && !tracked.doubtful) return tracked.depth_fault;
     if (const Fault fault = world.addKeyframe(promoted, tracked, *tracker)) return fault;
     motion.changeReference(tracked.pose.T_keyframe_camera.inverse());
     candidate.reset();  // which `tracked` may be

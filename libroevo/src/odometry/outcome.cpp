@@ -29,7 +29,8 @@ std::string describe(const Outcome& outcome, const WorldChange& change) {
     std::string text = whatBecame(outcome);
     const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
     if (outcome.tracking.tracked && outcome.tracking.depth_fault)
-        add(describe(outcome.tracking.depth_fault) + ", and it is left out");
+        add(describe(outcome.tracking.depth_fault) +
+            (outcome.tracking.doubtful ? "; the pose is doubtful" : ", and it is left out"));
     if (change.joined_at >= 0)
         add("the new track is joined to the old one at keyframe " + std::to_string(change.joined_at));
     if (change.closed_at >= 0) add("a loop is closed to keyframe " + std::to_string(change.closed_at));

@@ -124,7 +124,8 @@ std::optional<RelativePose> Relocaliser::resembled(const Trajectory& trajectory,
 
 std::optional<RelativePose> Relocaliser::recognised(const Trajectory& trajectory,
                                                     const Whereabouts& whereabouts) {
-    return surest(registered(newest_.alike, *newest_.frame, newest_.edges), trajectory, whereabouts);
+    return surest(registered(newest_.alike, *newest_.frame, newest_.edges, places_.back().row_motion),
+                  trajectory, whereabouts);
 }
 
 std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajectory& trajectory,
@@ -135,7 +136,7 @@ std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajecto
     describer_.describe(edges, frame.pyramid.level(0), points_);
     if (points_.size() > kPoints) points_.resize(kPoints);
     const int all = static_cast<int>(places_.size());
-    return surest(registered(lookUp(points_, -1, all), frame, edges), trajectory, whereabouts);
+    return surest(registered(lookUp(points_, -1, all), frame, edges, RowMotion()), trajectory, whereabouts);
 }
 
 /// Keyframes before `end` whose points look alike, those with the most agreeing points first.
@@ -158,12 +159,13 @@ std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, i
 
 /// Those whose edges do not contradict.
 std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<Alike>& alike,
-                                                              const Frame& frame, const EdgePoints3D& edges) {
+                                                              const Frame& frame, const EdgePoints3D& edges,
+                                                              const RowMotion& rows) {
     std::vector<Recognition> recognised;
     for (std::size_t k = 0; k < std::min(kRegistered, alike.size()); ++k) {
         const auto& [of_points, id] = alike[k];
         const EdgeRegistration found =
-            registrar_.registerEdges(unpacked(id), frame, edges, of_points.T_candidate_query.inverse());
+            registrar_.registerEdges(unpacked(id), frame, edges, of_points.T_candidate_query.inverse(), rows);
         const double confidence = placeConfidence(of_points, found);
         if (confidence <= 0) continue;
         const RelativePose pose{id, found.T_frame_keyframe.inverse(), {found.covariance, {}}};

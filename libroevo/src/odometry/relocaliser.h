@@ -78,7 +78,7 @@ class Relocaliser {
     Described describe(const Keyframe& keyframe, std::unique_ptr<Frame> frame, int end);
     std::vector<Alike> lookUp(const PlacePoints& points, int query_id, int end);
     std::vector<Recognition> registered(const std::vector<Alike>& alike, const Frame& frame,
-                                        const EdgePoints3D& edges);
+                                        const EdgePoints3D& edges, const RowMotion& rows);
     void collect();
     Keyframe unpacked(int id) const;
     EdgePoints3D lifted(const Frame& frame) const;

@@ -14,9 +14,9 @@ constexpr double kReach = 0.3;     // m
 constexpr double kTopSpeed = 1.5;  // m/s
 
 // Two keyframes in a row that were recognised agree on the loop
-constexpr int kInARow = 3;               // keyframes
-constexpr double kAgreedDistance = 0.1;  // m
-constexpr double kAgreedTurn = 3 * kDegree;
+constexpr int kInARow = 3;                // keyframes
+constexpr double kAgreedDistance = 0.05;  // m
+constexpr double kAgreedTurn = 1 * kDegree;
 constexpr int kStillInView = 10;     // newest keyframes
 constexpr double kDriftSigmas = 10;  // that the camera can be from where it is thought to be
 
@@ -125,7 +125,7 @@ bool World::isOfThisTrack(const RelativePose& pose) const {
 bool World::isWithinReach(const RelativePose& pose) const {
     return imageMotion(trajectory_.worldPose(pose).inverse(),
                        trajectory_.keyframePose(reference_->id).inverse(), camera_.fx,
-                       reference_->typicalDepth()) <= options_.fine.final_radius;
+                       reference_->typicalDepth()) <= options_.fine.search_radius;
 }
 
 /// A track that was begun after a loss is moved to where one of its keyframes is recognised.

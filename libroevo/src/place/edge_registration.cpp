@@ -55,7 +55,8 @@ EdgeRegistrar::EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions&
       associator_(options_.fine) {}
 
 EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Frame& frame,
-                                              const EdgePoints3D& frame_edges, const Pose& T_start) {
+                                              const EdgePoints3D& frame_edges, const Pose& T_start,
+                                              const RowMotion& rows) {
     EdgeRegistration out;
     term_.start(keyframe, frame);
     GaussNewtonOptions loop;
@@ -66,7 +67,7 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     loop.still = kStill;
     loop.relaxation = kOverRelaxation;
     loop.relaxed_from = term_.narrowed();
-    const GaussNewtonResult found = minimise(T_start, RollingShutter(), {&term_}, loop);
+    const GaussNewtonResult found = minimise(T_start, RollingShutter::of(rows), {&term_}, loop);
     if (!found.complete || !found.T_current_keyframe.isFinite()) return out;
     out.T_frame_keyframe = found.T_current_keyframe;
     clusters_.start(keyframe.clusters);
@@ -76,7 +77,7 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     out.sigma_translation = worstSigma(out.covariance.topLeftCorner<3, 3>());
     out.sigma_rotation = worstSigma(out.covariance.bottomRightCorner<3, 3>());
     term_.look(keyframe, frame);
-    term_.assess(out.T_frame_keyframe, RowMotion());
+    term_.assess(out.T_frame_keyframe, rows);
     out.inliers = term_.inliers();
     out.keyframe_matched = term_.matches().matchedRatio();
     lookBack(keyframe, frame_edges, out);

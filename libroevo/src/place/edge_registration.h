@@ -45,8 +45,10 @@ class EdgeRegistrar {
 
     /// @param frame_edges  those of the frame that have depth
     /// @param T_start      T_frame_keyframe
+    /// @param rows         how the frame's rows moved, where that is known
     [[nodiscard]] EdgeRegistration registerEdges(const Keyframe& keyframe, const Frame& frame,
-                                                 const EdgePoints3D& frame_edges, const Pose& T_start);
+                                                 const EdgePoints3D& frame_edges, const Pose& T_start,
+                                                 const RowMotion& rows = RowMotion());
 
   private:
     void lookBack(const Keyframe& keyframe, const EdgePoints3D& frame_edges, EdgeRegistration& out);

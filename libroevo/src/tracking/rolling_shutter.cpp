@@ -30,6 +30,8 @@ RowMotion RollingShutter::motion(const Pose& T_current_keyframe) const {
     RowMotion rows;
     rows.reference_row = reference_row;
     rows.seconds_per_row = seconds_per_row;
+    rows.velocity = earlier_velocity;
+    rows.turn = earlier_turn;
     if (since_previous <= 0) return rows;
     const Pose T_previous_current = T_previous_keyframe * T_current_keyframe.inverse();
     const Velocity mean = velocityOf(T_previous_current, since_previous);
@@ -42,6 +44,15 @@ RowMotion RollingShutter::motion(const Pose& T_current_keyframe) const {
         rows.velocity += ahead * (rows.velocity - T_previous_current.linear().transpose() * earlier_velocity);
     }
     return rows;
+}
+
+RollingShutter RollingShutter::of(const RowMotion& rows) {
+    RollingShutter shutter;
+    shutter.seconds_per_row = rows.seconds_per_row;
+    shutter.reference_row = rows.reference_row;
+    shutter.earlier_velocity = rows.velocity;
+    shutter.earlier_turn = rows.turn;
+    return shutter;
 }
 
 void ReadoutEstimator::add(const Matrix6d& pose_information, const Vector6d& mixed, double own,

@@ -63,11 +63,13 @@ struct RollingShutter {
     double since_previous = 0;  ///< s; 0 when there is no trusted previous pose
 
     /// Mean motion over the interval before that, in the previous camera's axes, m/s and rad/s, and its
-    /// length, s (0: not known).
+    /// length, s (0: not known). Where there is no previous pose, the motion itself.
     Eigen::Vector3d earlier_velocity = Eigen::Vector3d::Zero(), earlier_turn = Eigen::Vector3d::Zero();
     double earlier_interval = 0;
 
     RowMotion motion(const Pose& T_current_keyframe) const;
+    /// Of an image whose motion is known, whatever its pose.
+    static RollingShutter of(const RowMotion& rows);
 };
 
 /// Rigid motion, camera and row motion for the kernels.

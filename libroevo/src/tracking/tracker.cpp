@@ -13,6 +13,9 @@ namespace {
 // Frames of recordings that were tracked well agree to 72 % and more, poses that went astray to less than 40
 constexpr double kLeastDepthAgreement = 0.4;
 constexpr double kMatchedWithoutDepth = 0.6;  ///< share of the edges
+// One sigma of poses that went astray
+constexpr double kDoubtfulPosition = 0.15;  ///< m
+constexpr double kDoubtfulTurn = 5 * kDegree;
 
 int percent(double share) {
     return static_cast<int>(std::lround(100 * share));
@@ -147,11 +150,14 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
     FineResult found = registered();
     Fault contradiction;
     if (found.converged && found.depth_agreement < kLeastDepthAgreement) {
-        // Either the pose is wrong or the depth: without it, the edges must agree all the better
+        // Either the pose is wrong or the depth image. It is the depth where edges agree well all the same
         contradiction = {Fault::Kind::kDepthContradicts, {percent(found.depth_agreement)}};
-        fine_.useDepth(false);
-        found = registered();
-        fine_.useDepth(true);
+        out.doubtful = found.matched_ratio < kMatchedWithoutDepth;
+        if (!out.doubtful) {
+            fine_.useDepth(false);
+            found = registered();
+            fine_.useDepth(true);
+        }
     }
     out.matches = fine_.matches();
     out.inliers = found.inliers;
@@ -162,10 +168,14 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
             ++out.found[static_cast<std::size_t>(reference.edges.image.edge_of[point])];
     }
     if (!found.converged) return describeFailure(found, options_.fine);
-    if (contradiction && found.matched_ratio < kMatchedWithoutDepth) return contradiction;
     out.depth_fault = contradiction;
     out.pose.T_keyframe_camera = found.T_current_keyframe.inverse();
     out.pose.uncertainty = found.uncertainty;
+    if (out.doubtful) {
+        out.pose.uncertainty.independent.diagonal().head<3>().array() +=
+            kDoubtfulPosition * kDoubtfulPosition;
+        out.pose.uncertainty.independent.diagonal().tail<3>().array() += kDoubtfulTurn * kDoubtfulTurn;
+    }
     return {};
 }
 

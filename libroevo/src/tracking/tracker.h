@@ -19,7 +19,8 @@ struct Tracking {
     int inliers = 0;                  ///< of them (in mode ct: all of them)
     std::vector<std::int32_t> found;  ///< of each of the keyframe's edges: inliers
     Fault fault;                      ///< why the frame is lost; or why the search was needed
-    Fault depth_fault;                ///< why the frame's depth was left out
+    Fault depth_fault;                ///< how the frame's depth contradicts: it was left out, unless...
+    bool doubtful = false;            ///< ... the pose may be what is wrong
     bool tracked = false, searched = false;
     double ms_coarse = 0, ms_fine = 0;
 
