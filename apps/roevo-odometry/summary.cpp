@@ -134,6 +134,11 @@ Json groundTruthJson(const RunReport& report) {
     return json;
 }
 
+std::string times(std::size_t count) {
+    if (count == 0) return "never";
+    return count == 1 ? "once" : std::to_string(count) + " times";
+}
+
 void printErrors(const Evaluation& e) {
     std::printf("ATE         %.3f cm rmse, %.3f cm max (%zu poses, SE(3) alignment)\n",
                 100 * e.ate.translation.rmse, 100 * e.ate.translation.max, e.pairs.size());
@@ -195,8 +200,8 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
             std::printf("            %zu %s\n", count, reason.c_str());
     const Losses losses = report.losses();
     if (losses.lost > 0)
-        std::printf("losses      lost %zu times, found again %zu times, joined later %zu times\n",
-                    losses.lost, losses.found_again, losses.joined);
+        std::printf("losses      lost %s, found again %s, joined later %s\n", times(losses.lost).c_str(),
+                    times(losses.found_again).c_str(), times(losses.joined).c_str());
     if (losses.pieces > 1)
         std::printf(
             "            the trajectory is in %zu pieces; where they are relative to each other is a guess\n",
