@@ -277,6 +277,7 @@ TEST(MotionModel, AGapIsWhatIsLongAndLongerThanUsual) {
     EXPECT_FALSE(isBlindAfter({10, 10.03, 10.06, 10.09}));
     EXPECT_FALSE(isBlindAfter({10, 10.03, 10.06, 10.4})) << "velocity is worth something for so long";
     EXPECT_TRUE(isBlindAfter({10, 10.03, 10.06, 10.7}));
+    EXPECT_FALSE(isBlindAfter({-10, -9.3, -8.6, -7.9})) << "times before zero are times";
     EXPECT_FALSE(isBlindAfter({10, 10.7, 11.4, 12.1})) << "frames are always so far apart";
     EXPECT_TRUE(isBlindAfter({10, 10.7, 11.4, 13.4}));
     std::vector<double> slower{10, 10.03, 10.06, 10.09};

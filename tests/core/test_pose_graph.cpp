@@ -14,11 +14,7 @@ namespace {
 constexpr int kPoses = 12;
 
 Pose moved(const Pose& pose, const Vector6d& step) {
-    const Eigen::Vector3d turn = step.tail<3>();
-    const double angle = turn.norm();
-    const Eigen::AngleAxisd rotation(
-        angle, angle > 0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX().eval());
-    return pose * Pose(Eigen::Quaterniond(rotation), step.head<3>());
+    return pose * poseIncrement(step);
 }
 
 struct Ring {

@@ -19,7 +19,8 @@ class Odometry {
     /// @throws std::invalid_argument when the camera or an option is unusable (one line that names it).
     Odometry(const PinholeCamera& camera, const OdometryOptions& options,
              const Pose& T_world_start = Pose::Identity());
-    /// With another tracker, for experiments: frames that it loses are not looked up among the keyframes.
+    /// With another tracker, for experiments: frames that it loses are not looked up among the keyframes, and
+    /// no loops are closed; options() says so.
     Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start,
              std::unique_ptr<Tracker> tracker);
     ~Odometry();

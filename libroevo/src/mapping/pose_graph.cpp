@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tracking/relative_pose.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -93,10 +94,7 @@ bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstrain
         }
         for (std::size_t p = 0; p < poses.size(); ++p) {
             if (rows[p] < 0) continue;
-            const Eigen::Vector3d t = step.segment<3>(6 * rows[p]), turn = step.segment<3>(6 * rows[p] + 3);
-            const Eigen::AngleAxisd rotation(
-                turn.norm(), turn.norm() > 0 ? Eigen::Vector3d(turn.normalized()) : Eigen::Vector3d::UnitX());
-            poses[p] = poses[p] * Pose(Eigen::Quaterniond(rotation), t);
+            poses[p] = poses[p] * poseIncrement(step.segment<6>(6 * rows[p]));
         }
         if (step.lpNorm<Eigen::Infinity>() < kSmallStep) break;
     }

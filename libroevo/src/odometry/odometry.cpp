@@ -280,7 +280,7 @@ Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, 
     if (!T_world_start.isFinite()) throw std::invalid_argument("the start pose is not finite");
     OdometryOptions own = options;
     // What the tracker of an experiment loses stays lost: what is found without it is not its merit
-    if (tracker) own.loss.recognise = false;
+    if (tracker) own.loss.recognise = own.mapping.close_loops = false;
     if (!tracker) tracker = std::make_unique<Tracker>(camera, options);
     impl_ = std::make_unique<Impl>(camera, own, T_world_start, std::move(tracker));
 }

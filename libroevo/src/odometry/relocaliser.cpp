@@ -35,17 +35,18 @@ void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, int end) {
     copy.median_depth = keyframe.median_depth;
     copy.row_motion = keyframe.row_motion;
     auto seen = std::make_unique<Frame>();
-    seen->edges = frame.edges;
-    seen->images.depth = frame.images.depth.clone();
+    if (end > 0) {
+        seen->edges = frame.edges;
+        seen->images.depth = frame.images.depth.clone();
+    }
     seen->pyramid.build(frame.pyramid.level(0).clone(), 1);
     at_work_ =
         std::async(std::launch::async, [this, copy = std::move(copy), seen = std::move(seen), end]() mutable {
-            return describe(copy, std::move(seen), end);
+            return describe(std::move(copy), std::move(seen), end);
         });
 }
 
-Relocaliser::Described Relocaliser::describe(const Keyframe& keyframe, std::unique_ptr<Frame> frame,
-                                             int end) {
+Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<Frame> frame, int end) {
     Described out;
     Place& place = out.place;
     const cv::Mat& grey = frame->pyramid.level(0);
@@ -60,7 +61,7 @@ Relocaliser::Described Relocaliser::describe(const Keyframe& keyframe, std::uniq
     if (out.alike.empty()) return out;
     frame->grid.build(frame->edges, grey.cols, grey.rows);
     out.frame = std::move(frame);
-    out.edges = keyframe.edges;
+    out.edges = std::move(keyframe.edges);
     return out;
 }
 

@@ -12,7 +12,7 @@
 
 namespace roevo {
 
-/// Where a lost camera can be at most.
+/// Where a camera can be at most.
 struct Whereabouts {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< in the world, m
     double radius = 0;                                 ///< m
@@ -75,7 +75,7 @@ class Relocaliser {
     };
     static std::optional<RelativePose> surest(const std::vector<Recognition>& recognised,
                                               const Trajectory& trajectory, const Whereabouts& whereabouts);
-    Described describe(const Keyframe& keyframe, std::unique_ptr<Frame> frame, int end);
+    Described describe(Keyframe keyframe, std::unique_ptr<Frame> frame, int end);
     std::vector<Alike> lookUp(const PlacePoints& points, int query_id, int end);
     std::vector<Recognition> registered(const std::vector<Alike>& alike, const Frame& frame,
                                         const EdgePoints3D& edges, const RowMotion& rows);

@@ -79,8 +79,8 @@ Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Trac
 }
 
 void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
-    if (options_.loss.recognise) {
-        const bool closes = options_.mapping.close_loops && options_.mode == Mode::kBundleAdjustment;
+    const bool closes = options_.mapping.close_loops && options_.mode == Mode::kBundleAdjustment;
+    if (options_.loss.recognise || closes) {
         const int begin = trajectory_.beginOfTrack(fresh->id);
         relocaliser_.add(*fresh, of, closes ? std::max(begin, fresh->id - kStillInView) : begin);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
@@ -111,9 +111,9 @@ void World::recognise() {
     }
     const auto pose = relocaliser_.recognised(trajectory_, near);
     if (!pose) return;
-    if (!isOfThisTrack(*pose))
+    if (!isOfThisTrack(*pose) && options_.loss.recognise)
         join(*pose);
-    else if (!isWithinReach(*pose))
+    else if (isOfThisTrack(*pose) && !isWithinReach(*pose))
         closeLoop(*pose);
 }
 

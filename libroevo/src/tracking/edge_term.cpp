@@ -37,9 +37,9 @@ void EdgeTerm::look(const Keyframe& keyframe, const Frame& frame) {
 }
 
 void EdgeTerm::start(const Keyframe& keyframe, const Frame& frame) {
+    frame_ = nullptr;  // whatever was looked up is another frame's
     look(keyframe, frame);
     narrowing_ = true;
-    current_depth_.assign(frame.edges.size(), kUnknown);
 }
 
 void EdgeTerm::startReadout(const Keyframe& keyframe, const Frame& frame, const EdgeMatches& matches) {

@@ -26,7 +26,7 @@ MotionModel::MotionModel(const MotionOptions& motion, const SensorOptions& senso
       readout_(sensor.readout_sigma / image_height, sensor.readout_memory) {}
 
 void MotionModel::expect(double timestamp) {
-    const double interval = last_frame_ < 0 ? 0 : timestamp - last_frame_;
+    const double interval = last_frame_ ? timestamp - *last_frame_ : 0;
     if (usual_interval_ <= 0)
         usual_interval_ = interval;
     else  // a gap counts for no more than what is just usual, so that another rate is learned in a few frames

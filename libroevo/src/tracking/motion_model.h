@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "roevo/options.h"
 #include "tracking/gauss_newton.h"
 #include "tracking/photometric.h"
@@ -75,8 +77,9 @@ class MotionModel {
     Variance last_, before_;    ///< of the last two measured poses
     double design_effect_ = 1;  ///< of the poses so far
     double last_timestamp_ = 0;
-    double last_frame_ = -1, interval_before_ = 0;  ///< s; negative: none yet
-    double usual_interval_ = 0;                     ///< s, mean of those before the last frame; 0: none yet
+    std::optional<double> last_frame_;  ///< s
+    double interval_before_ = 0;        ///< s
+    double usual_interval_ = 0;         ///< s, mean of those before the last frame; 0: none yet
     bool has_last_ = false;
     Pose step_ = Pose::Identity();  ///< T_last_current over interval_ seconds
     double interval_ = 0;           ///< s; 0 when no velocity is known
