@@ -160,6 +160,44 @@ TEST(Trajectory, MotionIsKnownBetweenAllFramesOfATrack) {
             << a << " " << b;
 }
 
+TEST(Trajectory, WhatIsSeenAgainIsAsWellKnownAsItWasThen) {
+    const auto variance = [](double sigma) -> Matrix6d { return sigma * sigma * Matrix6d::Identity(); };
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    for (int id = 1; id <= 5; ++id) {  // there and back
+        RelativePose pose = from(id - 1, at(id < 3 ? 0.5 : -0.4));
+        pose.uncertainty.independent = variance(0.01);
+        trajectory.addKeyframe(id, pose, {});
+    }
+    trajectory.addFrame(0, from(0, at(0)));
+    trajectory.addFrame(5.5, from(5, at(0)));
+    const auto sigma = [&](int id) { return std::sqrt(trajectory.worldCovariance(from(id, at(0)))(0, 0)); };
+    const double drifted = sigma(4);
+    EXPECT_NEAR(sigma(5), std::sqrt(5.) * 0.01, 0.005);
+
+    MapUpdate update;
+    update.keyframe = 5;
+    WindowPosterior seen{4, 0, {}, 0.25 * Matrix6d::Identity()};
+    seen.uncertainty.independent = variance(0.002);
+    update.posterior = seen;
+    trajectory.apply(update);
+    EXPECT_NEAR(sigma(5), std::hypot(0.002, 0.25 * drifted), 1e-4);
+    EXPECT_EQ(sigma(4), drifted) << "it is told of the newest only";
+    EXPECT_NEAR(std::sqrt(trajectory.motionCovariance(0, 1)(0, 0)), sigma(5), 1e-6)
+        << "motions between places are known no worse than the places";
+
+    // What is tracked from it follows; what tells less than was known changes nothing
+    RelativePose next = from(5, at(0.1));
+    next.uncertainty.independent = variance(0.01);
+    trajectory.addKeyframe(6, next, {});
+    const double known = sigma(6);
+    EXPECT_NEAR(known, std::hypot(sigma(5), 0.01), 1e-4);
+    update.keyframe = 6;
+    update.posterior->uncertainty.independent = variance(1);
+    trajectory.apply(update);
+    EXPECT_EQ(sigma(6), known);
+}
+
 TEST(Trajectory, AJoinedTrackMovesAsAWholeAndSoDoesWhatTheMapSaysOfItLater) {
     Trajectory trajectory;
     beginTrack(trajectory, 0, at(0));

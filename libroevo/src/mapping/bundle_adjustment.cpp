@@ -6,6 +6,7 @@
 
 #include "tracking/se3.h"
 #include "window_equations.h"
+#include "window_posterior.h"
 
 namespace roevo {
 namespace {
@@ -23,11 +24,9 @@ void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& win
     const Pose expected = window[from].T_world_camera * prior.T_from_to;
     const Eigen::Matrix3d turned = window[to].T_world_camera.linear() * expected.linear().transpose();
     const Eigen::AngleAxisd angle(turned);
-    // The camera's centre moves by t + phi x (centre - origin)
     Vector6d error;
     error << window[to].T_world_camera.translation() - expected.translation(), angle.angle() * angle.axis();
-    Matrix6d to_centre = Matrix6d::Identity();
-    to_centre.topRightCorner<3, 3>() = -skew(window[to].T_world_camera.translation() - origin);
+    const Matrix6d to_centre = prior.toCentre(window, origin);
     const Matrix6d own = to_centre.transpose() * prior.information * to_centre;
     const Vector6d own_gradient = to_centre.transpose() * prior.information * error;
     if (col >= 0) {
@@ -42,6 +41,14 @@ void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& win
 }
 
 }  // namespace
+
+Matrix6d RelativePrior::toCentre(const std::vector<WindowKeyframe>& window,
+                                 const Eigen::Vector3d& origin) const {
+    Matrix6d to_centre = Matrix6d::Identity();
+    to_centre.topRightCorner<3, 3>() =
+        -skew(window[static_cast<std::size_t>(to)].T_world_camera.translation() - origin);
+    return to_centre;
+}
 
 BundleAdjuster::BundleAdjuster(const MappingOptions& mapping, const SensorOptions& sensor,
                                const PinholeCamera& camera)
@@ -82,6 +89,12 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
     result.inliers = equations.inliers;
     result.inliers.resize(window.size(), 0);
     return result;
+}
+
+std::optional<WindowPosterior> BundleAdjuster::posterior(const std::vector<WindowKeyframe>& window,
+                                                         const std::vector<std::int32_t>& clusters,
+                                                         const std::vector<RelativePrior>& priors) const {
+    return posteriorOf(window, *equations_, clusters, 1 / kCorrelatedPoints, priors);
 }
 
 double BundleAdjuster::move(std::vector<WindowKeyframe>& window, const Eigen::VectorXd& step) const {

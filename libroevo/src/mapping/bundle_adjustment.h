@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "mapping/edge_fusion.h"
@@ -14,6 +15,10 @@ struct RelativePrior {
     int from = 0, to = 0;  ///< window slots
     Pose T_from_to = Pose::Identity();
     Matrix6d information = Matrix6d::Zero();  ///< of the perturbation (t, phi) of T_world_to, world axes
+    double weight = 1;                        ///< by which the information is less than what is known
+
+    /// How the centre of T_world_to moves with a perturbation about `origin`: by t + phi x (centre - origin).
+    Matrix6d toCentre(const std::vector<WindowKeyframe>& window, const Eigen::Vector3d& origin) const;
 };
 
 struct RefinementResult {
@@ -24,6 +29,7 @@ struct RefinementResult {
 };
 
 class WindowEquations;
+struct WindowPosterior;
 
 /// Bundle adjustment over a window (Eqs. (17)-(19)). Both ways alternate edge fitting and pose optimisation:
 /// - alternating: each pose is registered to the fused edges as they are (the paper's Eq. (19));
@@ -40,6 +46,11 @@ class BundleAdjuster {
     /// @param first_scale  least spread (px) that the first iteration allows; halved in each that follows
     RefinementResult refine(std::vector<WindowKeyframe>& window, FusedEdges& edges,
                             const std::vector<RelativePrior>& priors, int iterations, double first_scale = 0);
+
+    /// See posteriorOf(), as the last refine() ended.
+    std::optional<WindowPosterior> posterior(const std::vector<WindowKeyframe>& window,
+                                             const std::vector<std::int32_t>& clusters,
+                                             const std::vector<RelativePrior>& priors) const;
 
   private:
     /// The largest motion, px.

@@ -163,6 +163,7 @@ void LocalMapper::addPriors() {
             to_world.topLeftCorner<3, 3>() = to_world.bottomRightCorner<3, 3>() = R;
             prior.information =
                 options_.mapping.prior_weight * to_world * keyframe.parent_information * to_world.transpose();
+            prior.weight = options_.mapping.prior_weight;
             priors_.push_back(prior);
         }
     }
@@ -223,6 +224,8 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     judge_.judge(window_, fused_, first.scale);
     update.refinement = adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
     takePoses(update);
+    if (!reused.empty() && options_.mapping.joint_refinement && update.refusals.empty())
+        update.posterior = adjuster_.posterior(window_, trackedClusters(), priors_);
     keepVerdicts();
     update.verdicts = verdicts_.at(id);
     leaveWindow(keyframe);
@@ -271,6 +274,21 @@ void LocalMapper::keepVerdicts() {
             verdicts_[keyframe.id][static_cast<std::size_t>(own)] = fused_.verdicts[edge];
         }
     }
+}
+
+/// How tracking numbers each fused edge in the newest keyframe that sees it, which frames are tracked from.
+std::vector<std::int32_t> LocalMapper::trackedClusters() const {
+    std::vector<std::int32_t> clusters;
+    for (std::size_t edge = 0; edge < fused_.views.size(); ++edge) {
+        const auto [first, end] = fused_.observationsOfEdge(edge);
+        Observation newest = fused_.observations[first];
+        for (std::size_t k = first; k < end; ++k)
+            if (fused_.observations[k].slot > newest.slot) newest = fused_.observations[k];
+        const MapKeyframe& keyframe = *window_[static_cast<std::size_t>(newest.slot)].keyframe;
+        const std::int32_t own = keyframe.image.edge_of[static_cast<std::size_t>(newest.point)];
+        clusters.push_back(keyframe.clusters[static_cast<std::size_t>(own)]);
+    }
+    return clusters;
 }
 
 EdgeMap LocalMapper::fusedMap() const {

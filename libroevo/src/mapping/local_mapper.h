@@ -10,6 +10,7 @@
 #include "mapping/edge_fusion.h"
 #include "mapping/packed_keyframe.h"
 #include "mapping/pseudo_edges.h"
+#include "mapping/window_posterior.h"
 
 namespace roevo {
 
@@ -21,7 +22,8 @@ struct MapUpdate {
     int reused = 0;                     ///< old keyframes that took part
     RefinementResult refinement;
     std::vector<MapRefusal> refusals;
-    double milliseconds = 0;  ///< of work on it
+    std::optional<WindowPosterior> posterior;  ///< where older keyframes took part
+    double milliseconds = 0;                   ///< of work on it
 };
 
 /// How keyframes move when a place is recognised: a whole track to where it belongs, or each as a loop wants.
@@ -78,6 +80,7 @@ class LocalMapper {
     std::optional<MapRefusal> refusalOf(const WindowKeyframe& view, int inliers) const;
     void addPriors();
     void keepVerdicts();
+    std::vector<std::int32_t> trackedClusters() const;
 
     PinholeCamera camera_;
     OdometryOptions options_;

@@ -66,6 +66,7 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
     out.id = keyframe.id;
     out.timestamp = keyframe.timestamp;
     out.median_depth = keyframe.median_depth;
+    out.clusters = keyframe.clusters;
     const EdgePoints3D& edges = keyframe.edges;
     const std::size_t stride = strideFor(edges.size(), max_points);
     out.image.clear();

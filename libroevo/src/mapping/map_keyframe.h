@@ -25,9 +25,10 @@ struct MapKeyframe {
     std::vector<float> weight;  ///< w_s(depth), Eq. (20)
     std::vector<float> slope;   ///< of depth along the edge towards (-normal_y, normal_x), m/px
     std::vector<Rgb> colours;   ///< of each point
-    std::vector<float> found;   ///< of each edge: share of the frames after it that found it; < 0: not known
-    double median_depth = 0;    ///< m
-    RowMotion row_motion;       ///< that the points were moved with
+    std::vector<std::int32_t> clusters;  ///< of each edge, see Keyframe::clusters
+    std::vector<float> found;  ///< of each edge: share of the frames after it that found it; < 0: not known
+    double median_depth = 0;   ///< m
+    RowMotion row_motion;      ///< that the points were moved with
 
     std::size_t size() const { return image.size(); }
 };

@@ -26,6 +26,7 @@ constexpr double kDamping = 1e-6;  ///< the same in all directions, for those in
 
 void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const FusedEdges& edges) {
     points_.clear();
+    edge_of_.clear();
     begin_.assign(1, 0);
     observations_.clear();
     blurs_.clear();
@@ -57,6 +58,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
                                          slot});
             }
             points_.push_back(static_cast<std::int32_t>(p));
+            edge_of_.push_back(static_cast<std::int32_t>(edge));
             begin_.push_back(static_cast<std::int32_t>(observations_.size()));
         }
     }
@@ -65,8 +67,12 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     origin_ = slots == 0 ? Eigen::Vector3d::Zero() : Eigen::Vector3d(window[0].T_world_camera.translation());
     rows_.assign(slots, -1);
     num_rows_ = 0;
+    anchor_ = -1;
     for (std::size_t s = 0; s < slots; ++s) {
-        if (window[s].fixed) continue;
+        if (window[s].fixed) {
+            anchor_ = static_cast<int>(s);
+            continue;
+        }
         rows_[s] = num_rows_;
         num_rows_ += 6;
     }
@@ -74,6 +80,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     gradient.resize(num_rows_);
     blocks_.resize(slots * slots);
     gradients_.resize(slots);
+    edge_gradients_.resize(slots);
     point_blocks_.resize(slots);
     scales_.resize(slots);
 }
@@ -126,6 +133,8 @@ double WindowEquations::spread(std::int32_t slot, double least_scale) {
 void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vector<Eigen::Vector3d>& points) {
     for (auto& entry : blocks_) entry.setZero();
     for (auto& entry : gradients_) entry.setZero();
+    for (auto& entry : edge_gradients_) entry.setZero();
+    pulls_.clear();
     inliers.assign(window.size(), 0);
     const std::size_t stride = 1 + points_.size() / kHessianPoints;
     for (std::size_t p = 0; p < points_.size(); ++p) {
@@ -142,15 +151,16 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
         }
         if (count >= 2) addPoint(points[static_cast<std::size_t>(points_[p])], p % stride == 0);
         for (const std::int32_t slot : touched_) point_blocks_[static_cast<std::size_t>(slot)].used = false;
+        if (p + 1 == points_.size() || edge_of_[p + 1] != edge_of_[p]) addPulls(edge_of_[p]);
     }
+    hessian_factor_ = static_cast<double>(stride);
     for (std::size_t a = 0; a < rows_.size(); ++a) {
         if (rows_[a] < 0) continue;
         gradient.segment<6>(rows_[a]) = gradients_[a];
         for (std::size_t c = a; c < rows_.size(); ++c) {
             if (rows_[c] < 0) continue;
             hessian.block<6, 6>(rows_[a], rows_[c]) =
-                static_cast<double>(stride) *
-                block(static_cast<std::int32_t>(a), static_cast<std::int32_t>(c));
+                hessian_factor_ * block(static_cast<std::int32_t>(a), static_cast<std::int32_t>(c));
         }
     }
 }
@@ -207,17 +217,28 @@ void WindowEquations::addPoint(Eigen::Vector3d& point, bool to_hessian) {
         const auto s = static_cast<std::size_t>(slot);
         if (rows_[s] < 0) continue;
         const Eigen::Vector3d b = point_blocks_[s].gradient + point_blocks_[s].information * step;
+        const Eigen::Vector3d turning = (point - origin_).cross(b);
         gradients_[s].head<3>() -= b;
-        gradients_[s].tail<3>() -= (point - origin_).cross(b);
+        gradients_[s].tail<3>() -= turning;
+        edge_gradients_[s].head<3>() -= b;
+        edge_gradients_[s].tail<3>() -= turning;
     }
     if (to_hessian) addToHessian(point, inverse);
+}
+
+void WindowEquations::addPulls(std::int32_t edge) {
+    for (std::size_t s = 0; s < edge_gradients_.size(); ++s) {
+        if (edge_gradients_[s].isZero(0)) continue;
+        pulls_.push_back({edge, static_cast<std::int32_t>(s), edge_gradients_[s]});
+        edge_gradients_[s].setZero();
+    }
 }
 
 void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse) {
     std::sort(touched_.begin(), touched_.end());
     const Eigen::Matrix3d P = skew(point - origin_);
     for (const std::int32_t slot : touched_) {
-        if (rows_[static_cast<std::size_t>(slot)] < 0) continue;
+        if (!isInHessian(slot)) continue;
         InformationBlock& own = point_blocks_[static_cast<std::size_t>(slot)];
         own.coupling.topRows<3>() = own.information;
         own.coupling.bottomRows<3>().noalias() = P * own.information;
@@ -227,7 +248,7 @@ void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Ma
     }
     if (!options_.joint_refinement) return;
     for (std::size_t a = 0; a < touched_.size(); ++a) {
-        if (rows_[static_cast<std::size_t>(touched_[a])] < 0) continue;
+        if (!isInHessian(touched_[a])) continue;
         const Eigen::Matrix<double, 6, 3> through =
             point_blocks_[static_cast<std::size_t>(touched_[a])].coupling * inverse;
         for (std::size_t c = a; c < touched_.size(); ++c) {

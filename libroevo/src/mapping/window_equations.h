@@ -36,6 +36,19 @@ class WindowEquations {
     /// First row of a keyframe in the normal equations, -1: fixed.
     int row(std::size_t slot) const { return rows_[slot]; }
     int numRows() const { return num_rows_; }
+    /// The newest of the fixed keyframes; -1: none is fixed.
+    int anchor() const { return anchor_; }
+    /// What the residuals relate the anchor's pose to a keyframe's by: that block of the Hessian.
+    Matrix6d anchorBlock(std::size_t slot) const {
+        return hessian_factor_ * blocks_[static_cast<std::size_t>(anchor_) * rows_.size() + slot];
+    }
+
+    /// The part of the gradient that one edge makes of one keyframe.
+    struct EdgePull {
+        std::int32_t edge, slot;
+        Vector6d gradient;
+    };
+    const std::vector<EdgePull>& pulls() const { return pulls_; }
 
     Eigen::MatrixXd hessian;  ///< upper triangle
     Eigen::VectorXd gradient;
@@ -63,14 +76,18 @@ class WindowEquations {
         Eigen::Matrix<double, 6, 3> coupling;
         bool used = false;
     };
-    using Vector6 = Eigen::Matrix<double, 6, 1>;
-    using Block = Eigen::Matrix<double, 6, 6>;
+    using Vector6 = Vector6d;
+    using Block = Matrix6d;
 
     void spreads(double least_scale);
     double spread(std::int32_t slot, double least_scale);
     bool addObservation(const LineObservation& seen, const Residual& residual, const Eigen::Matrix3d& R);
     void addPoint(Eigen::Vector3d& point, bool to_hessian);
     void addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse);
+    void addPulls(std::int32_t edge);
+    bool isInHessian(std::int32_t slot) const {
+        return rows_[static_cast<std::size_t>(slot)] >= 0 || slot == anchor_;
+    }
     Block& block(std::int32_t row_slot, std::int32_t column_slot) {
         return blocks_[static_cast<std::size_t>(row_slot) * rows_.size() +
                        static_cast<std::size_t>(column_slot)];
@@ -80,6 +97,7 @@ class WindowEquations {
     SensorOptions sensor_;
     PinholeCamera camera_;
     std::vector<std::int32_t> points_, begin_;  ///< points that take part; first observation of each
+    std::vector<std::int32_t> edge_of_;         ///< of each of these points
     std::vector<LineObservation> observations_;
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
     std::vector<MotionBlur> blurs_;  ///< of each slot
@@ -87,9 +105,11 @@ class WindowEquations {
     std::vector<double> scales_;  ///< of each keyframe, px
     std::vector<float> scratch_;
     std::vector<int> rows_;
-    int num_rows_ = 0;
+    int num_rows_ = 0, anchor_ = -1;
+    double hessian_factor_ = 1;  ///< all points over those that make the Hessian
+    std::vector<EdgePull> pulls_;
     std::vector<Block, Eigen::aligned_allocator<Block>> blocks_;
-    std::vector<Vector6, Eigen::aligned_allocator<Vector6>> gradients_;
+    std::vector<Vector6, Eigen::aligned_allocator<Vector6>> gradients_, edge_gradients_;
     // Of the point that is being added
     std::vector<InformationBlock, Eigen::aligned_allocator<InformationBlock>>
         point_blocks_;                                     ///< of each keyframe

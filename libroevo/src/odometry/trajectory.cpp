@@ -1,5 +1,6 @@
 #include "trajectory.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 
@@ -95,7 +96,11 @@ Matrix6d Trajectory::motionCovariance(std::size_t from, std::size_t to) const {
         if (link.keyframe < 0) return Matrix6d::Constant(std::numeric_limits<double>::infinity());
         later = compose(link, later);
     }
-    return changeReference(last, first, -1).covariance();
+    const Matrix6d by_motions = changeReference(last, first, -1).covariance();
+    // What is known of both in the world may tell more, where a place was seen again
+    const Matrix6d by_places =
+        changeReference(inWorld(frames_[to].pose), inWorld(frames_[from].pose), -1).covariance();
+    return by_places.trace() < by_motions.trace() ? by_places : by_motions;
 }
 
 int Trajectory::beginOfTrack(int keyframe) const {
@@ -208,6 +213,32 @@ void Trajectory::apply(const MapUpdate& update) {
         if (links_[id].keyframe < 0) continue;
         keyframes_[id].T_world_camera = keyframePose(links_[id].keyframe) * links_[id].T_keyframe_camera;
     }
+    if (update.posterior) takePosterior(*update.posterior, update.keyframe);
+}
+
+/// Where older keyframes are seen again, a new one errs no more than they do, but for what pulls it to the
+/// oldest one of the window.
+void Trajectory::takePosterior(const WindowPosterior& posterior, int keyframe) {
+    const auto at = [](int id) { return static_cast<std::size_t>(id); };
+    const auto carried = [&](const Matrix6d& covariance, int from, int to) -> Matrix6d {
+        const Matrix6d by = carriedTo(keyframePose(from).inverse() * keyframePose(to));
+        return by * covariance * by.transpose();
+    };
+    const Matrix6d of_reused = in_world_[at(posterior.reused)].covariance();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> drift(
+        in_world_[at(posterior.oldest)].covariance() -
+        carried(of_reused, posterior.reused, posterior.oldest));
+    const Matrix6d drifted = drift.eigenvectors() * drift.eigenvalues().cwiseMax(0).asDiagonal() *
+                             drift.eigenvectors().transpose();
+    PoseUncertainty seen_again = posterior.uncertainty;
+    seen_again.independent += carried(of_reused, posterior.reused, keyframe) +
+                              posterior.follows * drifted * posterior.follows.transpose();
+    PoseUncertainty& known = in_world_[at(keyframe)];
+    if (seen_again.covariance().trace() >= known.covariance().trace()) return;
+    known = std::move(seen_again);
+    for (std::size_t id = at(keyframe) + 1; id < links_.size(); ++id)
+        if (links_[id].keyframe >= keyframe) in_world_[id] = inWorld(links_[id]).uncertainty;
+    for (std::size_t id = at(keyframe); id + 1 < in_world_.size(); ++id) forgetAll(in_world_[id]);
 }
 
 Pose Trajectory::finalPose(const Frame& frame) const {

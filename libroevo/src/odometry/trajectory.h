@@ -63,6 +63,7 @@ class Trajectory {
         bool measured = true;
     };
     RelativePose inWorld(const RelativePose& pose) const;
+    void takePosterior(const WindowPosterior& posterior, int keyframe);
     Pose finalPose(const Frame& frame) const;
     std::vector<int> tracks() const;
     std::vector<PoseConstraint> constraintsOf(const std::vector<int>& tracks, int track) const;

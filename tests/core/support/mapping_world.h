@@ -132,6 +132,7 @@ inline TestKeyframe makeKeyframe(int id, const Pose& pose, const std::vector<Cur
     }
     computeNormals(out.image, kNormalSpan);
     computeSlopes(out);
+    out.clusters.assign(made.curve_of_edge.begin(), made.curve_of_edge.end());
     out.found.assign(made.curve_of_edge.size(), -1);
     out.points.pad();
     return made;
