@@ -34,6 +34,12 @@ foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedR
   add_test(NAME ${suite} COMMAND test_core_mapped_runs --gtest_filter=*${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
+add_executable(test_core_map_file core/test_map_file.cpp)
+target_link_libraries(test_core_map_file PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
+foreach(suite MapFile MapFileErrors)
+  add_test(NAME ${suite} COMMAND test_core_map_file --gtest_filter=*${suite}.*)
+  set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
+endforeach()
 roevo_test(test_core_sequences
   SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp core/test_shadow_edges.cpp core/test_option_extremes.cpp
   LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets)
@@ -41,7 +47,7 @@ roevo_test(test_core_place
   SOURCES core/test_place_describer.cpp core/test_place_matches.cpp core/test_place_index.cpp core/test_place_verifier.cpp
           core/test_place_registration.cpp core/test_place_clips.cpp
   LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets)
-foreach(program camera edges tracking place mapping odometry mapped_runs sequences)
+foreach(program camera edges tracking place mapping odometry mapped_runs map_file sequences)
   target_include_directories(test_core_${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_include_directories(test_core_${program} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 endforeach()

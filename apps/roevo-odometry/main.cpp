@@ -54,6 +54,14 @@ int run(int argc, char** argv) {
     app.add_option("--skip", settings.skip, "Leave out this many frames at the start")
         ->check(CLI::NonNegativeNumber);
     app.add_option("--sensor-label", settings.sensor_label, "Rawlogs with several cameras: which one");
+    app.add_option(
+        "--map-in", settings.map_in,
+        "Begin with this map of an earlier recording (--map-out): poses are in its world from where "
+        "the camera is recognised in it");
+    app.add_option(
+        "--map-out", settings.map_out,
+        "Write the keyframes as a map for --map-in; with --map-in: what was there and what was added");
+    app.add_flag("--localise-only", settings.localise_only, "The map of --map-in stays as it is");
     app.add_flag("--realtime", settings.realtime,
                  "Frames arrive by the clock and are dropped when tracking is behind; the tracker takes what "
                  "mapping has ready (results differ from run to run)");
@@ -69,13 +77,18 @@ int run(int argc, char** argv) {
     }
     if (settings.input.empty()) throw UsageError("--input is required");
     if (settings.output_dir.empty()) throw UsageError("--output is required");
+    if (settings.localise_only && settings.map_in.empty()) throw UsageError("--localise-only needs --map-in");
+    if (settings.localise_only && !settings.map_out.empty())
+        throw UsageError("--localise-only leaves the map as it is: there is nothing to write by --map-out");
     settings.options = collectOptions(config_file, sets, mode);
+    if (!settings.options.loss.recognise && !(settings.map_in + settings.map_out).empty())
+        throw UsageError("maps need loss.recognise=true: without, no places are remembered or looked for");
     if (settings.realtime) settings.options.mapping.deterministic = false;
 
     cv::setNumThreads(
         1);  // decoding runs beside tracking already; more threads would blur the times per frame
     const RunReport report = runOdometry(settings);
-    for (const std::string& warning : {report.warning, report.scale_warning})
+    for (const std::string& warning : {report.warning, report.scale_warning, report.mapWarning()})
         if (!warning.empty()) printWarning(kName, warning);
     if (!settings.quiet) printSummary(report, settings.output_dir);
     if (!report.evaluation && !settings.ground_truth.empty())

@@ -1,14 +1,19 @@
 #include "run.h"
 
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
 #include "evaluation/scale_check.h"
 #include "evaluation/trajectory_io.h"
+#include "input/regular_file.h"
 #include "programs/atomic_file.h"
 #include "programs/interrupt.h"
 #include "programs/output_folder.h"
@@ -97,6 +102,20 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
     progress.finish();
 }
 
+// Begins with the map that was asked for.
+void loadMap(const RunSettings& settings, Odometry& odometry, RunReport& report) {
+    requireRegularInput(settings.map_in);
+    std::ifstream file(settings.map_in, std::ios::binary);
+    if (!file) throw std::runtime_error("cannot read " + settings.map_in + ": " + std::strerror(errno));
+    try {
+        const int keyframes =
+            odometry.loadMap(file, settings.localise_only ? MapUse::kLocalise : MapUse::kExtend);
+        report.map_in = LoadedMap{settings.map_in, keyframes, settings.localise_only};
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(settings.map_in + ": " + error.what());
+    }
+}
+
 void evaluateRun(RunReport& report, const GroundTruth& ground_truth) {
     if (ground_truth.poses.empty()) {
         report.evaluation_fault = ground_truth.note;
@@ -152,10 +171,14 @@ void writeMap(WholeOutputs& files, const RunReport& report, const Odometry& odom
 RunReport runOdometry(const RunSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
     auto source = prefetch(openSource(settings.input, settings.sensor_label));
+    RunReport report;
+    Odometry odometry(source->camera(), settings.options);
+    if (!settings.map_in.empty()) loadMap(settings, odometry, report);
     prepareOutputFolder(settings.output_dir);
     WholeOutputs files(settings.output_dir, kResults);
+    std::optional<AtomicFile> map_file;
+    if (!settings.map_out.empty()) map_file.emplace(settings.map_out).stream();  // else nothing is begun
 
-    RunReport report;
     report.input = settings.input;
     report.kind = source->kind();
     report.camera = source->camera();
@@ -171,7 +194,6 @@ RunReport runOdometry(const RunSettings& settings) {
     }
     std::fflush(stdout);
 
-    Odometry odometry(source->camera(), settings.options);
     skipFrames(*source, settings.skip, settings.input);
     processFrames(*source, odometry, settings, report);
     report.warning = source->warning();
@@ -179,6 +201,8 @@ RunReport runOdometry(const RunSettings& settings) {
 
     report.trajectory = odometry.trajectory();
     report.keyframes = odometry.keyframes();
+    if (report.map_in)  // those of this recording
+        report.keyframes.erase(report.keyframes.begin(), report.keyframes.begin() + report.map_in->keyframes);
     report.readout_time = odometry.readoutTime();
     report.readout_learned = odometry.options().sensor.estimate_readout;
     SceneContent content;
@@ -199,12 +223,14 @@ RunReport runOdometry(const RunSettings& settings) {
             writeTumTrajectory(files.path("trajectory_robot.txt"),
                                robotTrajectory(report.trajectory, report.camera_on_robot));
         writeMap(files, report, odometry, std::move(content), alignedReference(report, ground_truth.poses));
+        if (map_file) report.map_out = {settings.map_out, odometry.saveMap(map_file->stream())};
     }
     saveConfigFile(files.path("config_used.ini"), odometry.options());
     writeTextAtomically(files.path("frames.csv"), framesCsv(report));
     report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     writeTextAtomically(files.path("summary.json"), summaryJson(report));
     files.commit();
+    if (!report.map_out.file.empty()) map_file->commit();
     if (!failure.empty())
         throw std::runtime_error(settings.input + ": " + failure + " (see " +
                                  (fs::path(settings.output_dir) / "frames.csv").string() + ")");

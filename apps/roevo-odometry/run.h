@@ -10,6 +10,8 @@ namespace roevo {
 /// What to run, from the command line.
 struct RunSettings {
     std::string input, output_dir, ground_truth, sensor_label;
+    std::string map_in, map_out;  ///< files; empty: none
+    bool localise_only = false;   ///< the map stays as it is
     OdometryOptions options;
     std::size_t first = 0, skip = 0;  ///< process at most `first` frames (0: all) after leaving out `skip`
     bool realtime = false;            ///< frames arrive by the clock; those that come too early are dropped

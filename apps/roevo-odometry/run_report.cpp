@@ -37,13 +37,33 @@ Losses RunReport::losses() const {
         const bool failed = r.status == FrameStatus::kPredicted || r.status == FrameStatus::kLost;
         if ((failed || r.found_at >= 0) && tracked) ++out.lost;
         tracked = !failed;
-        if (r.status == FrameStatus::kInitialised) ++out.pieces;
-        if (r.found_at >= 0) ++out.found_again;
+        const bool found = r.found_at >= 0, begun = r.status == FrameStatus::kInitialised;
+        if (begun && !found) ++out.pieces;
+        if (found && !begun) ++out.found_again;
         if (r.joined_at >= 0) ++out.joined;
         if (r.closed_at >= 0) ++out.loops_closed;
     }
+    if (localised() != nullptr) ++out.pieces;  // the map's own
     out.pieces -= std::min(out.pieces, out.joined);
     return out;
+}
+
+int RunReport::mapKeyframeOf(const FrameResult& frame) const {
+    for (const int keyframe : {frame.found_at, frame.joined_at})
+        if (map_in && keyframe >= 0 && keyframe < map_in->keyframes) return keyframe;
+    return -1;
+}
+
+const FrameResult* RunReport::localised() const {
+    const auto first = std::find_if(frames.begin(), frames.end(),
+                                    [&](const FrameRecord& f) { return mapKeyframeOf(f.result) >= 0; });
+    return first == frames.end() ? nullptr : &first->result;
+}
+
+std::string RunReport::mapWarning() const {
+    if (!map_in || localised() != nullptr) return {};
+    return map_in->file + ": never recognised in the map: the trajectory is in a world of its own" +
+           (map_out.file.empty() ? "" : ", and nothing is added to the map");
 }
 
 std::size_t RunReport::count(FrameStatus status) const {

@@ -23,6 +23,19 @@ struct Losses {
     std::size_t pieces = 0;  ///< of the trajectory; where they are relative to each other was not measured
 };
 
+/// The map of an earlier recording that a run began with.
+struct LoadedMap {
+    std::string file;
+    int keyframes = 0;  ///< the first of all
+    bool localise_only = false;
+};
+
+/// The map that a run leaves.
+struct SavedMap {
+    std::string file;  ///< empty: none
+    int keyframes = 0;
+};
+
 /// All that a run came to.
 struct RunReport {
     std::string input, kind, camera_source, warning, sensor_label;
@@ -32,7 +45,9 @@ struct RunReport {
     Mode mode = Mode::kBundleAdjustment;
     std::vector<FrameRecord> frames;
     std::vector<StampedPose> trajectory;
-    std::vector<KeyframeInfo> keyframes;
+    std::vector<KeyframeInfo> keyframes;  ///< without those of map_in
+    std::optional<LoadedMap> map_in;
+    SavedMap map_out;
     std::size_t map_edges = 0, map_points = 0, semi_dense_points = 0;
     std::vector<StampedPose> camera_on_robot;  ///< T_robot_camera of the frames with a pose
     bool mounted = false;     ///< some frame's sensor sat elsewhere than on the robot's origin
@@ -45,6 +60,12 @@ struct RunReport {
 
     std::size_t count(FrameStatus status) const;
     Losses losses() const;
+    /// The frame that was recognised first in the map of map_in, or null.
+    const FrameResult* localised() const;
+    /// The keyframe of that map that a frame was recognised by, or -1.
+    int mapKeyframeOf(const FrameResult& frame) const;
+    /// What is to be known where there is no such frame; else empty.
+    std::string mapWarning() const;
 
     /// Empty when at least one frame was tracked (or the only frame initialised), else the commonest reason.
     /// Poses that are not numbers are a failure, too: no result is printed then.

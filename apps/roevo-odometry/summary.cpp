@@ -122,6 +122,27 @@ Json mappingJson(const RunReport& report) {
             {"reasons", reasons}};
 }
 
+// The map that the run began with, and where the camera was recognised in it first.
+Json mapInJson(const RunReport& report) {
+    if (!report.map_in) return nullptr;
+    Json json = {{"file", report.map_in->file},
+                 {"keyframes", report.map_in->keyframes},
+                 {"localise_only", report.map_in->localise_only},
+                 {"localised", nullptr}};
+    for (std::size_t i = 0; i < report.frames.size(); ++i) {
+        const FrameResult& frame = report.frames[i].result;
+        if (&frame != report.localised()) continue;
+        json["localised"] = {
+            {"frame", i}, {"timestamp", frame.timestamp}, {"keyframe", report.mapKeyframeOf(frame)}};
+    }
+    return json;
+}
+
+Json mapOutJson(const RunReport& report) {
+    if (report.map_out.file.empty()) return nullptr;
+    return {{"file", report.map_out.file}, {"keyframes", report.map_out.keyframes}};
+}
+
 Json groundTruthJson(const RunReport& report) {
     if (report.ground_truth.empty()) return nullptr;
     Json json = {{"file", report.ground_truth}, {"max_dt_s", kDefaultMaxDt}};
@@ -180,6 +201,8 @@ std::string summaryJson(const RunReport& report) {
     json["map"] = {{"edges", report.map_edges},
                    {"points", report.map_points},
                    {"semi_dense_points", report.semi_dense_points}};
+    json["map_in"] = mapInJson(report);
+    json["map_out"] = mapOutJson(report);
     json["ground_truth"] = groundTruthJson(report);
     // File names and messages may hold bytes that are not UTF-8.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -206,6 +229,12 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
         std::printf(
             "            the trajectory is in %zu pieces; where they are relative to each other is a guess\n",
             losses.pieces);
+    if (const FrameResult* frame = report.localised())
+        std::printf("map in      %s, %d keyframes: recognised at keyframe %d, %.2f s after the first frame\n",
+                    report.map_in->file.c_str(), report.map_in->keyframes, report.mapKeyframeOf(*frame),
+                    frame->timestamp - report.frames.front().result.timestamp);
+    if (!report.map_out.file.empty())
+        std::printf("map out     %s, %d keyframes\n", report.map_out.file.c_str(), report.map_out.keyframes);
     if (losses.loops_closed > 0) std::printf("loops       %zu closed\n", losses.loops_closed);
     const auto total = stageTimes(report, kTotal);
     std::printf(

@@ -62,5 +62,28 @@ TEST(RunReport, LossesAreCountedOnceEach) {
     EXPECT_EQ(report.losses().pieces, 1U);
 }
 
+TEST(RunReport, AMapIsOnePieceWithWhatWasRecognisedInIt) {
+    RunReport report = trackedReport();
+    report.map_in = LoadedMap{"room.map", 5, false};
+    EXPECT_EQ(report.localised(), nullptr);
+    EXPECT_NE(report.mapWarning().find("room.map: never recognised"), std::string::npos);
+    EXPECT_EQ(report.losses().pieces, 1U);
+    report.frames[2].result.joined_at = 7;
+    EXPECT_EQ(report.localised(), nullptr) << "a keyframe of this recording";
+    report.frames[2].result.joined_at = 4;
+    ASSERT_EQ(report.localised(), &report.frames[2].result);
+    EXPECT_EQ(report.mapKeyframeOf(*report.localised()), 4);
+    EXPECT_EQ(report.mapWarning(), "");
+    EXPECT_EQ(report.losses().pieces, 1U) << "begun in a world of its own, and joined";
+    report.frames[2].result.joined_at = -1;
+    report.frames[0].result.found_at = 0;
+    EXPECT_EQ(report.localised(), &report.frames[0].result);
+    EXPECT_EQ(report.losses().pieces, 1U);
+    EXPECT_EQ(report.losses().found_again, 0U) << "nothing was lost";
+    report.frames[0].result.found_at = -1;
+    report.frames[2].result.found_at = 3;
+    EXPECT_EQ(report.losses().pieces, 2U) << "what came before was not joined";
+}
+
 }  // namespace
 }  // namespace roevo

@@ -17,6 +17,10 @@ RelativePose from(int keyframe, const Pose& T_keyframe_camera) {
     return {keyframe, T_keyframe_camera, {}};
 }
 
+RelativePose seen(int keyframe, const Pose& pose) {
+    return {keyframe, pose, {1e-8 * Matrix6d::Identity(), {}}};
+}
+
 int beginTrack(Trajectory& trajectory, double timestamp, const Pose& pose) {
     return trajectory.beginTrack(timestamp, pose, Matrix6d::Zero());
 }
@@ -228,6 +232,64 @@ TEST(Trajectory, AJoinedTrackMovesAsAWholeAndSoDoesWhatTheMapSaysOfItLater) {
     EXPECT_NEAR(trajectory.keyframePose(2).translation().x(), 3.6, 1e-12);
 }
 
+TEST(Trajectory, OfTwoTracksThatMeetTheYoungerOneMoves) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    beginTrack(trajectory, 1, at(50));
+    trajectory.addKeyframe(2, from(1, at(1)), {});
+    trajectory.addKeyframe(3, from(0, at(4)), {});  // found again at keyframe 0
+    trajectory.addFrame(3, from(3, at(0)));
+    const Correction join = trajectory.join(3, from(2, at(2)));  // and what it shows is seen from keyframe 2
+    EXPECT_EQ(join.keyframes, (std::vector<int>{1, 2}));
+    EXPECT_EQ(join.recognised, 3);
+    EXPECT_NEAR(trajectory.keyframePose(2).translation().x(), 2, 1e-12);
+    EXPECT_NEAR(trajectory.keyframePose(1).translation().x(), 1, 1e-12);
+    EXPECT_NEAR(trajectory.keyframePose(3).translation().x(), 4, 1e-12) << "the camera stays";
+    for (int id = 0; id <= 3; ++id) EXPECT_EQ(trajectory.beginOfTrack(id), 0) << id;
+    EXPECT_FALSE(trajectory.closeLoop({{3, from(2, at(2))}, {3, from(1, at(3))}}).keyframes.empty())
+        << "all hangs together";
+}
+
+TEST(Trajectory, ATrackThatJoinsALaterKeyframeHangsOnAnOlderOne) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    beginTrack(trajectory, 1, at(50));
+    trajectory.addKeyframe(2, from(0, at(2)), {});
+    trajectory.addKeyframe(3, from(1, at(1)), {});
+    trajectory.addFrame(3, from(3, at(0)));
+    const Correction join = trajectory.join(3, from(2, at(3)));
+    EXPECT_EQ(join.keyframes, (std::vector<int>{1, 3}));
+    EXPECT_NEAR(trajectory.keyframePose(3).translation().x(), 5, 1e-12);
+    for (int id = 0; id <= 3; ++id) EXPECT_EQ(trajectory.beginOfTrack(id), 0) << id;
+    EXPECT_TRUE(trajectory.motionCovariance(0, 0).allFinite());
+}
+
+TEST(Trajectory, WhatWasLoadedAndIsHeldStaysInLoops) {
+    for (const bool held : {false, true}) {
+        KeyframeGraph graph;
+        for (int id = 0; id < 3; ++id) {
+            graph.keyframes.push_back({id, 100.0 + id, at(id)});
+            graph.links.push_back({id - 1, at(id == 0 ? 0 : 1), {1e-6 * Matrix6d::Identity(), {}}});
+            graph.covariances.push_back(1e-6 * Matrix6d::Identity());
+        }
+        Trajectory trajectory;
+        trajectory.load(graph, held);
+        for (int id = 3; id < 6; ++id) {
+            RelativePose step = from(id - 1, at(1.1));
+            step.uncertainty.independent = 1e-6 * Matrix6d::Identity();
+            trajectory.addKeyframe(id, step, {});
+        }
+        EXPECT_EQ(trajectory.beginOfTrack(5), 0);
+        const Correction correction = trajectory.closeLoop({{4, seen(1, at(3))}, {5, seen(0, at(5))}});
+        EXPECT_EQ(correction.keyframes.size(), held ? 3U : 6U);
+        EXPECT_NEAR(trajectory.keyframePose(5).translation().x(), 5, 0.01);
+        EXPECT_EQ(trajectory.keyframePose(2).translation().x() == 2, held);
+        EXPECT_TRUE(trajectory.frames().empty());
+        EXPECT_EQ(trajectory.graph().links[1].keyframe, 0);
+        EXPECT_EQ(trajectory.graph().loops.size(), 2U);
+    }
+}
+
 /// Out along x in ten steps and back, with a step that is told too long; keyframe 20 is where keyframe 0 is.
 Trajectory thereAndBack(double error) {
     Trajectory trajectory;
@@ -244,10 +306,6 @@ Trajectory thereAndBack(double error) {
         trajectory.addKeyframe(i, step, {});
     }
     return trajectory;
-}
-
-RelativePose seen(int keyframe, const Pose& pose) {
-    return {keyframe, pose, {1e-8 * Matrix6d::Identity(), {}}};
 }
 
 TEST(Trajectory, ALoopSharesOutWhatHasGoneWrong) {

@@ -69,6 +69,11 @@ void CovisibilityGraph::remove(int keyframe) {
     }
 }
 
+std::vector<CovisibilityGraph::Links> CovisibilityGraph::linksOf(int keyframe) const {
+    const auto found = links_.find(keyframe);
+    return found == links_.end() ? std::vector<Links>() : found->second;
+}
+
 int CovisibilityGraph::sharedPoints(int a, int b) const {
     const auto found = links_.find(a);
     if (found == links_.end()) return 0;

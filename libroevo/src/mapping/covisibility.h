@@ -31,17 +31,21 @@ class CovisibilityGraph {
     /// appearance.
     std::vector<std::vector<int>> clusters(const std::vector<const MapKeyframe*>& keyframes) const;
 
-  private:
     /// Maps keep them for ever: images have fewer than 65,536 edges.
     struct Link {
         std::uint16_t edge = 0, other_edge = 0;
         std::uint16_t points = 0;  ///< at most 65,535
     };
     struct Links {
-        int other = 0;  ///< keyframe
+        int other = 0;  ///< keyframe, an older one
         std::vector<Link> links;
     };
+    /// Of a keyframe's edges with those of older ones.
+    std::vector<Links> linksOf(int keyframe) const;
+    /// As linksOf() gave them.
+    void setLinks(int keyframe, std::vector<Links> links) { links_[keyframe] = std::move(links); }
 
+  private:
     FineOptions options_;
     EdgeAssociator associator_;
     int span_;

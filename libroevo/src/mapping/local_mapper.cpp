@@ -42,6 +42,7 @@ LocalMapper::LocalMapper(const PinholeCamera& camera, const OdometryOptions& opt
 std::vector<const MapKeyframe*> LocalMapper::recentOf(const MapKeyframe& newest) const {
     std::vector<const MapKeyframe*> recent;
     for (auto it = keyframes_.rbegin(); it != keyframes_.rend(); ++it) {
+        if (it->first < loaded_) break;  // what others have mapped is not refined
         if (it->first >= newest.id || it->second.track != newest.track) continue;
         if (static_cast<int>(recent.size()) >= options_.mapping.window - 1) break;
         recent.push_back(&it->second);
@@ -189,6 +190,35 @@ void LocalMapper::correct(const Correction& correction) {
     }
 }
 
+void LocalMapper::load(const KeyframeInfo& info, KeptKeyframe kept) {
+    MapKeyframe keyframe;
+    keyframe.id = info.id;
+    keyframe.timestamp = info.timestamp;
+    keyframe.T_world_camera = info.T_world_camera;
+    keyframe.median_depth = kept.median_depth;
+    keyframe.row_motion = kept.row_motion;
+    keyframe.found = std::move(kept.found);
+    keyframe.found.resize(static_cast<std::size_t>(kept.points.numEdges()), -1);
+    keyframes_.emplace(info.id, std::move(keyframe));
+    packed_.emplace(info.id, std::move(kept.points));
+    if (!kept.verdicts.empty()) verdicts_.emplace(info.id, std::move(kept.verdicts));
+    graph_.setLinks(info.id, std::move(kept.links));
+    loaded_ = info.id + 1;
+}
+
+std::vector<KeptKeyframe> LocalMapper::kept() const {
+    std::vector<KeptKeyframe> all;
+    for (const auto& [id, keyframe] : keyframes_) {
+        const auto packed = packed_.find(id);
+        const auto verdicts = verdicts_.find(id);
+        all.push_back({packed == packed_.end() ? PackedKeyframe(keyframe) : packed->second,
+                       keyframe.median_depth, keyframe.row_motion, keyframe.found,
+                       verdicts == verdicts_.end() ? std::vector<EdgeVerdict>() : verdicts->second,
+                       graph_.linksOf(id)});
+    }
+    return all;
+}
+
 MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     const int id = inserted.id;
     if (const auto parent = keyframes_.find(inserted.parent); parent != keyframes_.end()) {
@@ -285,8 +315,10 @@ std::vector<std::int32_t> LocalMapper::trackedClusters() const {
         for (std::size_t k = first; k < end; ++k)
             if (fused_.observations[k].slot > newest.slot) newest = fused_.observations[k];
         const MapKeyframe& keyframe = *window_[static_cast<std::size_t>(newest.slot)].keyframe;
-        const std::int32_t own = keyframe.image.edge_of[static_cast<std::size_t>(newest.point)];
-        clusters.push_back(keyframe.clusters[static_cast<std::size_t>(own)]);
+        const auto own =
+            static_cast<std::size_t>(keyframe.image.edge_of[static_cast<std::size_t>(newest.point)]);
+        // Those of a map that was loaded have no number, and are fixed
+        clusters.push_back(own < keyframe.clusters.size() ? keyframe.clusters[own] : -1);
     }
     return clusters;
 }

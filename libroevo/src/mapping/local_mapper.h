@@ -11,6 +11,7 @@
 #include "mapping/packed_keyframe.h"
 #include "mapping/pseudo_edges.h"
 #include "mapping/window_posterior.h"
+#include "roevo/frame_result.h"
 
 namespace roevo {
 
@@ -40,11 +41,27 @@ struct Correction {
     }
 };
 
+/// What mapping knows of a keyframe besides its pose, as it is kept in a file.
+struct KeptKeyframe {
+    PackedKeyframe points;
+    double median_depth = 0;            ///< m
+    RowMotion row_motion;               ///< that the points were moved with
+    std::vector<float> found;           ///< see MapKeyframe::found; empty: not known
+    std::vector<EdgeVerdict> verdicts;  ///< of each edge; empty: none yet
+    std::vector<CovisibilityGraph::Links> links;
+};
+
 /// Local mapping: keeps the keyframes, relates the edges of a new one to those of its neighbours, fuses them
 /// and refines the poses of the window. No threads, no clocks: the same keyframes give the same map.
 class LocalMapper {
   public:
     LocalMapper(const PinholeCamera& camera, const OdometryOptions& options);
+
+    /// A keyframe of a map that was made before, in the order of their ids, all of one track. Later ones are
+    /// related to it, and it stays where it is but for corrections.
+    void load(const KeyframeInfo& info, KeptKeyframe kept);
+    /// All keyframes, in the order of their ids.
+    std::vector<KeptKeyframe> kept() const;
 
     MapUpdate insert(MapKeyframe keyframe);
 
@@ -95,6 +112,7 @@ class LocalMapper {
     std::vector<WindowKeyframe> window_;
     std::vector<RelativePrior> priors_;
     FusedEdges fused_;
+    int loaded_ = 0;  ///< keyframes, the first ones
 };
 
 }  // namespace roevo

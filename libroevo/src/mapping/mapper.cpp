@@ -13,16 +13,14 @@ namespace {
 
 constexpr std::size_t kMostWaiting = 8;  ///< keyframes that wait to be mapped
 
-/// The colours of all points, edge after edge.
-std::vector<Rgb> coloursOf(const EdgeMap& edges) {
-    std::vector<Rgb> colours;
-    for (const MapEdge& edge : edges) colours.insert(colours.end(), edge.colours.begin(), edge.colours.end());
-    return colours;
-}
-
 /// The keyframes' own edges, where tracking saw them.
 class CollectingMapper : public Mapper {
   public:
+    CollectingMapper(const PinholeCamera& camera, const SensorOptions& sensor)
+        : camera_(camera), sensor_(sensor) {}
+
+    void load(const std::vector<KeyframeInfo>& poses, std::vector<KeptKeyframe> keyframes) override;
+    std::vector<KeptKeyframe> kept() const override { return loaded_; }
     void insert(NewKeyframe fresh, double) override {
         const Eigen::Isometry3f T = fresh.T_world_camera.cast<float>();
         for (MapEdge& edge : fresh.edges) {
@@ -42,9 +40,31 @@ class CollectingMapper : public Mapper {
     EdgeMap keyframeEdges() const override { return map_; }
 
   private:
+    PinholeCamera camera_;
+    SensorOptions sensor_;
     EdgeMap map_;
+    std::vector<KeptKeyframe> loaded_;
     std::deque<MapUpdate> none_;
 };
+
+void CollectingMapper::load(const std::vector<KeyframeInfo>& poses, std::vector<KeptKeyframe> keyframes) {
+    loaded_ = std::move(keyframes);
+    for (std::size_t k = 0; k < loaded_.size(); ++k) {
+        MapKeyframe keyframe;
+        loaded_[k].points.unpackInto(keyframe, camera_, sensor_);
+        for (int e = 0; e < keyframe.image.numEdges(); ++e) {
+            MapEdge edge;
+            edge.keyframe_id = static_cast<int>(k);
+            edge.cluster = static_cast<int>(map_.size());
+            const auto [first, end] = keyframe.image.pointsOf(e);
+            for (std::size_t i = first; i < end; ++i) {
+                edge.points.push_back((poses[k].T_world_camera * keyframe.points.at(i)).cast<float>());
+                edge.colours.push_back(keyframe.colours[i]);
+            }
+            map_.push_back(std::move(edge));
+        }
+    }
+}
 
 /// Runs a LocalMapper beside the tracker. Keyframes are mapped in the order of insertion, one at a time, so
 /// that the results do not depend on threads. All functions are for one caller's thread.
@@ -61,6 +81,10 @@ class RefiningMapper : public Mapper {
         worker_.join();
     }
 
+    void load(const std::vector<KeyframeInfo>& poses, std::vector<KeptKeyframe> keyframes) override {
+        for (std::size_t k = 0; k < keyframes.size(); ++k) mapper_.load(poses[k], std::move(keyframes[k]));
+    }
+    std::vector<KeptKeyframe> kept() const override { return finished().kept(); }
     void insert(NewKeyframe fresh, double timestamp) override;
     void correct(const Correction& correction) override;
     std::vector<MapUpdate> due(double timestamp, double& waited_ms) override;
@@ -219,7 +243,7 @@ const LocalMapper& RefiningMapper::finished() const {
 
 std::unique_ptr<Mapper> makeMapper(const PinholeCamera& camera, const OdometryOptions& options) {
     if (options.mode == Mode::kBundleAdjustment) return std::make_unique<RefiningMapper>(camera, options);
-    return std::make_unique<CollectingMapper>();
+    return std::make_unique<CollectingMapper>(camera, options.sensor);
 }
 
 }  // namespace roevo

@@ -25,6 +25,11 @@ class Mapper {
   public:
     virtual ~Mapper() = default;
 
+    /// Begins with the keyframes of a map, which are one track; before anything is inserted.
+    virtual void load(const std::vector<KeyframeInfo>& poses, std::vector<KeptKeyframe> keyframes) = 0;
+    /// The keyframes so far or, where nothing is refined, those that were loaded; waits.
+    [[nodiscard]] virtual std::vector<KeptKeyframe> kept() const = 0;
+
     /// @param timestamp  s, of the frame at work
     virtual void insert(NewKeyframe keyframe, double timestamp) = 0;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "tracking/edge_points.h"
@@ -65,6 +66,29 @@ void PackedKeyframe::unpackInto(MapKeyframe& keyframe, const PinholeCamera& came
     }
     keyframe.colours = colours_;
     computeSlopes(keyframe);
+}
+
+bool QuantizedArray::isWithin(float smallest, float largest, std::size_t count) const {
+    if (steps_.size() != count) return false;
+    if (!(first_ >= smallest) || !(step_ >= 0)) return count == 0;
+    return std::all_of(steps_.begin(), steps_.end(), [&](std::uint16_t steps) {
+        return first_ + step_ * static_cast<float>(steps) <= largest;
+    });
+}
+
+bool PackedKeyframe::isSound(const PinholeCamera& camera) const {
+    constexpr float kNearest = 1e-3F, kFarthest = 1e3F, kMostAngle = 4;  // m, m, rad
+    const std::size_t size = colours_.size();
+    const auto width = static_cast<float>(camera.width), height = static_cast<float>(camera.height);
+    const bool in_order =
+        std::adjacent_find(begin_.begin(), begin_.end(), std::greater_equal<>()) == begin_.end();
+    const bool covers =
+        begin_.empty() ? size == 0 : begin_.front() == 0 && static_cast<std::size_t>(begin_.back()) == size;
+    // Points that were moved with the rows may have left the image
+    return in_order && covers && begin_.size() <= std::numeric_limits<std::uint16_t>::max() &&
+           u_.isWithin(-width, 2 * width, size) && v_.isWithin(-height, 2 * height, size) &&
+           inverse_depth_.isWithin(1 / kFarthest, 1 / kNearest, size) &&
+           normal_angle_.isWithin(-kMostAngle, kMostAngle, size);
 }
 
 void dropPoints(MapKeyframe& keyframe) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "mapping/map_keyframe.h"
@@ -16,6 +17,10 @@ class QuantizedArray {
     QuantizedArray(const std::vector<float>& values, std::size_t count);
 
     float at(std::size_t i) const { return first_ + step_ * static_cast<float>(steps_[i]); }
+    /// Whether these are `count` numbers within limits.
+    bool isWithin(float smallest, float largest, std::size_t count) const;
+    /// What a file keeps of it.
+    auto fields() { return std::tie(first_, step_, steps_); }
 
   private:
     float first_ = 0, step_ = 0;
@@ -33,6 +38,12 @@ class PackedKeyframe {
     /// Puts the points back, as compact() leaves them, within half a step. Touches nothing else of
     /// `keyframe`.
     void unpackInto(MapKeyframe& keyframe, const PinholeCamera& camera, const SensorOptions& sensor) const;
+
+    int numEdges() const { return begin_.empty() ? 0 : static_cast<int>(begin_.size()) - 1; }
+    /// Whether this can be a keyframe of a camera; files can hold anything.
+    bool isSound(const PinholeCamera& camera) const;
+    /// What a file keeps of it.
+    auto fields() { return std::tie(u_, v_, inverse_depth_, normal_angle_, colours_, begin_); }
 
   private:
     QuantizedArray u_, v_, inverse_depth_, normal_angle_;  // ideal px, 1/m, rad

@@ -59,7 +59,7 @@ bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstrain
     int count = 0;
     for (const PoseConstraint& c : constraints)
         for (const int id : {c.from, c.to})
-            if (id != fixed && rows[static_cast<std::size_t>(id)] < 0)
+            if (id > fixed && rows[static_cast<std::size_t>(id)] < 0)
                 rows[static_cast<std::size_t>(id)] = count++;
     std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>> information;
     for (const PoseConstraint& c : constraints) information.push_back(informationOf(c));

@@ -13,9 +13,9 @@ struct PoseConstraint {
 };
 
 /// Moves poses to where they fit all constraints best: a few steps of Gauss-Newton, sparse. Every constraint
-/// must be tied to the fixed pose by others; poses without a constraint stay.
+/// must be tied to a fixed pose by others; poses without a constraint stay.
 /// @param poses  T_world_camera of each
-/// @param fixed  the one that stays
+/// @param fixed  the one that stays, with all before it
 /// @return false, with the poses as they were, where there is no solution
 [[nodiscard]] bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstraint>& constraints,
                                      int fixed);

@@ -6,6 +6,7 @@
 
 #include "front_end.h"
 #include "input_check.h"
+#include "map_file.h"
 #include "outcome.h"
 #include "stopwatch.h"
 #include "tracking/camera_scale.h"
@@ -44,6 +45,7 @@ struct Odometry::Impl {
     Outcome start();
     Tracking track(const Prediction& prediction);
     Tracking confirmed(Tracking tracking, const Prediction& prediction);
+    std::optional<Outcome> anchorAt(const RelativePose& found, const Tracking& failed);
     Outcome findAgain(Tracking failed, double since_measured);
     Outcome bridge(Tracking failed, double since_measured);
     void renewReference(Outcome& outcome);
@@ -97,6 +99,13 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
 }
 
 Outcome Odometry::Impl::start() {
+    if (world.loaded() > 0) {
+        const auto pose = world.find(*frame, {}, 0);
+        if (auto found = pose ? anchorAt(*pose, {}) : std::nullopt) {
+            found->status = FrameStatus::kInitialised;
+            return *found;
+        }
+    }
     Outcome outcome;
     outcome.tracking.fault = beginTrack(T_world_start, Matrix6d::Zero());
     if (outcome.tracking.fault) {
@@ -125,24 +134,29 @@ Tracking Odometry::Impl::confirmed(Tracking tracking, const Prediction& predicti
     return again;
 }
 
-/// Where tracking lost the camera, a keyframe that it has seen before may tell where it is.
-Outcome Odometry::Impl::findAgain(Tracking failed, double since_measured) {
-    const auto pose = world.find(*frame, {world.reference().id, motion.lastPose(), {}}, since_measured);
-    if (!pose) return bridge(std::move(failed), since_measured);
+/// The frame becomes a keyframe where it was recognised, if it can be one.
+std::optional<Outcome> Odometry::Impl::anchorAt(const RelativePose& found, const Tracking& failed) {
     Outcome outcome;
     outcome.tracking = failed;
-    outcome.tracking.pose = *pose;
+    outcome.tracking.pose = found;
     outcome.tracking.matches = {};  // with another keyframe
     outcome.tracking.rows = motion.stillRows();
-    if (promote(*frame, outcome.tracking)) return bridge(std::move(failed), since_measured);
+    if (promote(*frame, outcome.tracking)) return std::nullopt;
     motion.anchor(frame->timestamp(), Pose::Identity());
     lost_frames = 0;
     world.setLostFor(0);
     outcome.tracking.inliers = 0;  // they were another keyframe's
     outcome.tracking.pose = {world.reference().id, Pose::Identity(), {}};
-    outcome.found_at = pose->keyframe;
+    outcome.found_at = found.keyframe;
     outcome.is_keyframe = outcome.new_keyframe = true;
     return outcome;
+}
+
+/// Where tracking lost the camera, a keyframe that it has seen before may tell where it is.
+Outcome Odometry::Impl::findAgain(Tracking failed, double since_measured) {
+    const auto pose = world.find(*frame, {world.reference().id, motion.lastPose(), {}}, since_measured);
+    if (auto found = pose ? anchorAt(*pose, failed) : std::nullopt) return *found;
+    return bridge(std::move(failed), since_measured);
 }
 
 Outcome Odometry::Impl::bridge(Tracking failed, double since_measured) {
@@ -287,6 +301,19 @@ Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, 
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
 Odometry& Odometry::operator=(Odometry&&) noexcept = default;
+
+int Odometry::loadMap(std::istream& in, MapUse use) {
+    if (!impl_->world.empty() || impl_->world.loaded() > 0)
+        throw std::logic_error("a map is loaded before the first frame, and once");
+    impl_->world.load(readMap(in), use == MapUse::kLocalise);
+    return impl_->world.loaded();
+}
+int Odometry::saveMap(std::ostream& out) const {
+    StoredMap map = impl_->world.map();
+    const auto keyframes = static_cast<int>(map.graph.keyframes.size());
+    writeMap(std::move(map), out);
+    return keyframes;
+}
 
 FrameResult Odometry::processFrame(const RgbdFrame& images) {
     const Stopwatch watch;

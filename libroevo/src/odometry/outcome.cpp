@@ -8,7 +8,10 @@ std::string whatBecame(const Outcome& outcome) {
     const std::string why = describe(outcome.tracking.fault);
     switch (outcome.status) {
         case FrameStatus::kInitialised:
-            if (outcome.lost_frames == 0) return "first usable frame";
+            if (outcome.lost_frames == 0)
+                return outcome.found_at < 0
+                           ? "first usable frame"
+                           : "found in the map at keyframe " + std::to_string(outcome.found_at);
             return "re-anchored after " + std::to_string(outcome.lost_frames) +
                    " frames without tracking: " + why;
         case FrameStatus::kPredicted:

@@ -27,7 +27,18 @@ Relocaliser::Relocaliser(const PinholeCamera& camera, const OdometryOptions& opt
       verifier_(options.sensor),
       registrar_(camera, options) {}
 
-void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, int end) {
+void Relocaliser::load(std::vector<KnownPlace> places) {
+    places_ = std::move(places);
+    for (std::size_t id = 0; id < places_.size(); ++id)
+        index_.insert(static_cast<int>(id), places_[id].points);
+}
+
+const std::vector<KnownPlace>& Relocaliser::places() {
+    collect();
+    return places_;
+}
+
+void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, int end) {
     collect();
     Keyframe copy;  // of what is remembered
     copy.id = keyframe.id;
@@ -40,20 +51,20 @@ void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, int end) {
         seen->images.depth = frame.images.depth.clone();
     }
     seen->pyramid.build(frame.pyramid.level(0).clone(), 1);
-    at_work_ =
-        std::async(std::launch::async, [this, copy = std::move(copy), seen = std::move(seen), end]() mutable {
-            return describe(std::move(copy), std::move(seen), end);
-        });
+    at_work_ = std::async(std::launch::async, [this, copy = std::move(copy), seen = std::move(seen),
+                                               colours = std::move(colours), end]() mutable {
+        return describe(std::move(copy), std::move(seen), colours, end);
+    });
 }
 
-Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<Frame> frame, int end) {
+Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<Frame> frame,
+                                             const std::vector<Rgb>& colours, int end) {
     Described out;
-    Place& place = out.place;
+    KnownPlace& place = out.place;
     const cv::Mat& grey = frame->pyramid.level(0);
     describer_.describe(keyframe.edges, grey, place.points);
     if (place.points.size() > kPoints) place.points.resize(kPoints);
     place.points.shrink_to_fit();
-    const std::vector<Rgb> colours(keyframe.edges.size());
     place.edges = PackedKeyframe(toMapKeyframe(keyframe, colours, ideal_, options_.mapping.max_points));
     place.median_depth = keyframe.median_depth;
     place.row_motion = keyframe.row_motion;
@@ -73,7 +84,7 @@ void Relocaliser::collect() {
 }
 
 Keyframe Relocaliser::unpacked(int id) const {
-    const Place& place = places_[static_cast<std::size_t>(id)];
+    const KnownPlace& place = places_[static_cast<std::size_t>(id)];
     MapKeyframe edges;
     place.edges.unpackInto(edges, ideal_, options_.sensor);
     Keyframe keyframe;
@@ -189,7 +200,8 @@ std::optional<RelativePose> Relocaliser::surest(const std::vector<Recognition>& 
         return apart.translation().norm() > kSamePlace || rotationAngle(apart) > kSameDirection;
     };
     const double distance = (there.translation() - whereabouts.centre).norm();
-    if (distance > whereabouts.radius || std::any_of(recognised.begin(), recognised.end(), isRival))
+    if (best->pose.keyframe < whereabouts.unrelated || distance > whereabouts.radius ||
+        std::any_of(recognised.begin(), recognised.end(), isRival))
         return std::nullopt;
     return best->pose;
 }

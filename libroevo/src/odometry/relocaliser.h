@@ -16,6 +16,17 @@ namespace roevo {
 struct Whereabouts {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< in the world, m
     double radius = 0;                                 ///< m
+    /// Where the camera is relative to keyframes before this one is not known at all: of the places there
+    /// only those that are like no other are believed.
+    int unrelated = 0;
+};
+
+/// What a keyframe is recognised by.
+struct KnownPlace {
+    PlacePoints points;
+    PackedKeyframe edges;
+    double median_depth = 0;  ///< m
+    RowMotion row_motion;
 };
 
 /// Remembers what keyframes look like, and finds which of them a frame shows. Places that look alike are not
@@ -30,10 +41,16 @@ class Relocaliser {
     Relocaliser(const Relocaliser&) = delete;  // the thread points to it
     Relocaliser& operator=(const Relocaliser&) = delete;
 
+    /// Begins with the places of these keyframes.
+    void load(std::vector<KnownPlace> places);
+    /// Of all keyframes, by their ids; waits for the thread.
+    const std::vector<KnownPlace>& places();
+
     /// In a thread of its own.
-    /// @param frame  that the keyframe was made of
-    /// @param end    keyframes before this one are looked for in it, see resembled()
-    void add(const Keyframe& keyframe, const Frame& frame, int end);
+    /// @param frame    that the keyframe was made of
+    /// @param colours  of the keyframe's points
+    /// @param end      keyframes before this one are looked for in it, see resembled()
+    void add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, int end);
 
     /// The older keyframe that the newest one looks most like, and its pose relative to that by points alone:
     /// about right, with no covariance. Waits for the thread.
@@ -55,12 +72,6 @@ class Relocaliser {
                                               const Pose& T_keyframe_camera);
 
   private:
-    struct Place {
-        PlacePoints points;
-        PackedKeyframe edges;
-        double median_depth = 0;  ///< m
-        RowMotion row_motion;
-    };
     struct Recognition {
         RelativePose pose;
         double confidence = 0;
@@ -68,14 +79,15 @@ class Relocaliser {
     };
     using Alike = std::pair<Verification, int>;  ///< and the keyframe
     struct Described {
-        Place place;
+        KnownPlace place;
         std::unique_ptr<Frame> frame;  ///< what is registered to older keyframes
         EdgePoints3D edges;
         std::vector<Alike> alike;
     };
     static std::optional<RelativePose> surest(const std::vector<Recognition>& recognised,
                                               const Trajectory& trajectory, const Whereabouts& whereabouts);
-    Described describe(Keyframe keyframe, std::unique_ptr<Frame> frame, int end);
+    Described describe(Keyframe keyframe, std::unique_ptr<Frame> frame, const std::vector<Rgb>& colours,
+                       int end);
     std::vector<Alike> lookUp(const PlacePoints& points, int query_id, int end);
     std::vector<Recognition> registered(const std::vector<Alike>& alike, const Frame& frame,
                                         const EdgePoints3D& edges, const RowMotion& rows);
@@ -89,7 +101,7 @@ class Relocaliser {
     PlaceIndex index_;
     PlaceVerifier verifier_;
     EdgeRegistrar registrar_;
-    std::vector<Place> places_;       ///< of each keyframe, by its id
+    std::vector<KnownPlace> places_;  ///< of each keyframe, by its id
     PlacePoints points_;              ///< of the frame
     Described newest_;                ///< keyframe; its place is among places_
     std::future<Described> at_work_;  // last: waits for the thread

@@ -98,13 +98,19 @@ void SemiDenseStore::collect(std::size_t most_sampling) {
     }
 }
 
-std::vector<ColouredPoint> SemiDenseStore::inWorld(const std::vector<KeyframeInfo>& keyframes) {
+const std::vector<PackedPoints>& SemiDenseStore::keyframes() {
+    collect(0);
+    return keyframes_;
+}
+
+std::vector<ColouredPoint> SemiDenseStore::inWorld(const std::vector<KeyframeInfo>& keyframes,
+                                                   std::size_t first) {
     collect(0);
     std::size_t count = 0;
     for (const PackedPoints& points : keyframes_) count += points.size();
     std::vector<ColouredPoint> world;
     world.reserve(count);
-    for (std::size_t k = 0; k < keyframes_.size(); ++k) {
+    for (std::size_t k = first; k < keyframes_.size(); ++k) {
         const Pose& T_world_camera = keyframes.at(k).T_world_camera;
         for (std::size_t i = 0; i < keyframes_[k].size(); ++i) {
             ColouredPoint point = keyframes_[k].at(i);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <future>
+#include <tuple>
 #include <vector>
 
 #include "roevo/camera/pinhole_camera.h"
@@ -23,11 +24,17 @@ class PackedPoints {
     std::size_t size() const { return points_.size(); }
     ColouredPoint at(std::size_t i) const;
 
-  private:
     struct Packed {
         std::array<std::int16_t, 3> position;
         Rgb colour;
+        auto fields() { return std::tie(position, colour); }
     };
+    /// What a file keeps of it.
+    auto fields() { return std::tie(step_, points_); }
+    /// Whether these can be points that a camera saw; files can hold anything.
+    bool isSound() const { return step_ >= 0 && step_ < 1; }
+
+  private:
     float step_ = 0;  ///< m
     std::vector<Packed> points_;
 };
@@ -49,9 +56,15 @@ class SemiDenseStore {
     /// @param edges  of the keyframe, ideal px
     void add(const OrganizedEdges& edges, const Frame& frame, const RowMotion& rows);
 
+    /// Begins with these keyframes.
+    void load(std::vector<PackedPoints> keyframes) { keyframes_ = std::move(keyframes); }
+    /// Of every keyframe so far, in their own frames; waits for those that are being sampled.
+    const std::vector<PackedPoints>& keyframes();
+
     /// All points in the world, one keyframe after the other, waiting for those that are being sampled.
     /// @param keyframes  all that were added, in that order, at the poses that are wanted
-    std::vector<ColouredPoint> inWorld(const std::vector<KeyframeInfo>& keyframes);
+    /// @param first      of the keyframes that are wanted
+    std::vector<ColouredPoint> inWorld(const std::vector<KeyframeInfo>& keyframes, std::size_t first = 0);
 
   private:
     /// What sampling needs, in memory that nobody else writes to, and what comes of it.

@@ -43,6 +43,22 @@ double changeOfView(const Pose& motion) {
 
 }  // namespace
 
+void Trajectory::load(KeyframeGraph graph, bool held) {
+    keyframes_ = std::move(graph.keyframes);
+    links_ = std::move(graph.links);
+    for (const Matrix6d& covariance : graph.covariances) in_world_.push_back({covariance, {}});
+    related_ = std::move(graph.related);
+    loops_ = std::move(graph.loops);
+    if (held) held_ = static_cast<int>(keyframes_.size());
+}
+
+KeyframeGraph Trajectory::graph() const {
+    KeyframeGraph graph{keyframes_, links_, {}, related_, loops_};
+    for (RelativePose& link : graph.links) forgetAll(link.uncertainty);
+    for (const PoseUncertainty& known : in_world_) graph.covariances.push_back(known.covariance());
+    return graph;
+}
+
 int Trajectory::beginTrack(double timestamp, const Pose& T_world_camera, const Matrix6d& covariance) {
     const Matrix6d to_camera = rotated(T_world_camera.linear().transpose());
     links_.push_back({-1, T_world_camera, {to_camera * covariance * to_camera.transpose(), {}}});
@@ -110,10 +126,12 @@ int Trajectory::beginOfTrack(int keyframe) const {
 }
 
 Correction Trajectory::join(int keyframe, const RelativePose& pose) {
+    const int begin = beginOfTrack(keyframe);
+    if (beginOfTrack(pose.keyframe) > begin)
+        return join(pose.keyframe, changeReference({pose.keyframe, Pose(), {}}, pose, keyframe));
     Correction join;
     join.recognised = pose.keyframe;
     const Pose motion = worldPose(pose) * keyframePose(keyframe).inverse();
-    const int begin = beginOfTrack(keyframe);
     const std::vector<int> tracks = this->tracks();
     for (int id = begin; id < static_cast<int>(keyframes_.size()); ++id)
         if (tracks[static_cast<std::size_t>(id)] == begin) join.keyframes.push_back(id);
@@ -122,15 +140,17 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
         placed = motion * placed;
         join.motions.push_back(motion);
     }
-    // As well known as what was recognised
+    // As well known as what was recognised. A track is linked to what is older than all of it.
+    RelativePose link = pose;
+    while (link.keyframe > begin) link = compose(links_[static_cast<std::size_t>(link.keyframe)], link);
     links_[static_cast<std::size_t>(begin)] = {
-        pose.keyframe, keyframePose(pose.keyframe).inverse() * keyframePose(begin), {pose.covariance(), {}}};
+        link.keyframe, keyframePose(link.keyframe).inverse() * keyframePose(begin), {link.covariance(), {}}};
     for (const int id : join.keyframes) {
         const auto at = static_cast<std::size_t>(id);
         in_world_[at] = inWorld(links_[at]).uncertainty;
     }
     for (const int id : join.keyframes)
-        if (id != keyframe) forgetAll(in_world_[static_cast<std::size_t>(id)]);
+        if (id + 1 < static_cast<int>(keyframes_.size())) forgetAll(in_world_[static_cast<std::size_t>(id)]);
     corrections_.push_back(join);
     return join;
 }
@@ -173,7 +193,7 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
         if (tracks[static_cast<std::size_t>(loop.to)] == track) constraints.push_back(loop);
     std::vector<Pose> poses;
     for (const KeyframeInfo& keyframe : keyframes_) poses.push_back(keyframe.T_world_camera);
-    if (!optimisePoseGraph(poses, constraints, track)) return {};
+    if (!optimisePoseGraph(poses, constraints, std::max(track, held_ - 1))) return {};
     // Tracking may have drifted by more than it knows, but places cannot contradict each other
     for (const PoseConstraint& loop : loops)
         if (tracks[static_cast<std::size_t>(loop.to)] == track &&
@@ -182,7 +202,7 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
     Correction correction;
     correction.recognised = recognised.front().second.keyframe;
     for (std::size_t id = 0; id < poses.size(); ++id) {
-        if (tracks[id] != track) continue;
+        if (tracks[id] != track || static_cast<int>(id) < held_) continue;
         Pose& placed = keyframes_[id].T_world_camera;
         correction.keyframes.push_back(static_cast<int>(id));
         correction.motions.push_back(poses[id] * placed.inverse());

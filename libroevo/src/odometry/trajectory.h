@@ -8,10 +8,24 @@
 
 namespace roevo {
 
+/// All that is known of keyframes and not of frames, by their ids.
+struct KeyframeGraph {
+    std::vector<KeyframeInfo> keyframes;
+    std::vector<RelativePose> links;    ///< to the ones before; -1: to the world
+    std::vector<Matrix6d> covariances;  ///< in the world, along the cameras' axes
+    std::vector<std::pair<int, int>> related;
+    std::vector<PoseConstraint> loops;
+};
+
 /// The only one that knows the world: poses of keyframes, and of frames relative to them. When the map moves
 /// a keyframe, all frames that were tracked against it follow.
 class Trajectory {
   public:
+    /// Begins with keyframes of an earlier recording, in one track.
+    /// @param held  nothing moves them any more
+    void load(KeyframeGraph graph, bool held);
+    KeyframeGraph graph() const;
+
     /// A keyframe that was tracked from none: the first, or re-anchored. @return its id
     int beginTrack(double timestamp, const Pose& T_world_camera, const Matrix6d& covariance);
     /// @param pose  relative to the keyframe that it was tracked from. @return its id
@@ -22,7 +36,8 @@ class Trajectory {
 
     /// First keyframe of a keyframe's track.
     int beginOfTrack(int keyframe) const;
-    /// Moves a keyframe's track to where the keyframe was recognised.
+    /// Moves a keyframe's track to where the keyframe was recognised; where that is in a younger track, moves
+    /// that one.
     /// @param pose  of the keyframe, relative to one of another track
     Correction join(int keyframe, const RelativePose& pose);
     /// Two keyframes, the older one first, show the same place, and are where that is: no loop moves them
@@ -68,6 +83,7 @@ class Trajectory {
     std::vector<int> tracks() const;
     std::vector<PoseConstraint> constraintsOf(const std::vector<int>& tracks, int track) const;
 
+    int held_ = 0;  ///< so many keyframes do not move
     std::vector<KeyframeInfo> keyframes_;
     std::vector<Correction> corrections_;       ///< that updates to come do not know of yet
     std::vector<std::pair<int, int>> related_;  ///< see relate()

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <stdexcept>
 
 #include "tracking/camera_scale.h"
 #include "tracking/se3.h"
@@ -28,6 +29,70 @@ World::World(const PinholeCamera& camera, const OdometryOptions& options)
       mapper_(makeMapper(camera.undistorted(), options_)),
       relocaliser_(camera, options),
       semi_dense_(camera, options) {}
+
+bool World::closesLoops() const {
+    return options_.mapping.close_loops && options_.mode == Mode::kBundleAdjustment;
+}
+
+bool World::remembersPlaces() const {
+    return options_.loss.recognise || closesLoops();
+}
+
+void World::load(StoredMap map, bool held) {
+    if (map.camera != camera_)
+        throw std::runtime_error("the map is of another camera (" + describe(map.camera) + "; now " +
+                                 describe(camera_) + ")");
+    if (!options_.loss.recognise)
+        throw std::runtime_error(
+            "a map is of no use with loss.recognise=false: no place is looked for in it");
+    loaded_ = static_cast<int>(map.graph.keyframes.size());
+    held_ = held;
+    std::vector<KnownPlace> places;
+    for (std::size_t id = 0; id < map.places.size(); ++id)
+        places.push_back({std::move(map.places[id]), map.edges[id].points, map.edges[id].median_depth,
+                          map.edges[id].row_motion});
+    relocaliser_.load(std::move(places));
+    mapper_->load(map.graph.keyframes, std::move(map.edges));
+    semi_dense_.load(std::move(map.surfaces));
+    trajectory_.load(std::move(map.graph), held);
+}
+
+StoredMap World::map() {
+    if (!remembersPlaces())
+        throw std::runtime_error("there is no map with loss.recognise=false: places are not remembered");
+    StoredMap map;
+    map.camera = camera_;
+    map.graph = finalTrajectory().graph();
+    map.edges = mapper_->kept();
+    const std::vector<KnownPlace>& places = relocaliser_.places();
+    for (std::size_t id = 0; id < places.size(); ++id) {
+        map.places.push_back(places[id].points);
+        if (id >= map.edges.size())
+            map.edges.push_back(
+                {places[id].edges, places[id].median_depth, places[id].row_motion, {}, {}, {}});
+    }
+    map.surfaces = semi_dense_.keyframes();
+    map.surfaces.resize(map.places.size());
+    // Tracks that were not joined are in worlds of their own
+    std::vector<int> tracks, sizes(map.places.size());
+    for (std::size_t id = 0; id < sizes.size(); ++id) {
+        tracks.push_back(trajectory_.beginOfTrack(static_cast<int>(id)));
+        ++sizes[static_cast<std::size_t>(tracks.back())];
+    }
+    const auto largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
+    std::vector<bool> kept;
+    for (std::size_t id = 0; id < tracks.size(); ++id)
+        kept.push_back(held_ ? static_cast<int>(id) < loaded_ : tracks[id] == (loaded_ > 0 ? 0 : largest));
+    keepOnly(kept, map);
+    return map;
+}
+
+EdgeMap World::inThisWorld(EdgeMap edges) const {
+    edges.erase(std::remove_if(edges.begin(), edges.end(),
+                               [&](const MapEdge& edge) { return edge.keyframe_id < unrelated(); }),
+                edges.end());
+    return edges;
+}
 
 void World::advance(double timestamp, double seconds_per_row) {
     timestamp_ = timestamp;
@@ -79,18 +144,25 @@ Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Trac
 }
 
 void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
-    const bool closes = options_.mapping.close_loops && options_.mode == Mode::kBundleAdjustment;
-    if (options_.loss.recognise || closes) {
+    const bool closes = closesLoops();
+    EdgeMap edges = ownEdges(*fresh, of.images, camera_);
+    if (remembersPlaces()) {
         const int begin = trajectory_.beginOfTrack(fresh->id);
-        relocaliser_.add(*fresh, of, closes ? std::max(begin, fresh->id - kStillInView) : begin);
+        relocaliser_.add(*fresh, of, coloursOf(edges),
+                         closes ? std::max(begin, fresh->id - kStillInView) : begin);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
     }
     semi_dense_.add(fresh->edges.image, of, fresh->row_motion);
-    mapper_->insert({*fresh, ownEdges(*fresh, of.images, camera_), trajectory_.keyframePose(fresh->id),
-                     tracked, reference_.get(), seconds_per_row_},
+    mapper_->insert({*fresh, std::move(edges), trajectory_.keyframePose(fresh->id), tracked, reference_.get(),
+                     seconds_per_row_},
                     timestamp_);
     reference_ = std::move(fresh);
+    noteTrack();
+}
+
+void World::noteTrack() {
+    localised_ = localised_ || trajectory_.beginOfTrack(reference_->id) < loaded_;
 }
 
 /// What older keyframe the newest one shows.
@@ -102,7 +174,7 @@ void World::recognise() {
                                                               Eigen::EigenvaluesOnly);
     const double drift = kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
     const Whereabouts near{trajectory_.worldPose(newest).translation(),
-                           kReach + kTopSpeed * lost_for_ + drift};
+                           kReach + kTopSpeed * lost_for_ + drift, unrelated()};
     const auto alike = relocaliser_.resembled(trajectory_, near);
     if (!alike) return;
     if (isOfThisTrack(*alike) && isWithinReach(*alike)) {
@@ -135,6 +207,7 @@ void World::join(const RelativePose& pose) {
     noteMotion(before);
     change_.joined_at = pose.keyframe;
     lost_for_ = 0;
+    noteTrack();
 }
 
 /// Where the map cannot relate the edges of a place that is seen again, since the camera has drifted too far.
@@ -160,8 +233,9 @@ void World::closeLoop(const RelativePose& pose) {
 
 std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& last, double since_measured) {
     if (!options_.loss.recognise) return std::nullopt;
-    return relocaliser_.find(
-        frame, trajectory_, {trajectory_.worldPose(last).translation(), kReach + kTopSpeed * since_measured});
+    const Pose pose = last.keyframe < 0 ? Pose() : trajectory_.worldPose(last);
+    return relocaliser_.find(frame, trajectory_,
+                             {pose.translation(), kReach + kTopSpeed * since_measured, unrelated()});
 }
 
 Trajectory World::finalTrajectory() const {

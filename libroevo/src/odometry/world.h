@@ -6,6 +6,7 @@
 #include "mapping/mapper.h"
 #include "relocaliser.h"
 #include "semi_dense_store.h"
+#include "stored_map.h"
 #include "trajectory.h"
 
 namespace roevo {
@@ -25,6 +26,16 @@ class World {
     /// @param camera   with its lens
     /// @param options  as given
     World(const PinholeCamera& camera, const OdometryOptions& options);
+
+    /// Begins with a map, before anything else.
+    /// @param held  it stays as it is: nothing moves its keyframes, and map() has no others
+    /// @throws std::runtime_error, in one line, where it cannot be used
+    void load(StoredMap map, bool held);
+    /// All keyframes that hang together, in a map: those that were loaded, else most of them.
+    /// @throws std::runtime_error where places are not remembered
+    StoredMap map();
+    /// Keyframes that were loaded: the first ones.
+    int loaded() const { return loaded_; }
 
     bool empty() const { return !reference_; }
     Keyframe& reference() { return *reference_; }
@@ -46,6 +57,7 @@ class World {
     Fault addKeyframe(const Frame& frame, const Tracking& tracked, const Tracker& tracker);
 
     /// The keyframe that a lost frame shows, and its pose relative to that.
+    /// @param last            where it was last; of no keyframe where that is not known
     /// @param since_measured  s, since the camera's pose was known
     [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, const RelativePose& last,
                                                    double since_measured);
@@ -59,9 +71,12 @@ class World {
 
     /// With what has not taken effect yet.
     Trajectory finalTrajectory() const;
-    EdgeMap fusedMap() const { return mapper_->fusedMap(); }
-    EdgeMap keyframeEdges() const { return mapper_->keyframeEdges(); }
-    std::vector<ColouredPoint> semiDense() { return semi_dense_.inWorld(finalTrajectory().keyframes()); }
+    // A map that the camera was never recognised in is in a world of its own
+    EdgeMap fusedMap() const { return inThisWorld(mapper_->fusedMap()); }
+    EdgeMap keyframeEdges() const { return inThisWorld(mapper_->keyframeEdges()); }
+    std::vector<ColouredPoint> semiDense() {
+        return semi_dense_.inWorld(finalTrajectory().keyframes(), static_cast<std::size_t>(unrelated()));
+    }
 
   private:
     void adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked);
@@ -72,6 +87,11 @@ class World {
     bool isWithinReach(const RelativePose& pose) const;
     void takeUpdate(const MapUpdate& update);
     void noteMotion(const Pose& before);
+    void noteTrack();
+    bool closesLoops() const;
+    bool remembersPlaces() const;
+    int unrelated() const { return localised_ ? 0 : loaded_; }
+    EdgeMap inThisWorld(EdgeMap edges) const;
 
     PinholeCamera camera_;
     OdometryOptions options_;  // scaled to the camera
@@ -81,6 +101,9 @@ class World {
     Trajectory trajectory_;
     std::unique_ptr<Keyframe> reference_;
     std::int32_t next_cluster_ = 0;
+    int loaded_ = 0;
+    bool held_ = false;
+    bool localised_ = false;  // in the map that was loaded
     double timestamp_ = 0, seconds_per_row_ = 0;
     double lost_for_ = 0;
     double recognised_at_ = 0;  // s; when the place of the newest keyframe is to be known

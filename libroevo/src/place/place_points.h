@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <tuple>
 #include <vector>
 
 #include "place/descriptor.h"
@@ -12,6 +13,9 @@ struct PlacePoint {
     float u = 0, v = 0;         ///< ideal px
     float normal_angle = 0;     ///< of the edge's normal on the gradient's side, rad from the image's x axis
     Descriptor descriptor;
+
+    /// What a file keeps of it.
+    auto fields() { return std::tie(x, y, z, u, v, normal_angle, descriptor.words); }
 };
 
 /// What a keyframe is recognised by.

@@ -1,0 +1,154 @@
+#include "map_file.h"
+
+#include <cmath>
+#include <istream>
+#include <ostream>
+
+#include "input/byte_stream.h"
+
+namespace roevo {
+namespace {
+
+constexpr std::array<char, 8> kMagic = {'R', 'O', 'E', 'V', 'O', 'M', 'A', 'P'};
+constexpr std::uint32_t kVersion = 1;
+
+struct Header {
+    std::array<char, 8> magic = kMagic;
+    std::uint32_t version = kVersion;
+    std::uint64_t size = 0, checksum = 0;  ///< of the bytes after it
+    auto fields() { return std::tie(magic, version, size, checksum); }
+    static constexpr std::size_t kSize = 8 + 4 + 8 + 8;
+};
+
+/// FNV-1a: any change of one byte changes it.
+std::uint64_t checksumOf(std::string_view bytes) {
+    std::uint64_t sum = 0xCBF29CE484222325U;
+    for (const char byte : bytes) sum = (sum ^ static_cast<unsigned char>(byte)) * 0x100000001B3U;
+    return sum;
+}
+
+/// At most so many bytes; memory grows with what is there.
+std::string readBytes(std::istream& in, std::uint64_t count) {
+    constexpr std::uint64_t kAtOnce = 1 << 20;
+    std::string bytes;
+    while (in && bytes.size() < count) {
+        const std::size_t begin = bytes.size();
+        bytes.resize(begin + static_cast<std::size_t>(std::min(kAtOnce, count - begin)));
+        in.read(bytes.data() + begin, static_cast<std::streamsize>(bytes.size() - begin));
+        bytes.resize(begin + static_cast<std::size_t>(in.gcount()));
+    }
+    return bytes;
+}
+
+}  // namespace
+
+// What a map file has, in this order
+
+template <class Bytes>
+void transfer(Bytes& bytes, Pose& pose) {
+    Eigen::Vector3d translation = pose.translation();
+    Eigen::Vector4d rotation = pose.rotation().coeffs(), before = Eigen::Vector4d::Zero();
+    // Until normalising it once more, as reading does, changes no bit
+    for (int i = 0; i < 8 && rotation != before; ++i) {
+        before = rotation;
+        rotation.normalize();
+    }
+    bytes(rotation, translation);
+    constexpr double kUnitLength = 1e-9;  // by which the square of the length may miss 1
+    if (!(std::abs(rotation.squaredNorm() - 1) < kUnitLength)) throw std::runtime_error("a rotation is none");
+    pose = Pose(Eigen::Quaterniond(rotation), translation);
+}
+
+template <class Bytes>
+void transfer(Bytes& bytes, PinholeCamera& camera) {
+    bytes(camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, camera.distortion);
+}
+
+template <class Bytes>
+void transfer(Bytes& bytes, KeyframeInfo& keyframe) {
+    bytes(keyframe.id, keyframe.timestamp, keyframe.T_world_camera);
+}
+
+template <class Bytes>
+void transfer(Bytes& bytes, RelativePose& pose) {
+    bytes(pose.keyframe, pose.T_keyframe_camera, pose.uncertainty.independent);
+}
+
+template <class Bytes>
+void transfer(Bytes& bytes, PoseConstraint& constraint) {
+    bytes(constraint.from, constraint.to, constraint.T_from_to, constraint.covariance);
+}
+
+template <class Bytes>
+void transfer(Bytes& bytes, RowMotion& rows) {
+    bytes(rows.velocity, rows.turn, rows.seconds_per_row, rows.reference_row);
+}
+
+template <class Bytes>
+void transfer(Bytes& bytes, CovisibilityGraph::Link& link) {
+    bytes(link.edge, link.other_edge, link.points);
+}
+
+template <class Bytes>
+void transfer(Bytes& bytes, CovisibilityGraph::Links& links) {
+    bytes(links.other, links.links);
+}
+
+template <class Bytes>
+void transfer(Bytes& bytes, KeptKeyframe& kept) {
+    bytes(kept.points, kept.median_depth, kept.row_motion, kept.found, kept.verdicts, kept.links);
+}
+
+template <class Bytes>
+void transfer(Bytes& bytes, KeyframeGraph& graph) {
+    bytes(graph.keyframes, graph.links, graph.covariances, graph.related, graph.loops);
+}
+
+template <class Bytes>
+void transfer(Bytes& bytes, StoredMap& map) {
+    bytes(map.camera, map.graph, map.places, map.edges, map.surfaces);
+}
+
+void writeMap(StoredMap map, std::ostream& out) {
+    if (const std::string fault = faultOf(map); !fault.empty())
+        throw std::runtime_error("there is no map to keep: " + fault);
+    ByteWriter contents, head;
+    contents(map);
+    Header header;
+    header.size = contents.bytes().size();
+    header.checksum = checksumOf(contents.bytes());
+    head(header);
+    out << head.bytes() << contents.bytes();
+}
+
+StoredMap readMap(std::istream& in) {
+    Header header;
+    const std::string head = readBytes(in, Header::kSize);
+    if (head.size() == Header::kSize) ByteReader{head}(header);
+    if (head.size() != Header::kSize || header.magic != kMagic)
+        throw std::runtime_error("this is no map of roevo");
+    if (header.version != kVersion)
+        throw std::runtime_error("the map is of version " + std::to_string(header.version) +
+                                 ", and only version " + std::to_string(kVersion) + " can be read");
+    const std::string contents = readBytes(in, header.size);
+    if (contents.size() < header.size)
+        throw std::runtime_error("the map is incomplete: it has " + std::to_string(contents.size()) + " of " +
+                                 std::to_string(header.size) + " bytes");
+    if (in.peek() != std::istream::traits_type::eof())
+        throw std::runtime_error("the map is damaged: there is more after its end");
+    if (checksumOf(contents) != header.checksum)
+        throw std::runtime_error("the map is damaged: its checksum is wrong");
+    StoredMap map;
+    std::string fault;
+    try {
+        ByteReader reader(contents);
+        reader(map);
+        fault = reader.atEnd() ? faultOf(map) : "there is more in it than belongs there";
+    } catch (const std::runtime_error& error) {
+        fault = error.what();
+    }
+    if (!fault.empty()) throw std::runtime_error("the map is damaged: " + fault);
+    return map;
+}
+
+}  // namespace roevo

@@ -1,0 +1,299 @@
+// Maps that are kept: written and read again, used by other recordings, and files that are not what they
+// should be.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <sstream>
+
+#include "core/support/simulated.h"
+#include "odometry/map_file.h"
+
+namespace roevo {
+namespace {
+
+using testing::Sequence;
+using testing::simulate;
+
+simulator::SimulationOptions noisyRoom(unsigned seed, double speed) {
+    simulator::SimulationOptions options = testing::smallRoom();
+    options.useKinectNoise();
+    options.seed = seed;
+    options.speed = speed;
+    return options;
+}
+
+/// What is mapped, and the same room on another day: other tremor, faster, further.
+const Sequence& yesterday() {
+    static const Sequence sequence = simulate(noisyRoom(1, 0.45), 60);
+    return sequence;
+}
+const Sequence& today() {
+    static const Sequence sequence = simulate(noisyRoom(7, 0.8), 60);
+    return sequence;
+}
+const Sequence& elsewhere() {
+    static const Sequence sequence = [] {
+        simulator::SimulationOptions options = noisyRoom(3, 0.45);
+        options.scene = "corridor";
+        return simulate(options, 30);
+    }();
+    return sequence;
+}
+
+OdometryOptions optionsOf(Mode mode) {
+    OdometryOptions options;
+    options.mode = mode;
+    return options;
+}
+
+std::string mapOf(const Odometry& odometry) {
+    std::ostringstream out;
+    odometry.saveMap(out);
+    return out.str();
+}
+
+/// Yesterday's map, in a world that is the truth's.
+const std::string& yesterdaysMap(Mode mode) {
+    static const std::string maps[] = {
+        [] {
+            Odometry odometry(yesterday().camera, optionsOf(Mode::kTracking), yesterday().start());
+            for (const RgbdFrame& frame : yesterday().frames) (void)odometry.processFrame(frame);
+            return mapOf(odometry);
+        }(),
+        [] {
+            Odometry odometry(yesterday().camera, optionsOf(Mode::kBundleAdjustment), yesterday().start());
+            for (const RgbdFrame& frame : yesterday().frames) (void)odometry.processFrame(frame);
+            return mapOf(odometry);
+        }()};
+    return maps[mode == Mode::kBundleAdjustment ? 1 : 0];
+}
+
+int load(Odometry& odometry, const std::string& map, MapUse use = MapUse::kExtend) {
+    std::istringstream in(map);
+    return odometry.loadMap(in, use);
+}
+
+std::string faultOfLoading(Odometry& odometry, const std::string& map) {
+    try {
+        load(odometry, map);
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+double worstError(const std::vector<StampedPose>& poses, const Sequence& sequence, std::size_t first = 0) {
+    double worst = 0;
+    for (std::size_t i = first; i < poses.size(); ++i)
+        worst = std::max(
+            worst,
+            (poses[i].T_world_camera.translation() - sequence.truth[i].T_world_camera.translation()).norm());
+    return worst;
+}
+
+class MapFile : public ::testing::TestWithParam<Mode> {
+  protected:
+    Odometry odometryOf(const Sequence& sequence) const { return {sequence.camera, optionsOf(GetParam())}; }
+    const std::string& map() const { return yesterdaysMap(GetParam()); }
+};
+
+TEST_P(MapFile, WrittenReadAndWrittenAgainIsTheSame) {
+    for (const Mode mode : {Mode::kTracking, Mode::kBundleAdjustment}) {
+        Odometry odometry = odometryOf(yesterday());
+        const int keyframes = load(odometry, yesterdaysMap(mode));
+        EXPECT_GT(keyframes, 3);
+        EXPECT_EQ(static_cast<int>(odometry.keyframes().size()), keyframes);
+        EXPECT_TRUE(mapOf(odometry) == yesterdaysMap(mode));
+    }
+}
+
+TEST_P(MapFile, AnotherRecordingIsLocalisedFromItsFirstFrameOn) {
+    Odometry odometry = odometryOf(today());
+    const int keyframes = load(odometry, map());
+    const FrameResult first = odometry.processFrame(today().frames[0]);
+    EXPECT_EQ(first.status, FrameStatus::kInitialised) << first.reason;
+    EXPECT_GE(first.found_at, 0) << first.reason;
+    EXPECT_LT(first.found_at, keyframes);
+    for (std::size_t i = 1; i < today().frames.size(); ++i)
+        EXPECT_EQ(odometry.processFrame(today().frames[i]).status, FrameStatus::kOk);
+    EXPECT_LT(worstError(odometry.trajectory(), today()), 0.01);
+    EXPECT_EQ(odometry.trajectory().size(), today().frames.size()) << "frames of this recording only";
+    EXPECT_GT(static_cast<int>(odometry.keyframes().size()), keyframes);
+}
+
+TEST_P(MapFile, ARecordingThatBeginsElsewhereIsJoined) {
+    // Backwards: what it begins with is further than yesterday's map goes
+    Odometry odometry = odometryOf(today());
+    const int keyframes = load(odometry, map());
+    int joined_at = -1;
+    std::size_t begun = today().frames.size();
+    for (std::size_t i = today().frames.size(); i-- > 0;) {
+        RgbdFrame frame = today().frames[i];
+        frame.timestamp = 100 - frame.timestamp;
+        const FrameResult result = odometry.processFrame(frame);
+        EXPECT_TRUE(result.hasPose()) << result.reason;
+        if (begun == today().frames.size()) begun = i;
+        if (result.joined_at >= 0) joined_at = result.joined_at;
+        if (result.found_at >= 0) joined_at = result.found_at;
+    }
+    EXPECT_GE(joined_at, 0);
+    EXPECT_LT(joined_at, keyframes);
+    std::vector<StampedPose> poses = odometry.trajectory();
+    std::reverse(poses.begin(), poses.end());
+    EXPECT_LT(worstError(poses, today()), 0.02) << "those before it was recognised as well";
+}
+
+TEST_P(MapFile, AnotherRoomIsNeverRecognised) {
+    Odometry odometry = odometryOf(elsewhere());
+    const int keyframes = load(odometry, map());
+    for (const RgbdFrame& frame : elsewhere().frames) {
+        const FrameResult result = odometry.processFrame(frame);
+        EXPECT_EQ(result.found_at, -1);
+        EXPECT_EQ(result.joined_at, -1);
+    }
+    EXPECT_EQ(odometry.trajectory().front().T_world_camera.matrix(), Pose().matrix()) << "its own world";
+    for (const MapEdge& edge : odometry.map())
+        EXPECT_GE(edge.keyframe_id, keyframes) << "the map's is not shown";
+    EXPECT_TRUE(mapOf(odometry) == map()) << "and nothing is added to it";
+}
+
+TEST_P(MapFile, ToLocaliseLeavesTheMapAsItIs) {
+    Odometry odometry = odometryOf(today());
+    const auto keyframes = static_cast<std::size_t>(load(odometry, map(), MapUse::kLocalise));
+    const std::vector<KeyframeInfo> before = odometry.keyframes();
+    for (const RgbdFrame& frame : today().frames) (void)odometry.processFrame(frame);
+    EXPECT_LT(worstError(odometry.trajectory(), today()), 0.01);
+    const std::vector<KeyframeInfo> after = odometry.keyframes();
+    for (std::size_t k = 0; k < keyframes; ++k)
+        EXPECT_EQ(before[k].T_world_camera.matrix(), after[k].T_world_camera.matrix()) << k;
+    EXPECT_TRUE(mapOf(odometry) == map());
+}
+
+TEST_P(MapFile, WhatWasAddedIsFoundLater) {
+    Odometry odometry = odometryOf(today());
+    const int keyframes = load(odometry, map());
+    for (const RgbdFrame& frame : today().frames) (void)odometry.processFrame(frame);
+    std::vector<int> edges_of(odometry.keyframes().size());
+    for (const MapEdge& edge : odometry.keyframeEdges())
+        ++edges_of[static_cast<std::size_t>(edge.keyframe_id)];
+    EXPECT_EQ(std::count(edges_of.begin(), edges_of.end(), 0), 0) << "edges of both";
+    const std::string extended = mapOf(odometry);
+
+    Odometry later = odometryOf(today());
+    EXPECT_EQ(load(later, extended), static_cast<int>(odometry.keyframes().size()));
+    EXPECT_TRUE(mapOf(later) == extended);
+    const FrameResult result = later.processFrame(today().frames.back());
+    EXPECT_GE(result.found_at, keyframes) << result.reason;
+    EXPECT_LT(
+        (result.T_world_camera.translation() - today().truth.back().T_world_camera.translation()).norm(),
+        0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, MapFile, ::testing::Values(Mode::kTracking, Mode::kBundleAdjustment));
+
+TEST(MapFileErrors, AreSaidInOneLine) {
+    const std::string& map = yesterdaysMap(Mode::kBundleAdjustment);
+    Odometry odometry(yesterday().camera, {});
+    const auto expect = [&](const std::string& bytes, const std::string& words) {
+        const std::string fault = faultOfLoading(odometry, bytes);
+        EXPECT_NE(fault.find(words), std::string::npos) << fault;
+        EXPECT_EQ(fault.find('\n'), std::string::npos);
+    };
+    expect("", "no map");
+    expect("1311868164.36 0 0 0 0 0 0 1\n1311868164.39 0 0 0 0 0 0 1\n", "no map");
+    std::string other = map;
+    other[8] = 9;
+    expect(other, "version 9");
+    expect(map.substr(0, map.size() / 2), "incomplete");
+    expect(map + "x", "more after its end");
+    other = map;
+    other[map.size() / 2] = static_cast<char>(other[map.size() / 2] ^ 1);
+    expect(other, "checksum");
+    other = map;
+    std::memset(&other[12], 0x7F, 8);  // claims more than there is memory
+    expect(other, "incomplete");
+    EXPECT_GT(load(odometry, map), 3) << "none of that is left over";
+
+    PinholeCamera camera = yesterday().camera;
+    camera.fx += 1;
+    Odometry another(camera, {});
+    const std::string fault = faultOfLoading(another, map);
+    EXPECT_NE(fault.find("another camera"), std::string::npos) << fault;
+    OdometryOptions blind;
+    blind.loss.recognise = false;
+    Odometry unable(yesterday().camera, blind);
+    EXPECT_NE(faultOfLoading(unable, map).find("loss.recognise"), std::string::npos);
+}
+
+TEST(MapFileErrors, AMapComesBeforeAllElse) {
+    Odometry odometry(yesterday().camera, {});
+    EXPECT_THROW(mapOf(odometry), std::runtime_error) << "there is none yet";
+    load(odometry, yesterdaysMap(Mode::kTracking));
+    EXPECT_THROW(load(odometry, yesterdaysMap(Mode::kTracking)), std::logic_error);
+    Odometry begun(yesterday().camera, {});
+    (void)begun.processFrame(yesterday().frames[0]);
+    EXPECT_THROW(load(begun, yesterdaysMap(Mode::kTracking)), std::logic_error);
+}
+
+/// The same with a checksum that fits.
+std::string signedAnew(std::string map) {
+    std::uint64_t sum = 0xCBF29CE484222325U;
+    for (std::size_t i = 28; i < map.size(); ++i)
+        sum = (sum ^ static_cast<unsigned char>(map[i])) * 0x100000001B3U;
+    for (std::size_t i = 0; i < 8; ++i) map[20 + i] = static_cast<char>(sum >> (8 * i) & 0xFF);
+    return map;
+}
+
+/// A few keyframes are enough to break.
+const std::string& smallMap() {
+    static const std::string map = [] {
+        OdometryOptions options;
+        options.mapping.semi_dense_points = 50;
+        options.mapping.max_points = 300;
+        Odometry odometry(yesterday().camera, options);
+        for (std::size_t i = 0; i < 36; ++i) (void)odometry.processFrame(yesterday().frames[i]);
+        return mapOf(odometry);
+    }();
+    return map;
+}
+
+TEST(MapFileErrors, WhatIsDamagedIsRefused) {
+    std::mt19937 random(5);
+    Odometry odometry(yesterday().camera, {});
+    for (int k = 0; k < 150; ++k) {
+        const std::size_t at = random() % smallMap().size();
+        EXPECT_NE(faultOfLoading(odometry, smallMap().substr(0, at)), "") << at;
+        std::string flipped = smallMap();
+        flipped[at] = static_cast<char>(flipped[at] ^ (1 << random() % 8));
+        EXPECT_NE(faultOfLoading(odometry, flipped), "") << at;
+    }
+}
+
+TEST(MapFileErrors, WhatIsWrongAndSignedIsRefusedOrDoesNoHarm) {
+    std::mt19937 random(6);
+    ASSERT_TRUE(signedAnew(smallMap()) == smallMap());
+    int loaded = 0;
+    for (int k = 0; k < 200; ++k) {
+        std::string changed = smallMap();
+        // The first part has the poses: there it matters most
+        const std::size_t at = 28 + random() % (k % 2 == 0 ? 2000 : changed.size() - 28);
+        const int change = static_cast<int>(random() % 4);
+        if (change == 0) changed[at] = static_cast<char>(random());
+        if (change == 1) changed[at] = static_cast<char>(changed[at] ^ (1 << random() % 8));
+        if (change == 2) std::memset(&changed[at], 0xFF, std::min<std::size_t>(8, changed.size() - at));
+        if (change == 3) changed.erase(at, 1 + random() % 16);
+        Odometry odometry(yesterday().camera, {});
+        std::uint64_t size = changed.size() - 28;
+        std::memcpy(&changed[12], &size, sizeof size);
+        if (!faultOfLoading(odometry, signedAnew(changed)).empty()) continue;
+        if (++loaded % 8 != 0) continue;
+        const FrameResult result = odometry.processFrame(today().frames[0]);
+        EXPECT_TRUE(result.T_world_camera.isFinite() && result.covariance.allFinite()) << k;
+        (void)odometry.map();
+    }
+    EXPECT_GT(loaded, 20) << "else nothing was tried";
+}
+
+}  // namespace
+}  // namespace roevo
