@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
@@ -12,6 +13,7 @@
 #include "programs/atomic_file.h"
 #include "programs/interrupt.h"
 #include "programs/output_folder.h"
+#include "programs/program.h"
 #include "programs/progress.h"
 #include "programs/whole_outputs.h"
 #include "recordings/frame_source.h"
@@ -41,6 +43,23 @@ std::size_t expectedFrames(const FrameSource& source, const RunSettings& setting
 const std::vector<std::string> kResults = {
     "trajectory.txt", "trajectory_live.txt", "trajectory_robot.txt", "keyframes.txt", "map.3Dscene",
     "map.ply",        "map_semi_dense.ply",  "config_used.ini",      "frames.csv",    "summary.json"};
+
+// The file for covariances, there before any work is done, so that a wrong path costs none.
+void open(std::optional<AtomicFile>& file, const RunSettings& settings) {
+    if (settings.covariances.empty()) return;
+    const auto refuse = [&](const std::string& what) {
+        throw UsageError("--covariances " + settings.covariances + " is " + what + "; give another name");
+    };
+    const auto isAt = [&](const fs::path& other) {
+        return fs::weakly_canonical(settings.covariances) == fs::weakly_canonical(other);
+    };
+    if (isAt(settings.input) || (!settings.ground_truth.empty() && isAt(settings.ground_truth)))
+        refuse("an input");
+    for (const std::string& name : kResults)
+        if (isAt(fs::path(settings.output_dir) / name)) refuse("what the run writes itself");
+    file.emplace(settings.covariances);
+    file->stream();
+}
 
 constexpr double kLongestGap = 1;  // s; a recording that stood still, or a stray stamp, is not waited for
 
@@ -147,6 +166,23 @@ void writeMap(WholeOutputs& files, const RunReport& report, const Odometry& odom
     InterruptGuard::check();
 }
 
+RunReport reportOn(const FrameSource& source, const RunSettings& settings) {
+    RunReport report;
+    report.input = settings.input;
+    report.kind = source.kind();
+    report.camera = source.camera();
+    report.camera_source = source.cameraSource();
+    report.mode = settings.options.mode;
+    return report;
+}
+
+void printInput(const RunReport& report, const FrameSource& source) {
+    std::printf("input       %s (%s), %d x %d, intrinsics from %s\n", report.input.c_str(),
+                report.kind.c_str(), report.camera.width, report.camera.height, report.camera_source.c_str());
+    for (const std::string& note : source.notes()) std::printf("note        %s\n", note.c_str());
+    std::fflush(stdout);
+}
+
 }  // namespace
 
 RunReport runOdometry(const RunSettings& settings) {
@@ -154,22 +190,13 @@ RunReport runOdometry(const RunSettings& settings) {
     auto source = prefetch(openSource(settings.input, settings.sensor_label));
     prepareOutputFolder(settings.output_dir);
     WholeOutputs files(settings.output_dir, kResults);
+    std::optional<AtomicFile> covariances;
+    open(covariances, settings);
 
-    RunReport report;
-    report.input = settings.input;
-    report.kind = source->kind();
-    report.camera = source->camera();
-    report.camera_source = source->cameraSource();
-    report.mode = settings.options.mode;
+    RunReport report = reportOn(*source, settings);
     const GroundTruth ground_truth = groundTruthFor(settings.ground_truth, *source);
     report.ground_truth = ground_truth.file;
-    if (!settings.quiet) {
-        std::printf("input       %s (%s), %d x %d, intrinsics from %s\n", report.input.c_str(),
-                    report.kind.c_str(), report.camera.width, report.camera.height,
-                    report.camera_source.c_str());
-        for (const std::string& note : source->notes()) std::printf("note        %s\n", note.c_str());
-    }
-    std::fflush(stdout);
+    if (!settings.quiet) printInput(report, *source);
 
     Odometry odometry(source->camera(), settings.options);
     skipFrames(*source, settings.skip, settings.input);
@@ -204,6 +231,10 @@ RunReport runOdometry(const RunSettings& settings) {
     writeTextAtomically(files.path("frames.csv"), framesCsv(report));
     report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     writeTextAtomically(files.path("summary.json"), summaryJson(report));
+    if (covariances && failure.empty()) {
+        covariances->stream() << covariancesText(report);
+        covariances->commit();
+    }
     files.commit();
     if (!failure.empty())
         throw std::runtime_error(settings.input + ": " + failure + " (see " +

@@ -10,6 +10,7 @@ namespace roevo {
 /// What to run, from the command line.
 struct RunSettings {
     std::string input, output_dir, ground_truth, sensor_label;
+    std::string covariances;  ///< file for the poses' covariances; empty: none
     OdometryOptions options;
     std::size_t first = 0, skip = 0;  ///< process at most `first` frames (0: all) after leaving out `skip`
     bool realtime = false;            ///< frames arrive by the clock; those that come too early are dropped
