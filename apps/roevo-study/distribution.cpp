@@ -135,7 +135,7 @@ std::string shown(const std::vector<Spread>& spreads) {
         if (ratios.empty())
             line.insert(line.end(), {"", ""});
         else
-            line.insert(line.end(), {format("%.2f", *median(ratios)), format("%.2f", ratios.back())});
+            line.insert(line.end(), {format("%.3f", *median(ratios)), format("%.3f", ratios.back())});
         line.push_back(format("%.0f %%", std::floor(100 * spread.leastTracked())));
         line.push_back(refusals.empty() ? "0"
                                         : std::to_string(sum(refusals)) + " (" + inWords(refusals) + ")");
@@ -157,7 +157,7 @@ std::string summaryOf(const std::vector<Spread>& spreads) {
     }
     return format(
         "%zu runs, %zu without errors; final poses worse than live ones by more than %.0f %% in %zu, at "
-        "worst %.2f times",
+        "worst %.3f times",
         runs, failed, 100 * (kMostWorse - 1), worse, worst);
 }
 
