@@ -3,9 +3,9 @@ target_include_directories(roevo_test_support PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}
 target_link_libraries(roevo_test_support PUBLIC opencv_core opencv_imgproc opencv_imgcodecs PRIVATE roevo_build_flags)
 
 roevo_test(test_evaluation
-  SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_support.cpp apps/test_ahead.cpp
+  SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_nees.cpp apps/test_support.cpp apps/test_ahead.cpp
           apps/test_run_report.cpp ${PROJECT_SOURCE_DIR}/apps/roevo-odometry/run_report.cpp
-  LIBS roevo roevo_evaluation roevo_programs roevo_test_support)
+  LIBS roevo_internal roevo_evaluation roevo_programs roevo_test_support)
 
 target_include_directories(test_evaluation PRIVATE ${PROJECT_SOURCE_DIR}/apps)
 
@@ -38,8 +38,8 @@ target_include_directories(test_distance_field PRIVATE ${CMAKE_CURRENT_SOURCE_DI
 
 roevo_test(test_study_ablation
   SOURCES apps/test_study_ablation.cpp apps/test_study_efficiency.cpp apps/test_study_points.cpp
-          apps/test_study_viewpoint.cpp
-  LIBS roevo_study roevo_simulator)
+          apps/test_study_viewpoint.cpp apps/test_study_ways.cpp apps/test_study_loop.cpp
+  LIBS roevo_study roevo_simulator roevo_test_support)
 target_include_directories(test_study_ablation PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 
 roevo_test(test_compare

@@ -49,6 +49,9 @@ int run(int argc, char** argv) {
         "--ground-truth", settings.ground_truth,
         "TUM trajectory to compare with (default: <stem>_groundtruth.txt beside a rawlog, groundtruth.txt "
         "in a folder)");
+    app.add_option("--covariances", settings.covariances,
+                   "Write the 6x6 covariance of every pose to this file, too")
+        ->type_name("FILE");
     app.add_option("--first", settings.first, "Process at most this many frames")
         ->check(CLI::NonNegativeNumber);
     app.add_option("--skip", settings.skip, "Leave out this many frames at the start")

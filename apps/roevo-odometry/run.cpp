@@ -17,6 +17,7 @@
 #include "programs/atomic_file.h"
 #include "programs/interrupt.h"
 #include "programs/output_folder.h"
+#include "programs/program.h"
 #include "programs/progress.h"
 #include "programs/whole_outputs.h"
 #include "recordings/frame_source.h"
@@ -46,6 +47,23 @@ std::size_t expectedFrames(const FrameSource& source, const RunSettings& setting
 const std::vector<std::string> kResults = {
     "trajectory.txt", "trajectory_live.txt", "trajectory_robot.txt", "keyframes.txt", "map.3Dscene",
     "map.ply",        "map_semi_dense.ply",  "config_used.ini",      "frames.csv",    "summary.json"};
+
+// The file for covariances, there before any work is done, so that a wrong path costs none.
+void open(std::optional<AtomicFile>& file, const RunSettings& settings) {
+    if (settings.covariances.empty()) return;
+    const auto refuse = [&](const std::string& what) {
+        throw UsageError("--covariances " + settings.covariances + " is " + what + "; give another name");
+    };
+    const auto isAt = [&](const fs::path& other) {
+        return fs::weakly_canonical(settings.covariances) == fs::weakly_canonical(other);
+    };
+    if (isAt(settings.input) || (!settings.ground_truth.empty() && isAt(settings.ground_truth)))
+        refuse("an input");
+    for (const std::string& name : kResults)
+        if (isAt(fs::path(settings.output_dir) / name)) refuse("what the run writes itself");
+    file.emplace(settings.covariances);
+    file->stream();
+}
 
 constexpr double kLongestGap = 1;  // s; a recording that stood still, or a stray stamp, is not waited for
 
@@ -166,33 +184,40 @@ void writeMap(WholeOutputs& files, const RunReport& report, const Odometry& odom
     InterruptGuard::check();
 }
 
+RunReport reportOn(const FrameSource& source, const RunSettings& settings) {
+    RunReport report;
+    report.input = settings.input;
+    report.kind = source.kind();
+    report.camera = source.camera();
+    report.camera_source = source.cameraSource();
+    report.mode = settings.options.mode;
+    return report;
+}
+
+void printInput(const RunReport& report, const FrameSource& source) {
+    std::printf("input       %s (%s), %d x %d, intrinsics from %s\n", report.input.c_str(),
+                report.kind.c_str(), report.camera.width, report.camera.height, report.camera_source.c_str());
+    for (const std::string& note : source.notes()) std::printf("note        %s\n", note.c_str());
+    std::fflush(stdout);
+}
+
 }  // namespace
 
 RunReport runOdometry(const RunSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
     auto source = prefetch(openSource(settings.input, settings.sensor_label));
-    RunReport report;
+    RunReport report = reportOn(*source, settings);
     Odometry odometry(source->camera(), settings.options);
     if (!settings.map_in.empty()) loadMap(settings, odometry, report);
     prepareOutputFolder(settings.output_dir);
     WholeOutputs files(settings.output_dir, kResults);
-    std::optional<AtomicFile> map_file;
-    if (!settings.map_out.empty()) map_file.emplace(settings.map_out).stream();  // else nothing is begun
+    std::optional<AtomicFile> map_file, covariances;  // opened now, else nothing is begun
+    if (!settings.map_out.empty()) map_file.emplace(settings.map_out).stream();
+    open(covariances, settings);
 
-    report.input = settings.input;
-    report.kind = source->kind();
-    report.camera = source->camera();
-    report.camera_source = source->cameraSource();
-    report.mode = settings.options.mode;
     const GroundTruth ground_truth = groundTruthFor(settings.ground_truth, *source);
     report.ground_truth = ground_truth.file;
-    if (!settings.quiet) {
-        std::printf("input       %s (%s), %d x %d, intrinsics from %s\n", report.input.c_str(),
-                    report.kind.c_str(), report.camera.width, report.camera.height,
-                    report.camera_source.c_str());
-        for (const std::string& note : source->notes()) std::printf("note        %s\n", note.c_str());
-    }
-    std::fflush(stdout);
+    if (!settings.quiet) printInput(report, *source);
 
     skipFrames(*source, settings.skip, settings.input);
     processFrames(*source, odometry, settings, report);
@@ -229,6 +254,10 @@ RunReport runOdometry(const RunSettings& settings) {
     writeTextAtomically(files.path("frames.csv"), framesCsv(report));
     report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     writeTextAtomically(files.path("summary.json"), summaryJson(report));
+    if (covariances && failure.empty()) {
+        covariances->stream() << covariancesText(report);
+        covariances->commit();
+    }
     files.commit();
     if (!report.map_out.file.empty()) map_file->commit();
     if (!failure.empty())

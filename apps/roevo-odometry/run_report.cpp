@@ -118,4 +118,21 @@ std::string framesCsv(const RunReport& report) {
     return csv;
 }
 
+std::string covariancesText(const RunReport& report) {
+    std::string text =
+        "# Covariance of each pose T_world_camera, as it was known when its frame was processed\n"
+        "# order: position x y z, orientation x y z; both along the axes of the world of trajectory.txt\n"
+        "# units: m and rad, so m^2, m rad and rad^2; an orientation error phi is meant as R <- exp(phi) R\n"
+        "# timestamp, then the 6x6 matrix row by row: 37 columns\n";
+    for (const FrameRecord& f : report.frames) {
+        if (!f.result.hasPose()) continue;
+        text += format("%.6f", f.result.timestamp);
+        for (int row = 0; row < 6; ++row)
+            for (int column = 0; column < 6; ++column)
+                text += format(" %.9g", f.result.covariance(row, column));
+        text += '\n';
+    }
+    return text;
+}
+
 }  // namespace roevo

@@ -78,6 +78,9 @@ std::string reasonWithoutFile(const std::string& reason);
 /// One row per frame, as the contract has it.
 std::string framesCsv(const RunReport& report);
 
+/// The 6x6 covariance of every pose, as the contract has it.
+std::string covariancesText(const RunReport& report);
+
 /// summary.json.
 std::string summaryJson(const RunReport& report);
 

@@ -14,18 +14,21 @@ bool isPlot(const std::string& file) {
     return std::filesystem::path(file).extension() == ".svg";
 }
 
-// Inside a table a bar would end the cell.
-std::string cell(const std::string& text) {
-    std::string safe;
-    for (const char c : text) safe += c == '|' ? "\\|" : std::string(1, c);
-    return safe;
-}
-
 std::string machineLines() {
     std::string text = "Machine: " + machineText() + ".";
     for (const auto& [name, version] : softwareVersions()) text += ' ' + name + ' ' + version + ';';
     text.back() = '.';
     return text + '\n';
+}
+
+std::string inputTable(const std::vector<StudyInput>& inputs, const std::vector<LeftOut>& left_out) {
+    std::vector<std::vector<std::string>> rows{{"recording", "input", "camera", "ground truth"}};
+    for (const StudyInput& input : inputs)
+        rows.push_back({input.name, input.path,
+                        std::to_string(input.camera.width) + " x " + std::to_string(input.camera.height),
+                        input.ground_truth_note});
+    for (const LeftOut& input : left_out) rows.push_back({"not used", input.name, "", input.reason});
+    return markdownTable(rows);
 }
 
 std::string protocolText() {
@@ -41,6 +44,7 @@ std::string entryText(const IndexEntry& entry) {
     std::string text = "\n## " + entry.title + "\n\n";
     if (!entry.failure.empty()) return text + "Failed: " + entry.failure + "\n";
     text += entry.report.summary + "\n";
+    if (!entry.report.table.empty()) text += "\n" + entry.report.table;
     for (const LeftOut& left_out : entry.report.left_out)
         text += "\n- " + left_out.name + ": left out: " + left_out.reason;
     for (const std::string& note : entry.report.notes) text += "\n- " + note;
@@ -64,14 +68,8 @@ std::vector<std::string> damageLines(const std::vector<StudyInput>& inputs) {
 
 void writeIndex(const std::string& folder, const std::vector<StudyInput>& inputs, const StudyIndex& index) {
     std::string text = "# Study\n\nMade by roevo-study " + std::string(versionText()) + " on " + index.time +
-                       " (UTC)" + ":\n\n    " + index.command + "\n\n" + machineLines() +
-                       "\n| recording | input | camera | ground truth |\n|---|---|---|---|\n";
-    for (const StudyInput& input : inputs)
-        text += "| " + cell(input.name) + " | " + cell(input.path) + " | " +
-                std::to_string(input.camera.width) + " x " + std::to_string(input.camera.height) + " | " +
-                cell(input.ground_truth_note) + " |\n";
-    for (const LeftOut& left_out : index.left_out)
-        text += "| not used | " + cell(left_out.name) + " | | " + cell(left_out.reason) + " |\n";
+                       " (UTC)" + ":\n\n    " + index.command + "\n\n" + machineLines() + "\n" +
+                       inputTable(inputs, index.left_out);
     text += "\n";
     for (const std::string& line : damageLines(inputs)) text += "- " + line + "\n\n";
     text += protocolText();

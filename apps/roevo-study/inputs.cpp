@@ -68,6 +68,8 @@ StudyInput openInput(const std::string& path, const InputSettings& settings,
     input.path = path;
     input.camera = source->camera();
     input.options = settings.options;
+    input.modes = settings.modes;
+    input.truth_noise = settings.truth_noise;
     setGroundTruth(input, settings, *source);
     checkFrames(*source, path);
     input.damage = std::make_shared<RecordingDamage>();

@@ -36,17 +36,23 @@ constexpr char kFooter[] =
     "                 share rightly found under growing change of viewpoint; repeatability*.*\n"
     "  efficiency     registration by organized edges or by a distance field; processor time per stage;\n"
     "                 efficiency*.*\n"
-    "  all            all of these\n"
-    "Each writes CSV tables and SVG plots into the output folder; study.md there explains and lists them. A "
-    "recording\n"
-    "that cannot be used is named, and the others go on. canny, depth-weight and ablation need ground truth. "
-    "Run on an\n"
-    "idle machine for efficiency. Exit code 1 when an experiment could use no recording or a plot is "
-    "missing.";
+    "  all            all of these, which are the paper's\n"
+    "  loop           whether loops are closed; error between start and end of paths that return; loop.*\n"
+    "  sigmas         nothing; squared errors of the motion over 1 s, 3 s and from the start against\n"
+    "                 what its covariance says; sigmas*.*\n"
+    "  distribution   nothing; error of the trajectory (median, least, largest), final against live,\n"
+    "                 what the map refused; distribution*.*\n"
+    "loop, sigmas and distribution run in ba and in tr unless --mode says, and the last two forwards and\n"
+    "backwards, from five starts each (0, 3, 6, 9 and 12 frames left out).\n"
+    "Each writes CSV tables and SVG plots into the output folder; study.md there explains and lists them.\n"
+    "A recording that cannot be used is named, and the others go on. All but repeatability and efficiency\n"
+    "need ground truth for errors. Run on an idle machine for efficiency. Exit code 1 when an experiment\n"
+    "could use no recording or a plot is missing.";
 
 struct Study {
     const char *name, *title;
     Experiment run;
+    bool of_paper = true;  // part of "all"
 };
 constexpr Study kStudies[] = {
     {"canny", "Canny threshold", studyCannyThreshold},
@@ -54,6 +60,9 @@ constexpr Study kStudies[] = {
     {"ablation", "Ablation of coarse tracking", studyAblation},
     {"repeatability", "Repeatability", studyRepeatability},
     {"efficiency", "Efficiency", studyEfficiency},
+    {"sigmas", "Sigmas", studySigmas, false},
+    {"distribution", "Distribution of errors", studyDistribution, false},
+    {"loop", "Paths that return", studyLoop, false},
 };
 
 // What is wrong with the name of an experiment; empty when nothing is.
@@ -69,8 +78,9 @@ std::string faultOfName(const std::string& name) {
 std::vector<Study> chosenStudies(const std::vector<std::string>& names) {
     std::vector<Study> chosen;
     for (const Study& study : kStudies)
-        if (std::any_of(names.begin(), names.end(),
-                        [&](const std::string& name) { return name == study.name || name == "all"; }))
+        if (std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+                return name == study.name || (name == "all" && study.of_paper);
+            }))
             chosen.push_back(study);
     return chosen;
 }
@@ -84,7 +94,7 @@ int runStudies(const std::vector<Study>& studies, const std::vector<StudyInput>&
         entry.title = study.title;
         try {
             entry.report = study.run(inputs, folder);
-            std::printf("%-14s %s\n", study.name, entry.report.summary.c_str());
+            std::printf("%-14s %s\n%s", study.name, entry.report.summary.c_str(), entry.report.table.c_str());
             for (const LeftOut& left_out : entry.report.left_out)
                 std::printf("%-14s %s: left out: %s\n", "", left_out.name.c_str(), left_out.reason.c_str());
             for (const std::string& note : entry.report.notes) std::printf("%-14s %s\n", "", note.c_str());
@@ -105,16 +115,30 @@ int runStudies(const std::vector<Study>& studies, const std::vector<StudyInput>&
     return 0;
 }
 
+// @throws UsageError
+void checkUsage(const InputSettings& settings) {
+    if (!settings.ground_truth.empty() && settings.paths.size() > 1)
+        throw UsageError("--ground-truth is for a single --input, and there are " +
+                         std::to_string(settings.paths.size()));
+    if (!settings.ground_truth.empty() && settings.ignore_ground_truth)
+        throw UsageError("--ground-truth and --no-ground-truth exclude each other");
+    if (settings.first > 0 && settings.first < kFewestFrames)
+        throw UsageError("--first " + std::to_string(settings.first) + ": a study needs at least " +
+                         std::to_string(kFewestFrames) + " frames");
+}
+
 int run(int argc, char** argv) {
     InputSettings settings;
     std::string output, config_file, mode;
     std::vector<std::string> experiments, sets;
+    std::vector<double> truth_sigma{0, 0};
     CLI::App app(
         "The experiments of the ROEVO paper (Liu et al.) on your own recordings: tables (CSV) and plots "
         "(SVG).",
         kName);
     app.add_option("--experiment", experiments,
-                   "canny, depth-weight, ablation, repeatability, efficiency or all; one or more; see below")
+                   "canny, depth-weight, ablation, repeatability, efficiency or all; loop, sigmas, "
+                   "distribution; one or more, see below")
         ->required()
         ->check(faultOfName, "");
     app.add_option("--input", settings.paths, "Recordings: .rawlog files or dataset folders")->required();
@@ -123,13 +147,20 @@ int run(int argc, char** argv) {
     app.add_option("--set", sets, "section.key=value: one option on top of the config; may be repeated")
         ->allow_extra_args(false);
     app.add_option("--mode", mode,
-                   "Of the odometry, where the experiment does not choose it: ct, tr or ba (default)");
+                   "Of the odometry, where the experiment does not choose it: ct, tr or ba (default; "
+                   "loop, sigmas and distribution: ba and tr)");
     app.add_option("--ground-truth", settings.ground_truth,
                    "TUM trajectory to compare with, for a single input (default: what is found beside each)");
     app.add_flag(
         "--no-ground-truth", settings.ignore_ground_truth,
         "Do without, even where some is beside a recording: repeatability is then judged by the odometry's "
         "own poses");
+    app.add_option("--truth-sigma", truth_sigma,
+                   "sigmas: what positions (m) and orientations (degrees) of the ground truth err by, "
+                   "one sigma per axis (default: 0 0, exact)")
+        ->expected(2)
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("M DEG");
     app.add_option("--first", settings.first, "Use at most this many frames of each recording")
         ->check(CLI::NonNegativeNumber);
     app.add_option("--skip", settings.skip, "Leave out this many frames at the start of each")
@@ -141,15 +172,11 @@ int run(int argc, char** argv) {
     std::vector<std::string> words(argv, argv + argc);
     words.front() = kName;
     const std::vector<Study> studies = chosenStudies(experiments);
-    if (!settings.ground_truth.empty() && settings.paths.size() > 1)
-        throw UsageError("--ground-truth is for a single --input, and there are " +
-                         std::to_string(settings.paths.size()));
-    if (!settings.ground_truth.empty() && settings.ignore_ground_truth)
-        throw UsageError("--ground-truth and --no-ground-truth exclude each other");
-    if (settings.first > 0 && settings.first < kFewestFrames)
-        throw UsageError("--first " + std::to_string(settings.first) + ": a study needs at least " +
-                         std::to_string(kFewestFrames) + " frames");
+    checkUsage(settings);
     settings.options = collectOptions(config_file, sets, mode);
+    settings.modes = {Mode::kBundleAdjustment, Mode::kTracking};
+    if (!mode.empty()) settings.modes = {settings.options.mode};
+    settings.truth_noise = {truth_sigma[0], truth_sigma[1] * kDegree};
     cv::setNumThreads(1);  // times are of one core
     StudyIndex index;
     index.command = shellCommand(words);

@@ -10,11 +10,11 @@
 #include "programs/atomic_file.h"
 #include "programs/gnuplot.h"
 #include "programs/program.h"
-#include "roevo/odometry.h"
 
 namespace roevo {
 
-StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options) {
+StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options,
+                        const FrameObserver& observe) {
     Odometry odometry(input.camera, options);
     StudyRun run;
     std::size_t processed = 0;
@@ -25,10 +25,12 @@ StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options)
         const FrameResult result = odometry.processFrame(frame.frame);
         run.tracked += result.status == FrameStatus::kOk || result.status == FrameStatus::kInitialised;
         run.points += result.num_points;
+        if (observe) observe(result, odometry);
         ++processed;
     }
     if (processed > 0) run.points /= static_cast<double>(processed);
     run.trajectory = odometry.trajectory();
+    run.live = odometry.liveTrajectory();
     for (const KeyframeInfo& keyframe : odometry.keyframes())
         run.keyframe_times.push_back(keyframe.timestamp);
     if (input.ground_truth.empty()) {
@@ -84,6 +86,24 @@ void CsvTable::write(const std::string& path) const {
 
 std::string CsvTable::number(std::optional<double> value, int digits) {
     return value && std::isfinite(*value) ? format("%.*g", digits, *value) : "";
+}
+
+std::string markdownTable(const std::vector<std::vector<std::string>>& rows) {
+    std::string text;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        text += '|';
+        for (const std::string& field : rows[r]) {
+            text += ' ';
+            for (const char c : field) text += c == '|' ? "\\|" : std::string(1, c);  // would end the cell
+            text += field.empty() ? "|" : " |";
+        }
+        text += '\n';
+        if (r > 0) continue;
+        text += '|';
+        for (std::size_t i = 0; i < rows[r].size(); ++i) text += "---|";
+        text += '\n';
+    }
+    return text;
 }
 
 void addPlot(StudyReport& report, const std::string& folder, const std::string& name,

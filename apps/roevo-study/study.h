@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/nees.h"
 #include "recordings/frame_source.h"
 #include "roevo/camera/pinhole_camera.h"
+#include "roevo/odometry.h"
 #include "roevo/options.h"
 #include "roevo/types.h"
 
@@ -32,6 +34,8 @@ struct StudyInput {
     std::vector<StampedPose> ground_truth;    ///< T_world_camera in time order; empty: none
     std::string ground_truth_note;            ///< where it comes from, or why there is none
     OdometryOptions options;                  ///< from --config and --set
+    std::vector<Mode> modes;                  ///< for experiments that compare them
+    TruthNoise truth_noise;                   ///< of the ground truth, from --truth-sigma
     std::shared_ptr<RecordingDamage> damage;  ///< known once it has been read; may be absent
 };
 
@@ -44,6 +48,7 @@ struct LeftOut {
 /// What an experiment has to say once its tables and plots are in the folder.
 struct StudyReport {
     std::string summary;             ///< one line for the terminal, with the figures that matter
+    std::string table;               ///< Markdown, for the terminal and the index; mostly empty
     std::vector<std::string> files;  ///< names in the folder: CSV and SVG, in the order of the index
     std::vector<std::string> notes;  ///< what a reader must know: no ground truth, frames left out
     std::vector<LeftOut> left_out;   ///< recordings that it could not measure anything on
@@ -59,6 +64,9 @@ StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::s
 StudyReport studyAblation(const std::vector<StudyInput>& inputs, const std::string& folder);
 StudyReport studyRepeatability(const std::vector<StudyInput>& inputs, const std::string& folder);
 StudyReport studyEfficiency(const std::vector<StudyInput>& inputs, const std::string& folder);
+StudyReport studySigmas(const std::vector<StudyInput>& inputs, const std::string& folder);
+StudyReport studyDistribution(const std::vector<StudyInput>& inputs, const std::string& folder);
+StudyReport studyLoop(const std::vector<StudyInput>& inputs, const std::string& folder);
 
 /// Measures on each input. One that fails becomes a line of the report, and the others go on; `measure` must
 /// not have added anything to the tables by then.
@@ -68,14 +76,17 @@ void forEachInput(const std::vector<StudyInput>& inputs, StudyReport& report,
 
 /// One run of the odometry over an input.
 struct StudyRun {
-    std::vector<StampedPose> trajectory;
+    std::vector<StampedPose> trajectory, live;
     std::vector<double> keyframe_times;    ///< s, ascending
     std::size_t frames = 0, tracked = 0;   ///< tracked: measured, or the first; the others are not
     double points = 0;                     ///< on organized edges, mean over the frames
     std::optional<Evaluation> evaluation;  ///< none without ground truth, see `fault`
     std::string fault;                     ///< why there is no evaluation, in words
 };
-StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options);
+using FrameObserver = std::function<void(const FrameResult&, const Odometry&)>;
+/// @param observe  is shown every frame once it was processed
+StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options,
+                        const FrameObserver& observe = {});
 
 /// Rows of a CSV file, held until all are there.
 class CsvTable {
@@ -95,6 +106,9 @@ class CsvTable {
     std::size_t columns_;
     std::string text_;
 };
+
+/// A table for the index and the terminal. @param rows  the first is the head
+std::string markdownTable(const std::vector<std::vector<std::string>>& rows);
 
 /// Draws `folder`/`name` with gnuplot and lists it in the report; what hinders it goes into plot_fault,
 /// because the tables are worth having without it.

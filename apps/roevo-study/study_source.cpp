@@ -37,7 +37,7 @@ class WatchedSource : public ForwardingSource {
     bool next(SourceFrame& frame) override {
         if (!ForwardingSource::next(frame)) {
             seen_.warning = warning();
-            *damage_ = seen_;
+            if (seen_.frames >= damage_->frames) *damage_ = seen_;  // else frames were left out
             return false;
         }
         ++seen_.frames;

@@ -5,6 +5,12 @@
 #include <tuple>
 
 namespace roevo {
+namespace {
+
+constexpr double kLargestGap = 0.1;    // s
+constexpr double kClockJitter = 2e-3;  // s
+
+}  // namespace
 
 std::vector<StampMatch> associateStamps(const std::vector<double>& first, const std::vector<double>& second,
                                         double max_difference) {
@@ -44,6 +50,30 @@ std::vector<PosePair> associate(const std::vector<StampedPose>& reference,
     for (const StampMatch& match : associateStamps(stampsOf(estimate), stampsOf(reference), max_dt))
         pairs.push_back({match.second, match.first});
     return pairs;
+}
+
+std::optional<Pose> poseAt(const std::vector<StampedPose>& trajectory, double time) {
+    const auto next =
+        std::lower_bound(trajectory.begin(), trajectory.end(), time,
+                         [](const StampedPose& pose, double bound) { return pose.timestamp < bound; });
+    const auto isNear = [&](const StampedPose& pose) {
+        return std::abs(pose.timestamp - time) <= kClockJitter;
+    };
+    if (next == trajectory.begin() || next == trajectory.end()) {
+        if (trajectory.empty()) return std::nullopt;
+        const StampedPose& end = next == trajectory.end() ? trajectory.back() : trajectory.front();
+        return isNear(end) ? std::make_optional(end.T_world_camera) : std::nullopt;
+    }
+    const StampedPose &a = *(next - 1), &b = *next;
+    const double gap = b.timestamp - a.timestamp;
+    if (gap > kLargestGap)
+        return isNear(b)   ? std::make_optional(b.T_world_camera)
+               : isNear(a) ? std::make_optional(a.T_world_camera)
+                           : std::nullopt;
+    const double share = (time - a.timestamp) / gap;
+    const Pose &from = a.T_world_camera, &to = b.T_world_camera;
+    return Pose(from.rotation().slerp(share, to.rotation()),
+                (1 - share) * from.translation() + share * to.translation());
 }
 
 }  // namespace roevo

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "roevo/types.h"
@@ -39,5 +40,9 @@ struct PosePair {
 /// @return pairs in time order; possibly none
 std::vector<PosePair> associate(const std::vector<StampedPose>& reference,
                                 const std::vector<StampedPose>& estimate, double max_dt);
+
+/// Where a trajectory, sorted by time, was at a time: between its two poses around it, which are at most
+/// 0.1 s apart, as if the camera had moved evenly. None elsewhere; ends reach 2 ms further.
+std::optional<Pose> poseAt(const std::vector<StampedPose>& trajectory, double time);
 
 }  // namespace roevo

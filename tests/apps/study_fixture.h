@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "study.h"
 #include "support/csv_lines.h"
 #include "support/run_program.h"
+#include "support/tum_folder.h"
 
 namespace roevo::test {
 
@@ -20,6 +22,25 @@ inline testing::Sequence room(int frames) {
     simulator::SimulationOptions options = testing::smallRoom();
     options.useKinectNoise();
     return testing::simulate(options, frames);
+}
+
+/// What slidingRecording() draws, in no time: a camera that slides sideways before a wall, without noise.
+inline testing::Sequence sliding(int frames) {
+    testing::Sequence sequence;
+    sequence.camera.width = 320;
+    sequence.camera.height = 240;
+    sequence.camera.fx = sequence.camera.fy = 300;
+    sequence.camera.cx = 160;
+    sequence.camera.cy = 120;
+    for (const TumFrame& drawn : slidingRecording(frames)) {
+        RgbdFrame frame{drawn.timestamp, {}, {}, {}};
+        cv::cvtColor(drawn.colour, frame.grey, cv::COLOR_BGR2GRAY);
+        drawn.depth.convertTo(frame.depth, CV_32F, 1 / 5000.);
+        const double x = 0.01 * static_cast<double>(sequence.frames.size());
+        sequence.truth.push_back({drawn.timestamp, Pose(Eigen::Translation3d(x, 0, 0))});
+        sequence.frames.push_back(frame);
+    }
+    return sequence;
 }
 
 /// An experiment on recordings in memory, with a folder for what it writes.

@@ -1,4 +1,8 @@
+#include <Eigen/Core>
+#include <cmath>
 #include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
 
 #include "evaluation/trajectory_io.h"
 #include "odometry_fixture.h"
@@ -109,6 +113,69 @@ TEST_F(OdometryProgram, FirstAndSkipChooseFrames) {
     ASSERT_EQ(rows().size(), 4u);
     EXPECT_EQ(rows()[0][0], "100.100000");
     expectError(run(folder_ / "recording", {"--skip", "13"}), 1, kName, {"--skip", "12 frames"});
+}
+
+TEST_F(OdometryProgram, CovariancesAreOneRowPerPose) {
+    std::vector<test::TumFrame> frames = slidingRecording(10);
+    frames[4].depth = cv::Mat(7, 7, CV_16UC1, cv::Scalar(5000));  // rejected: no pose, no row
+    const std::string file = folder_ / "covariances.txt";
+    ASSERT_EQ(runFrames(frames, {"--covariances", file}).exit_code, 0);
+    const auto poses = readTumTrajectory(output() + "/trajectory.txt");
+    ASSERT_EQ(poses.size(), 9u);
+    std::istringstream text(readFile(file));
+    std::string line, head;
+    std::size_t row = 0, in_csv = 0;
+    while (std::getline(text, line)) {
+        if (line[0] == '#') {
+            EXPECT_EQ(row, 0u);
+            head += line;
+            continue;
+        }
+        std::istringstream numbers(line);
+        std::vector<double> values;
+        for (double value; numbers >> value;) values.push_back(value);
+        ASSERT_TRUE(numbers.eof()) << line;
+        ASSERT_EQ(values.size(), 37u);
+        EXPECT_NEAR(values[0], poses.at(row++).timestamp, 1e-9);
+        const Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> covariance(&values[1]);
+        EXPECT_EQ(covariance, covariance.transpose());
+        if (row > 1) {
+            EXPECT_GT(covariance.diagonal().minCoeff(), 0);
+        }
+        // As frames.csv has it
+        while (rows().at(in_csv)[1] == "rejected") ++in_csv;
+        EXPECT_NEAR(std::sqrt(covariance.topLeftCorner<3, 3>().trace()), std::stod(rows()[in_csv][8]), 1e-6);
+        EXPECT_NEAR(std::sqrt(covariance.bottomRightCorner<3, 3>().trace()) / kDegree,
+                    std::stod(rows()[in_csv++][9]), 1e-5);
+    }
+    EXPECT_EQ(row, poses.size());
+    for (const char* words : {"position", "orientation", "axes of the world", "m^2", "rad^2", "timestamp"})
+        EXPECT_NE(head.find(words), std::string::npos) << words;
+}
+
+TEST_F(OdometryProgram, CovariancesThatCannotBeWrittenCostNoWork) {
+    test::writeTumFolder(folder_ / "recording", slidingRecording(3));
+    const auto refused = [&](const std::string& file, const std::vector<std::string>& words) {
+        expectError(run(folder_ / "recording", {"--covariances", file}),
+                    words.front() == "--covariances" ? 2 : 1, kName, words);
+        EXPECT_FALSE(fs::exists(output() + "/trajectory.txt"));
+    };
+    refused(folder_ / "none/c.txt", {"cannot write", "none/c.txt", "No such file"});
+    refused(folder_.path().string(), {"cannot write", "it is a folder"});
+    refused(output() + "/../out/frames.csv", {"--covariances", "frames.csv", "the run writes itself"});
+    refused(folder_ / "recording", {"--covariances", "an input"});
+    // In the output folder is as good a place as any
+    ASSERT_EQ(run(folder_ / "recording", {"--covariances", output() + "/c.txt"}).exit_code, 0);
+    const std::string before = readFile(output() + "/c.txt");
+    EXPECT_FALSE(before.empty());
+    // A run that fails leaves what was there
+    for (const char* name : {"0000.png", "0001.png", "0002.png"})
+        cv::imwrite(folder_ / ("recording/depth/" + std::string(name)),
+                    cv::Mat(7, 7, CV_16UC1, cv::Scalar(5000)));
+    ASSERT_EQ(run(folder_ / "recording", {"--covariances", output() + "/c.txt"}).exit_code, 1);
+    EXPECT_EQ(readFile(output() + "/c.txt"), before);
+    for (const auto& entry : fs::directory_iterator(output()))
+        EXPECT_EQ(entry.path().filename().string().find(".partial"), std::string::npos) << entry.path();
 }
 
 TEST_F(OdometryProgram, QuietSaysNothing) {

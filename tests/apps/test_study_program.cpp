@@ -134,6 +134,30 @@ TEST_F(StudyProgram, Repeatability) {
     expectPlot("repeatability_recordings.svg");
 }
 
+TEST_F(StudyProgram, SigmasAndDistribution) {
+    write(6);
+    const ProgramResult result =
+        run("sigmas", {"--experiment", "distribution", "--mode", "tr", "--truth-sigma", "0.002", "0.2"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    for (const char* text : {"sigmas  ", "distribution  ", "| recording | tr | "})
+        EXPECT_NE(result.out.find(text), std::string::npos) << text << " in\n" << result.out;
+    EXPECT_NE(index().find("| recording | mode | over 1 s | over 3 s | from the start |\n|---|"),
+              std::string::npos)
+        << index();
+    const auto sigmas = table("sigmas.csv");
+    ASSERT_EQ(sigmas.size(), 3u);
+    EXPECT_EQ(number(sigmas[2], "truth_sigma_m"), 0.002);
+    EXPECT_EQ(number(sigmas[2], "truth_sigma_deg"), 0.2);
+    EXPECT_EQ(table("sigmas_runs.csv").size(), 4u * 3) << "from frames 0 and 3, both ways";
+    EXPECT_EQ(table("distribution.csv").size(), 1u);
+    EXPECT_EQ(table("distribution_runs.csv").size(), 4u);
+    expectPlot("sigmas.svg");
+    expectPlot("distribution.svg");
+    expectError(run("sigmas", {"--truth-sigma", "-1", "0"}), 2, kName, {"--truth-sigma", "-1"});
+    expectError(run("sigmas", {"--truth-sigma", "1"}), 2, kName, {"--truth-sigma", "2"});
+    expectError(run("sigmas", {"--no-ground-truth"}), 1, kName, {"sigmas: recording", "no ground truth"});
+}
+
 TEST_F(StudyProgram, NoGroundTruthIsSaidAndErrorsStayEmpty) {
     write(4);
     std::filesystem::remove(folder_ / "recording/groundtruth.txt");

@@ -9,9 +9,9 @@
 #include "repeatability/bins.h"
 #include "repeatability/judge.h"
 #include "repeatability/measure.h"
-#include "tracking/se3.h"
 #include "support/data_folder.h"
 #include "support/tum_folder.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {

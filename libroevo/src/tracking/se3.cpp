@@ -30,10 +30,4 @@ Pose interpolate(const Pose& a, const Pose& b, double share) {
     return between;
 }
 
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-    Eigen::Matrix3d m;
-    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-    return m;
-}
-
 }  // namespace roevo

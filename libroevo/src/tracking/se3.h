@@ -19,6 +19,10 @@ double imageMotion(const Pose& a, const Pose& b, double focal_length, double dep
 Pose interpolate(const Pose& a, const Pose& b, double share);
 
 /// Matrix of the cross product.
-Eigen::Matrix3d skew(const Eigen::Vector3d& v);
+inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+    Eigen::Matrix3d m;
+    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+    return m;
+}
 
 }  // namespace roevo
