@@ -1,7 +1,7 @@
 # Shared by demo.sh and test.sh (sourced): installs what is missing from Debian and builds a preset.
 
 roevo_packages="build-essential cmake ninja-build ccache git pkg-config libmrpt-dev mrpt-common mrpt-apps libopencv-dev
-    libceres-dev libeigen3-dev libgtest-dev libbenchmark-dev libcli11-dev nlohmann-json3-dev zlib1g-dev
+    libceres-dev libeigen3-dev libgtest-dev libbenchmark-dev libcli11-dev nlohmann-json3-dev zlib1g-dev libjpeg-dev
     librosbag-storage-dev libsensor-msgs-dev libtf2-msgs-dev gnuplot-nox python3-numpy"
 
 say() { printf '\n== %s\n' "$*"; }

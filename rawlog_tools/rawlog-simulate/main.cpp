@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "layout.h"
+#include "programs/interrupt.h"
 #include "programs/program.h"
 #include "programs/progress.h"
 #include "recording.h"
@@ -111,6 +112,7 @@ int run(int argc, char** argv) {
     simulator::SimulationOptions options = arguments.options;
     options.threads = 1;
     const simulator::Simulator simulator(options);
+    const InterruptGuard guard;
     const std::unique_ptr<Recording> recording =
         openRecording(arguments.layout, arguments.output, options, simulator.camera());
     Progress progress("simulating", static_cast<size_t>(simulator.numFrames()));
@@ -122,6 +124,7 @@ int run(int argc, char** argv) {
         for (; started < simulator.numFrames() && started < i + workers; ++started)
             ahead.push_back(
                 std::async(std::launch::async, [&simulator, started] { return simulator.frame(started); }));
+        InterruptGuard::check();
         const simulator::SimulatedFrame frame = ahead.front().get();
         ahead.pop_front();
         recording->add(frame);

@@ -9,7 +9,7 @@
 namespace roevo {
 namespace {
 
-constexpr auto kLast = Fault::Kind::kUnconfirmed;
+constexpr auto kLast = Fault::Kind::kTimeLeap;
 
 /// How many numbers are part of the words. The compiler asks here for kinds that come to be.
 std::size_t numbersOf(Fault::Kind kind) {
@@ -21,6 +21,7 @@ std::size_t numbersOf(Fault::Kind kind) {
         case Kind::kDepthContradicts:
         case Kind::kGap:
         case Kind::kUnconfirmed:
+        case Kind::kTimeLeap:
             return 1;
         case Kind::kFewPointsWithDepth:
         case Kind::kFewPointsInView:
@@ -37,6 +38,7 @@ std::size_t numbersOf(Fault::Kind kind) {
         case Kind::kNoDepth:
         case Kind::kCoarseAstray:
         case Kind::kDiverged:
+        case Kind::kFrozen:
             return 0;
     }
     return 0;

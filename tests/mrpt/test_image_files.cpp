@@ -71,6 +71,28 @@ TEST_F(ImageFiles, AFlippedBitInAPng) {
     }
 }
 
+// A decoder makes pixels of whatever is there: OpenCV's picture of such a file moved a trajectory by 2 cm
+TEST_F(ImageFiles, BytesOverwrittenInAJpeg) {
+    constexpr std::size_t kOverwritten = 40;
+    for (const char* name : {"colour.jpg", "progressive.jpg"}) {
+        const std::string whole = readFile(folder_ / name);
+        for (std::size_t at = whole.size() / 3; at + kOverwritten < whole.size(); at += 61) {
+            std::string spoilt = whole;
+            for (std::size_t i = 0; i < kOverwritten; ++i)
+                spoilt[at + i] = static_cast<char>((37 * (at + i) + i * i) % 251);
+            EXPECT_EQ(fault(spoilt).rfind("cannot decode image (", 0), 0u) << name << ", byte " << at;
+        }
+    }
+}
+
+TEST_F(ImageFiles, ACameraMayPadItsJpegs) {
+    std::string padded = readFile(folder_ / "colour.jpg");
+    padded.insert(padded.size() - 2, 2, '\0');  // before "end of image"
+    EXPECT_EQ(fault(padded), "");
+    (void)::testing::internal::GetCapturedStderr();  // OpenCV may warn of it
+    ::testing::internal::CaptureStderr();
+}
+
 TEST_F(ImageFiles, OtherFiles) {
     EXPECT_EQ(fault("no image at all"),
               "cannot decode image (damaged or not an image): " + (folder_ / "spoilt"));

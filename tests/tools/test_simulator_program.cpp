@@ -104,6 +104,20 @@ TEST_F(SimulateProgram, UnwritableOutputIsOneLineAndLeavesNothing) {
     EXPECT_EQ(contents(path("used/precious")), "keep me");
 }
 
+// A signal left s.rawlog.part behind
+TEST_F(SimulateProgram, AnInterruptionLeavesNothing) {
+    const std::string rawlog = path("s.rawlog");
+    const std::string command = std::string(ROEVO_BIN_DIR) +
+                                "/rawlog-simulate --scene shadows --size 64x48 --frames 100000 --output " +
+                                rawlog + " >" + path("stdout") + " 2>" + path("stderr") +
+                                " & child=$!; for i in $(seq 400); do [ -e " + rawlog +
+                                ".part ] && break; sleep 0.05; done; kill -TERM $child; wait $child";
+    const int status = std::system(command.c_str());
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 1);
+    EXPECT_NE(contents(path("stderr")).find("interrupted; nothing was written"), std::string::npos);
+    EXPECT_FALSE(fs::exists(rawlog) || fs::exists(rawlog + ".part"));
+}
+
 TEST_F(SimulateProgram, LoopIsOfTheSceneBlockOnly) {
     EXPECT_EQ(run("--scene corridor --path loop --layout tum --output " + path("folder")), 1);
     EXPECT_EQ(

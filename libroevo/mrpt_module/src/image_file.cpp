@@ -11,6 +11,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "jpeg_damage.h"
+
 namespace roevo {
 namespace {
 
@@ -95,7 +97,11 @@ std::vector<std::uint8_t> readImageFile(const std::string& file) {
 std::string imageDamage(const std::vector<std::uint8_t>& bytes) {
     constexpr std::array<std::uint8_t, 3> kJpegHead = {0xff, 0xd8, 0xff};
     if (startsWith(bytes, kPngHead.data(), kPngHead.size())) return pngDamage(bytes);
-    if (startsWith(bytes, kJpegHead.data(), kJpegHead.size())) return jpegDamage(bytes);
+    if (startsWith(bytes, kJpegHead.data(), kJpegHead.size())) {
+        if (std::string damage = jpegDamage(bytes); !damage.empty()) return damage;
+        const std::string damage = jpegDataDamage(bytes);
+        return damage.empty() ? "" : "damaged: " + damage;
+    }
     return "";
 }
 

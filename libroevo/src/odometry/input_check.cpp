@@ -1,6 +1,7 @@
 #include "input_check.h"
 
 #include <cmath>
+#include <cstring>
 
 namespace roevo {
 
@@ -22,6 +23,13 @@ Fault inputFault(const RgbdFrame& frame, const PinholeCamera& camera, double las
     if (frame.depth.type() != CV_32FC1) return {Kind::kDepthType, {}};
     if (!fits(frame.depth)) return sizes(Kind::kDepthSize, frame.depth);
     return {};
+}
+
+bool sameBytes(const cv::Mat& a, const cv::Mat& b) {
+    if (a.size() != b.size()) return false;
+    for (int y = 0; y < a.rows; ++y)
+        if (std::memcmp(a.ptr(y), b.ptr(y), static_cast<std::size_t>(a.cols)) != 0) return false;
+    return true;
 }
 
 }  // namespace roevo

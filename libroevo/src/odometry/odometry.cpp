@@ -1,5 +1,6 @@
 #include "roevo/odometry.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -36,12 +37,17 @@ struct Odometry::Impl {
     std::unique_ptr<Frame> frame = std::make_unique<Frame>(), frame_before = std::make_unique<Frame>();
     std::optional<Tracking> candidate;  // of the frame before, if it can still become a keyframe
     double last_timestamp = -std::numeric_limits<double>::infinity();
+    std::optional<double> leap;  // s, stamp of the frame before, if it was not believed
     double edges_ms = 0;
+    bool measured = false;  // the frame's pose was
     int lost_frames = 0;
     double lost_since = 0;  // s
 
     FrameResult processFrame(const RgbdFrame& images);
+    void expect(double timestamp);
     void prepare(const RgbdFrame& images);
+    Fault stampFault(double timestamp);
+    Outcome frozen(double timestamp);
     Outcome start();
     Tracking track(const Prediction& prediction);
     Tracking confirmed(Tracking tracking, const Prediction& prediction);
@@ -60,6 +66,8 @@ struct Odometry::Impl {
 FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     if (const Fault fault = inputFault(images, camera, last_timestamp))
         return rejected(images.timestamp, fault);
+    if (const Fault fault = stampFault(images.timestamp)) return rejected(images.timestamp, fault);
+    if (measured && sameBytes(images.grey, frame->images.grey)) return report(frozen(images.timestamp));
     prepare(images);  // Sec. IV
     if (world.empty()) return report(start());
     const Prediction prediction = motion.predict(images.timestamp);
@@ -79,10 +87,26 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     return result;
 }
 
+/// One damaged stamp far ahead would have all frames after it rejected, as going backward. A frame that leaps
+/// ahead is not believed until the next one comes soon after it.
+Fault Odometry::Impl::stampFault(double timestamp) {
+    constexpr double kLeap = 60;  // s
+    const double last = leap && timestamp > *leap ? *leap : last_timestamp;
+    leap.reset();
+    const double ahead = timestamp - last;
+    if (world.empty() || ahead <= kLeap) return {};
+    leap = timestamp;
+    return {Fault::Kind::kTimeLeap, {static_cast<int>(std::min(ahead, 1e9))}};
+}
+
+void Odometry::Impl::expect(double timestamp) {
+    last_timestamp = timestamp;
+    motion.expect(timestamp);
+    world.advance(timestamp, motion.secondsPerRow());
+}
+
 void Odometry::Impl::prepare(const RgbdFrame& images) {
-    last_timestamp = images.timestamp;
-    motion.expect(images.timestamp);
-    world.advance(images.timestamp, motion.secondsPerRow());
+    expect(images.timestamp);
     const Stopwatch watch;
     std::swap(frame, frame_before);
     front_end.process(images, *frame);
@@ -93,9 +117,26 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
     Tracking tracking = tracker->track(world.reference(), *frame, prediction);
     if (tracking.lost())
         tracking = tracker->search(world.reference(), *frame, prediction, std::move(tracking));
-    if (tracking.tracked && prediction.blind && options.loss.recognise)
+    if (tracking.tracked && (prediction.blind || tracking.searched) && options.loss.recognise)
         tracking = confirmed(std::move(tracking), prediction);
     return tracking;
+}
+
+/// What the camera has seen before tells nothing of where it is now, and is not tracked: it would be taken
+/// for standing still.
+Outcome Odometry::Impl::frozen(double timestamp) {
+    expect(timestamp);
+    edges_ms = 0;
+    const Prediction prediction = motion.predict(timestamp);
+    Outcome outcome;
+    outcome.status = FrameStatus::kPredicted;
+    outcome.tracking.fault.kind = Fault::Kind::kFrozen;
+    Vector6d sigma;
+    sigma << Eigen::Vector3d::Constant(prediction.prior.sigma_translation),
+        Eigen::Vector3d::Constant(prediction.prior.sigma_rotation);
+    outcome.tracking.pose = {
+        world.reference().id, prediction.T_reference_camera, {Matrix6d(sigma.cwiseAbs2().asDiagonal()), {}}};
+    return outcome;
 }
 
 Outcome Odometry::Impl::start() {
@@ -118,7 +159,8 @@ Outcome Odometry::Impl::start() {
     return outcome;
 }
 
-/// After a gap in time any pose may look right to tracking: the edges must agree without what is likely.
+/// After a gap in time, and to a search, any pose may look right: the edges must agree without what is
+/// likely.
 Tracking Odometry::Impl::confirmed(Tracking tracking, const Prediction& prediction) {
     const int gap_ms = static_cast<int>(1e3 * prediction.since_measured);
     const auto pose = world.confirm(*frame, tracking.pose.T_keyframe_camera);
@@ -207,7 +249,13 @@ void Odometry::Impl::renewReference(Outcome& outcome) {
         tracker->trackFrom(world.reference(), *frame, prediction, tracking.pose.T_keyframe_camera);
     again.ms_coarse += tracking.ms_coarse;
     again.ms_fine += tracking.ms_fine;
-    if (!again.tracked) return;
+    if (!again.tracked) {
+        // What is seen from afar should be seen from nearby
+        outcome.not_from_newest = again.fault;
+        tracking.doubt();
+        tracking.matches = {};  // with another keyframe
+        return;
+    }
     learn(again, prediction);
     again.searched = tracking.searched;
     again.fault = tracking.fault;
@@ -255,7 +303,7 @@ FrameResult Odometry::Impl::report(const Outcome& outcome) {
     const Tracking& tracking = outcome.tracking;
     const auto change = world.changes();
     FrameResult result;
-    result.timestamp = frame->timestamp();
+    result.timestamp = last_timestamp;
     result.status = outcome.status;
     result.num_edges = frame->edges.numEdges();
     result.num_points = static_cast<int>(frame->edges.size());
@@ -264,8 +312,11 @@ FrameResult Odometry::Impl::report(const Outcome& outcome) {
         result.reason = "cannot start here: " + describe(tracking.fault);
         return result;
     }
-    const bool measured = outcome.status != FrameStatus::kPredicted && outcome.status != FrameStatus::kLost;
-    world.addFrame(result.timestamp, tracking.pose, measured);
+    const bool is_measured =
+        outcome.status != FrameStatus::kPredicted && outcome.status != FrameStatus::kLost;
+    // A frozen frame leaves the one before it as the last that was looked at
+    if (outcome.tracking.fault.kind != Fault::Kind::kFrozen) measured = is_measured;
+    world.addFrame(result.timestamp, tracking.pose, is_measured);
     result.reason = describe(outcome, change);
     result.T_world_camera = world.trajectory().worldPose(tracking.pose);
     result.covariance = world.trajectory().worldCovariance(tracking.pose);

@@ -34,6 +34,8 @@ std::string describe(const Outcome& outcome, const WorldChange& change) {
     if (outcome.tracking.tracked && outcome.tracking.depth_fault)
         add(describe(outcome.tracking.depth_fault) +
             (outcome.tracking.doubtful ? "; the pose is doubtful" : ", and it is left out"));
+    if (outcome.not_from_newest)
+        add("not found again from the newest keyframe, and doubtful: " + describe(outcome.not_from_newest));
     if (change.joined_at >= 0)
         add("the new track is joined to the old one at keyframe " + std::to_string(change.joined_at));
     if (change.closed_at >= 0) add("a loop is closed to keyframe " + std::to_string(change.closed_at));

@@ -11,6 +11,7 @@ struct Outcome {
     Tracking tracking;          ///< its pose is relative to the present reference
     PoseUncertainty measured;   ///< of the pose, also where that has become the reference
     Fault no_keyframe;          ///< why a keyframe that is due was not made
+    Fault not_from_newest;      ///< why the frame was not tracked from the keyframe that it brought
     bool is_keyframe = false;   ///< the frame is the reference now
     bool new_keyframe = false;  ///< this frame brought a new keyframe: itself or the frame before it
     int lost_frames = 0;        ///< until this one

@@ -45,8 +45,14 @@ std::string describe(const Fault& fault) {
             return "the depth image contradicts the keyframe's: " + number(0) + " % of the points agree";
         case Kind::kGap:
             return "a gap of " + number(0) + " ms";
+        case Kind::kTimeLeap:
+            return "time stamp leaps ahead by " + number(0) +
+                   " s; the next frame tells whether it is damaged";
+        case Kind::kFrozen:
+            return "the image is the same as the one before it: a frozen camera, or one at rest without "
+                   "noise";
         case Kind::kUnconfirmed:
-            return "the edges do not confirm a pose after a gap of " + number(0) + " ms";
+            return "the edges do not confirm a pose " + number(0) + " ms after the last";
     }
     return "unknown fault";
 }

@@ -28,7 +28,9 @@ struct Fault {
         kDiverged,
         kDepthContradicts,  ///< number: share of points whose depths agree, percent
         kGap,               ///< number: how long no pose was measured, ms
-        kUnconfirmed        ///< the same
+        kUnconfirmed,       ///< the same
+        kFrozen,
+        kTimeLeap  ///< number: by how much the stamp is ahead, s
     };
     Kind kind = Kind::kNone;
     std::array<int, 4> numbers{};

@@ -51,6 +51,13 @@ PoseUncertainty photometricUncertainty(const Keyframe& reference, const Frame& f
 
 }  // namespace
 
+void Tracking::doubt() {
+    doubtful = true;
+    auto variances = pose.uncertainty.independent.diagonal().array();
+    variances.head<3>() += kDoubtfulPosition * kDoubtfulPosition;
+    variances.tail<3>() += kDoubtfulTurn * kDoubtfulTurn;
+}
+
 Tracker::Tracker(const PinholeCamera& camera, const OdometryOptions& options)
     : camera_(camera),
       ideal_(camera.undistorted()),
@@ -171,11 +178,7 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
     out.depth_fault = contradiction;
     out.pose.T_keyframe_camera = found.T_current_keyframe.inverse();
     out.pose.uncertainty = found.uncertainty;
-    if (out.doubtful) {
-        out.pose.uncertainty.independent.diagonal().head<3>().array() +=
-            kDoubtfulPosition * kDoubtfulPosition;
-        out.pose.uncertainty.independent.diagonal().tail<3>().array() += kDoubtfulTurn * kDoubtfulTurn;
-    }
+    if (out.doubtful) out.doubt();
     return {};
 }
 

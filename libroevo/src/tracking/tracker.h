@@ -29,6 +29,8 @@ struct Tracking {
         tracked = false;
         fault = why;
     }
+    /// The pose may be far off: its sigma says so.
+    void doubt();
     double matchedRatio() const { return matches.matchedRatio(); }
 };
 
