@@ -25,7 +25,7 @@ simulator::SimulationOptions noisyRoom(unsigned seed, double speed) {
 
 /// What is mapped, and the same room on another day: other tremor, faster, further.
 const Sequence& yesterday() {
-    static const Sequence sequence = simulate(noisyRoom(1, 0.45), 60);
+    static const Sequence sequence = simulate(noisyRoom(1, 0.45), 40);
     return sequence;
 }
 const Sequence& today() {
@@ -36,7 +36,7 @@ const Sequence& elsewhere() {
     static const Sequence sequence = [] {
         simulator::SimulationOptions options = noisyRoom(3, 0.45);
         options.scene = "corridor";
-        return simulate(options, 30);
+        return simulate(options, 20);
     }();
     return sequence;
 }
@@ -44,6 +44,7 @@ const Sequence& elsewhere() {
 OdometryOptions optionsOf(Mode mode) {
     OdometryOptions options;
     options.mode = mode;
+    options.keyframe.max_translation = 0.05;  // more of them in less time
     return options;
 }
 
@@ -127,15 +128,13 @@ TEST_P(MapFile, ARecordingThatBeginsElsewhereIsJoined) {
     Odometry odometry = odometryOf(today());
     const int keyframes = load(odometry, map());
     int joined_at = -1;
-    std::size_t begun = today().frames.size();
     for (std::size_t i = today().frames.size(); i-- > 0;) {
         RgbdFrame frame = today().frames[i];
         frame.timestamp = 100 - frame.timestamp;
         const FrameResult result = odometry.processFrame(frame);
         EXPECT_TRUE(result.hasPose()) << result.reason;
-        if (begun == today().frames.size()) begun = i;
-        if (result.joined_at >= 0) joined_at = result.joined_at;
-        if (result.found_at >= 0) joined_at = result.found_at;
+        EXPECT_EQ(result.found_at, -1);
+        if (result.joined_at >= 0 && joined_at < 0) joined_at = result.joined_at;
     }
     EXPECT_GE(joined_at, 0);
     EXPECT_LT(joined_at, keyframes);
@@ -167,7 +166,7 @@ TEST_P(MapFile, ToLocaliseLeavesTheMapAsItIs) {
     const std::vector<KeyframeInfo> after = odometry.keyframes();
     for (std::size_t k = 0; k < keyframes; ++k)
         EXPECT_EQ(before[k].T_world_camera.matrix(), after[k].T_world_camera.matrix()) << k;
-    EXPECT_TRUE(mapOf(odometry) == map());
+    EXPECT_THROW(mapOf(odometry), std::logic_error);
 }
 
 TEST_P(MapFile, WhatWasAddedIsFoundLater) {
@@ -248,50 +247,65 @@ std::string signedAnew(std::string map) {
 /// A few keyframes are enough to break.
 const std::string& smallMap() {
     static const std::string map = [] {
-        OdometryOptions options;
+        OdometryOptions options = optionsOf(Mode::kBundleAdjustment);
         options.mapping.semi_dense_points = 50;
         options.mapping.max_points = 300;
         Odometry odometry(yesterday().camera, options);
-        for (std::size_t i = 0; i < 36; ++i) (void)odometry.processFrame(yesterday().frames[i]);
+        for (std::size_t i = 0; i < 20; ++i) (void)odometry.processFrame(yesterday().frames[i]);
         return mapOf(odometry);
     }();
     return map;
 }
 
+bool canBeRead(const std::string& map) {
+    std::istringstream in(map);
+    try {
+        (void)readMap(in);
+    } catch (const std::runtime_error&) {
+        return false;
+    }
+    return true;
+}
+
 TEST(MapFileErrors, WhatIsDamagedIsRefused) {
     std::mt19937 random(5);
-    Odometry odometry(yesterday().camera, {});
+    ASSERT_TRUE(canBeRead(smallMap()));
     for (int k = 0; k < 150; ++k) {
         const std::size_t at = random() % smallMap().size();
-        EXPECT_NE(faultOfLoading(odometry, smallMap().substr(0, at)), "") << at;
+        EXPECT_FALSE(canBeRead(smallMap().substr(0, at))) << at;
         std::string flipped = smallMap();
         flipped[at] = static_cast<char>(flipped[at] ^ (1 << random() % 8));
-        EXPECT_NE(faultOfLoading(odometry, flipped), "") << at;
+        EXPECT_FALSE(canBeRead(flipped)) << at;
     }
 }
 
 TEST(MapFileErrors, WhatIsWrongAndSignedIsRefusedOrDoesNoHarm) {
     std::mt19937 random(6);
     ASSERT_TRUE(signedAnew(smallMap()) == smallMap());
-    int loaded = 0;
+    int refused = 0, loaded = 0;
     for (int k = 0; k < 200; ++k) {
         std::string changed = smallMap();
         // The first part has the poses: there it matters most
         const std::size_t at = 28 + random() % (k % 2 == 0 ? 2000 : changed.size() - 28);
-        const int change = static_cast<int>(random() % 4);
+        const auto change = random() % 4;
         if (change == 0) changed[at] = static_cast<char>(random());
         if (change == 1) changed[at] = static_cast<char>(changed[at] ^ (1 << random() % 8));
         if (change == 2) std::memset(&changed[at], 0xFF, std::min<std::size_t>(8, changed.size() - at));
         if (change == 3) changed.erase(at, 1 + random() % 16);
-        Odometry odometry(yesterday().camera, {});
-        std::uint64_t size = changed.size() - 28;
+        const std::uint64_t size = changed.size() - 28;
         std::memcpy(&changed[12], &size, sizeof size);
-        if (!faultOfLoading(odometry, signedAnew(changed)).empty()) continue;
-        if (++loaded % 8 != 0) continue;
+        if (!canBeRead(signedAnew(changed))) {
+            ++refused;
+            continue;
+        }
+        if (++loaded % 10 != 0) continue;
+        Odometry odometry(yesterday().camera, {});
+        load(odometry, signedAnew(changed));
         const FrameResult result = odometry.processFrame(today().frames[0]);
         EXPECT_TRUE(result.T_world_camera.isFinite() && result.covariance.allFinite()) << k;
         (void)odometry.map();
     }
+    EXPECT_GT(refused, 20);
     EXPECT_GT(loaded, 20) << "else nothing was tried";
 }
 

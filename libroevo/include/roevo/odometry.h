@@ -36,20 +36,19 @@ class Odometry {
 
     /// Begins with the map of an earlier recording, before the first frame. The first frame that shows one of
     /// its places, or else the first keyframe, brings the recording into the map's world; until then it is in
-    /// a world of its own, which begins at T_world_start. The map's keyframes are the first of keyframes().
-    /// Poses move when they are brought there, so that nothing but FrameResult::found_at and joined_at tell
-    /// which world live poses are of.
+    /// a world of its own, which begins at T_world_start (FrameResult::found_at and joined_at tell when;
+    /// keyframes of the map are the first of keyframes()).
     /// @return how many keyframes the map has
     /// @throws std::runtime_error in one line: no map, of another version, incomplete, damaged, of another
     /// camera, or recognising is off (options().loss). The odometry is then as it was
     /// @throws std::logic_error when there is a frame or a map already
     int loadMap(std::istream& in, MapUse use = MapUse::kExtend);
     /// Writes a map that loadMap() reads: the keyframes with their edges, places and surfaces, those of the
-    /// map that was loaded and those that were joined to it; without one, those of the longest piece. A map
-    /// that was loaded to localise only is written as it was. Waits for what is still being mapped. Whether
-    /// all was written is in the stream's state.
+    /// map that was loaded and those that were joined to it; without one, those of the longest piece. Waits
+    /// for what is still being mapped. Whether all was written is in the stream's state.
     /// @return how many keyframes the map has
     /// @throws std::runtime_error when there is no keyframe, or recognising is off
+    /// @throws std::logic_error when a map is used to localise only
     int saveMap(std::ostream& out) const;
 
     /// Tracks one frame. Never throws for bad frames: they come back kRejected with a reason.

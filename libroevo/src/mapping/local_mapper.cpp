@@ -198,7 +198,6 @@ void LocalMapper::load(const KeyframeInfo& info, KeptKeyframe kept) {
     keyframe.median_depth = kept.median_depth;
     keyframe.row_motion = kept.row_motion;
     keyframe.found = std::move(kept.found);
-    keyframe.found.resize(static_cast<std::size_t>(kept.points.numEdges()), -1);
     keyframes_.emplace(info.id, std::move(keyframe));
     packed_.emplace(info.id, std::move(kept.points));
     if (!kept.verdicts.empty()) verdicts_.emplace(info.id, std::move(kept.verdicts));

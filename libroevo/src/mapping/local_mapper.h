@@ -46,7 +46,7 @@ struct KeptKeyframe {
     PackedKeyframe points;
     double median_depth = 0;            ///< m
     RowMotion row_motion;               ///< that the points were moved with
-    std::vector<float> found;           ///< see MapKeyframe::found; empty: not known
+    std::vector<float> found;           ///< see MapKeyframe::found
     std::vector<EdgeVerdict> verdicts;  ///< of each edge; empty: none yet
     std::vector<CovisibilityGraph::Links> links;
 };

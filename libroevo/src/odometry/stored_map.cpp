@@ -66,7 +66,7 @@ bool edgesAreSound(const StoredMap& map, std::size_t id) {
     const auto is_share = [](float share) { return share >= -1 && share <= 1; };
     const auto is_verdict = [](EdgeVerdict v) { return v <= EdgeVerdict::kVanishing; };
     return own.points.isSound(map.camera) && own.median_depth >= 0 && own.median_depth < kFarthest &&
-           isSound(own.row_motion, map.camera) && (own.found.empty() || own.found.size() == edges) &&
+           isSound(own.row_motion, map.camera) && own.found.size() == edges &&
            std::all_of(own.found.begin(), own.found.end(), is_share) &&
            (own.verdicts.empty() || own.verdicts.size() == edges) &&
            std::all_of(own.verdicts.begin(), own.verdicts.end(), is_verdict) && linksAreSound(map, id);

@@ -58,6 +58,7 @@ void World::load(StoredMap map, bool held) {
 }
 
 StoredMap World::map() {
+    if (held_) throw std::logic_error("a map that is only used to localise is not written");
     if (!remembersPlaces())
         throw std::runtime_error("there is no map with loss.recognise=false: places are not remembered");
     StoredMap map;
@@ -67,9 +68,10 @@ StoredMap World::map() {
     const std::vector<KnownPlace>& places = relocaliser_.places();
     for (std::size_t id = 0; id < places.size(); ++id) {
         map.places.push_back(places[id].points);
-        if (id >= map.edges.size())
-            map.edges.push_back(
-                {places[id].edges, places[id].median_depth, places[id].row_motion, {}, {}, {}});
+        if (id < map.edges.size()) continue;
+        const auto& [points, edges, median_depth, rows] = places[id];
+        const std::vector<float> found(static_cast<std::size_t>(edges.numEdges()), -1);
+        map.edges.push_back({edges, median_depth, rows, found, {}, {}});
     }
     map.surfaces = semi_dense_.keyframes();
     map.surfaces.resize(map.places.size());
@@ -81,8 +83,7 @@ StoredMap World::map() {
     }
     const auto largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
     std::vector<bool> kept;
-    for (std::size_t id = 0; id < tracks.size(); ++id)
-        kept.push_back(held_ ? static_cast<int>(id) < loaded_ : tracks[id] == (loaded_ > 0 ? 0 : largest));
+    for (const int track : tracks) kept.push_back(track == (loaded_ > 0 ? 0 : largest));
     keepOnly(kept, map);
     return map;
 }

@@ -28,11 +28,11 @@ class World {
     World(const PinholeCamera& camera, const OdometryOptions& options);
 
     /// Begins with a map, before anything else.
-    /// @param held  it stays as it is: nothing moves its keyframes, and map() has no others
+    /// @param held  it stays as it is: nothing moves its keyframes
     /// @throws std::runtime_error, in one line, where it cannot be used
     void load(StoredMap map, bool held);
     /// All keyframes that hang together, in a map: those that were loaded, else most of them.
-    /// @throws std::runtime_error where places are not remembered
+    /// @throws std::runtime_error where places are not remembered; std::logic_error where a map is held
     StoredMap map();
     /// Keyframes that were loaded: the first ones.
     int loaded() const { return loaded_; }
