@@ -57,8 +57,9 @@ Pool judgeRun(const StudyInput& input, const OdometryOptions& options) {
     MotionJudge judge(input.ground_truth, input.truth_noise, intervals);
     trackRecording(input, options, [&](const FrameResult& result, const Odometry& odometry) {
         if (!result.hasPose()) return;
-        judge.add({result.timestamp, result.T_world_camera},
-                  [&](std::size_t from, std::size_t to) { return odometry.motionCovariance(from, to); });
+        judge.add(result.timestamp, [&](std::size_t from, std::size_t to) {
+            return std::pair(odometry.motion(from, to), odometry.motionCovariance(from, to));
+        });
     });
     Pool pool;
     for (std::size_t k = 0; k < kIntervals.size(); ++k) {

@@ -100,17 +100,16 @@ MotionJudge::MotionJudge(std::vector<StampedPose> truth, const TruthNoise& noise
     for (const double interval : intervals) judged_.push_back({interval, {}, 0});
 }
 
-void MotionJudge::add(const StampedPose& estimate, const Covariance& covariance) {
+void MotionJudge::add(double timestamp, const Motion& motionBetween) {
     const std::size_t place = added_++;
-    const std::optional<Pose> truth = poseAt(truth_, estimate.timestamp);
+    const std::optional<Pose> truth = poseAt(truth_, timestamp);
     if (!truth) return;
-    entries_.push_back({place, estimate, *truth});
+    entries_.push_back({place, timestamp, *truth});
     for (Judged& judged : judged_) {
         const Entry* const from = startOf(judged.interval);
         if (from == nullptr) continue;
-        const auto motion = judgeMotion(from->truth.inverse() * *truth,
-                                        from->estimate.T_world_camera.inverse() * estimate.T_world_camera,
-                                        covariance(from->place, place), noise_);
+        const auto [T_from_to, covariance] = motionBetween(from->place, place);
+        const auto motion = judgeMotion(from->truth.inverse() * *truth, T_from_to, covariance, noise_);
         if (motion)
             judged.motions.push_back(*motion);
         else
@@ -122,11 +121,11 @@ const MotionJudge::Entry* MotionJudge::startOf(double interval) const {
     const auto newest = entries_.end() - 1;
     if (newest == entries_.begin()) return nullptr;
     if (interval == 0) return &entries_.front();
-    const double wanted = newest->estimate.timestamp - interval;
+    const double wanted = newest->timestamp - interval;
     const auto later =
         std::lower_bound(entries_.begin(), newest, wanted,
-                         [](const Entry& entry, double time) { return entry.estimate.timestamp < time; });
-    const auto away = [&](auto entry) { return std::abs(entry->estimate.timestamp - wanted); };
+                         [](const Entry& entry, double time) { return entry.timestamp < time; });
+    const auto away = [&](auto entry) { return std::abs(entry->timestamp - wanted); };
     const auto nearest =
         later != entries_.begin() && (later == newest || away(later - 1) <= away(later)) ? later - 1 : later;
     return away(nearest) <= kIntervalTolerance * interval ? &*nearest : nullptr;

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "roevo/types.h"
@@ -41,17 +42,18 @@ NeesStatistics neesStatistics(const std::vector<JudgedMotion>& motions);
 /// Judges the motions of a run as it goes on, since the covariance between two frames is best known then.
 class MotionJudge {
   public:
-    /// Of the motion between two poses that were added, given by their places.
-    using Covariance = std::function<Matrix6d(std::size_t from, std::size_t to)>;
+    /// T_from_to between two poses that were added, given by their places, as it is known by now, and its
+    /// covariance.
+    using Motion = std::function<std::pair<Pose, Matrix6d>(std::size_t from, std::size_t to)>;
 
     /// @param truth  sorted by time
     /// @param intervals  s, over which motions are judged; 0: from the first pose that has a truth
     MotionJudge(std::vector<StampedPose> truth, const TruthNoise& noise,
                 const std::vector<double>& intervals);
 
-    /// The next pose, as it is known now, and the motions that end in it: from the pose nearest to each
-    /// interval ago, within a tenth of it.
-    void add(const StampedPose& estimate, const Covariance& covariance);
+    /// The time of the next pose, and the motions that end in it: from the pose nearest to each interval ago,
+    /// within a tenth of it.
+    void add(double timestamp, const Motion& motion);
 
     const std::vector<JudgedMotion>& motions(std::size_t interval) const { return judged_[interval].motions; }
     /// Motions whose covariance is not known, as where tracking was begun anew between.
@@ -65,7 +67,7 @@ class MotionJudge {
     };
     struct Entry {
         std::size_t place = 0;  ///< among the poses that were added
-        StampedPose estimate;
+        double timestamp = 0;   ///< s
         Pose truth;
     };
     const Entry* startOf(double interval) const;

@@ -147,9 +147,11 @@ TEST(MotionJudge, TakesTheMotionsOverEachInterval) {
     MotionJudge judge(truth, {}, {1, 0, 5});
     std::vector<std::pair<std::size_t, std::size_t>> asked;
     for (const StampedPose& pose : estimate)
-        judge.add(pose, [&](std::size_t from, std::size_t to) -> Matrix6d {
+        judge.add(pose.timestamp, [&](std::size_t from, std::size_t to) {
             asked.emplace_back(from, to);
-            return sigma * sigma * Matrix6d::Identity();
+            return std::pair<Pose, Matrix6d>(
+                estimate[from].T_world_camera.inverse() * estimate[to].T_world_camera,
+                sigma * sigma * Matrix6d::Identity());
         });
     // Within a tenth of a second: from 0.9 s on
     ASSERT_EQ(judge.motions(0).size(), estimate.size() - 2 - 27);
@@ -166,9 +168,9 @@ TEST(MotionJudge, TakesTheMotionsOverEachInterval) {
 TEST(MotionJudge, CountsWhatIsNotKnown) {
     MotionJudge judge(straight(10, 11, 30), {}, {0});
     for (const StampedPose& pose : straight(10, 11, 30))
-        judge.add(pose, [](std::size_t, std::size_t to) -> Matrix6d {
-            if (to > 20) return Matrix6d::Constant(std::numeric_limits<double>::infinity());
-            return Matrix6d::Identity();
+        judge.add(pose.timestamp, [](std::size_t, std::size_t to) -> std::pair<Pose, Matrix6d> {
+            if (to > 20) return {Pose(), Matrix6d::Constant(std::numeric_limits<double>::infinity())};
+            return {Pose(), Matrix6d::Identity()};
         });
     EXPECT_EQ(judge.motions(0).size(), 20u);
     EXPECT_EQ(judge.unknown(0), 10u);

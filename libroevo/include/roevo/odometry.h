@@ -63,6 +63,9 @@ class Odometry {
     /// T_from_to, position (m), then orientation (rad), along the axes of the second camera. Infinite where
     /// tracking was begun anew between them.
     Matrix6d motionCovariance(std::size_t from, std::size_t to) const;
+    /// T_from_to of the same frames as it is known by now. Live poses from before and after the map moved do
+    /// not make a motion of the camera.
+    Pose motion(std::size_t from, std::size_t to) const;
 
     /// Those of a map that was loaded come first.
     std::vector<KeyframeInfo> keyframes() const;

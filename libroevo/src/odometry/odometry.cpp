@@ -379,6 +379,9 @@ std::vector<StampedPose> Odometry::trajectory() const {
 std::vector<StampedPose> Odometry::liveTrajectory() const {
     return impl_->world.trajectory().live();
 }
+Pose Odometry::motion(std::size_t from, std::size_t to) const {
+    return impl_->world.trajectory().motion(from, to);
+}
 Matrix6d Odometry::motionCovariance(std::size_t from, std::size_t to) const {
     return impl_->world.trajectory().motionCovariance(from, to);
 }

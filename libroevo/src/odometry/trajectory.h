@@ -62,6 +62,11 @@ class Trajectory {
     /// different tracks.
     Matrix6d motionCovariance(std::size_t from, std::size_t to) const;
 
+    /// T_from_to of these frames.
+    Pose motion(std::size_t from, std::size_t to) const {
+        return worldPose(frames_.at(from).pose).inverse() * worldPose(frames_.at(to).pose);
+    }
+
     const std::vector<KeyframeInfo>& keyframes() const { return keyframes_; }
     const Pose& keyframePose(int id) const { return keyframes_[static_cast<std::size_t>(id)].T_world_camera; }
     /// Poses of the frames. What the map found to be wrong with the tracked motion to the next keyframe was
