@@ -14,7 +14,7 @@ struct InputSettings {
     std::string sensor_label;          ///< rawlogs with several cameras
     std::size_t first = 0, skip = 0;   ///< first 0: all frames
     OdometryOptions options;
-    std::vector<Mode> modes;  ///< see StudyInput
+    std::vector<Mode> modes{Mode::kBundleAdjustment, Mode::kTracking};  ///< see StudyInput
     TruthNoise truth_noise;
 };
 

@@ -1,6 +1,7 @@
 // roevo-study: the paper's experiments on any recording; tables and plots out.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <opencv2/core/utility.hpp>
 
@@ -125,6 +126,8 @@ void checkUsage(const InputSettings& settings) {
     if (settings.first > 0 && settings.first < kFewestFrames)
         throw UsageError("--first " + std::to_string(settings.first) + ": a study needs at least " +
                          std::to_string(kFewestFrames) + " frames");
+    if (!std::isfinite(settings.truth_noise.position + settings.truth_noise.orientation))
+        throw UsageError("--truth-sigma: metres and degrees must be finite");
 }
 
 int run(int argc, char** argv) {
@@ -172,17 +175,14 @@ int run(int argc, char** argv) {
     std::vector<std::string> words(argv, argv + argc);
     words.front() = kName;
     const std::vector<Study> studies = chosenStudies(experiments);
+    settings.truth_noise = {truth_sigma[0], truth_sigma[1] * kDegree};
     checkUsage(settings);
     settings.options = collectOptions(config_file, sets, mode);
-    settings.modes = {Mode::kBundleAdjustment, Mode::kTracking};
     if (!mode.empty()) settings.modes = {settings.options.mode};
-    settings.truth_noise = {truth_sigma[0], truth_sigma[1] * kDegree};
     cv::setNumThreads(1);  // times are of one core
-    StudyIndex index;
-    index.command = shellCommand(words);
-    index.time = utcNow();
+    const std::string time = utcNow();
     const OpenedInputs inputs = openInputs(settings);
-    index.left_out = inputs.left_out;
+    StudyIndex index{shellCommand(words), time, inputs.left_out, {}};
     prepareOutputFolder(output);
     for (const LeftOut& left_out : inputs.left_out)
         std::printf("%-14s %s: %s\n", "not used", left_out.name.c_str(), left_out.reason.c_str());

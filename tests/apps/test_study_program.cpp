@@ -155,6 +155,7 @@ TEST_F(StudyProgram, SigmasAndDistribution) {
     expectPlot("distribution.svg");
     expectError(run("sigmas", {"--truth-sigma", "-1", "0"}), 2, kName, {"--truth-sigma", "-1"});
     expectError(run("sigmas", {"--truth-sigma", "1"}), 2, kName, {"--truth-sigma", "2"});
+    expectError(run("sigmas", {"--truth-sigma", "nan", "0"}), 2, kName, {"--truth-sigma", "finite"});
     expectError(run("sigmas", {"--no-ground-truth"}), 1, kName, {"sigmas: recording", "no ground truth"});
 }
 

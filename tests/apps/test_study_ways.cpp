@@ -111,7 +111,7 @@ TEST_F(StudyWays, ForwardsAndBackwardsFromFiveStarts) {
 }
 
 TEST_F(StudyWays, SigmasArePooledOverAllWays) {
-    const testing::Sequence sequence = sliding(30), brief = sliding(8);
+    const testing::Sequence sequence = sliding(36), brief = sliding(8);
     StudyInput noisy = tracked("noisy", brief);
     noisy.truth_noise = {1, 1};
     const StudyReport report = studySigmas({tracked("a", sequence), noisy}, folder());
@@ -125,7 +125,7 @@ TEST_F(StudyWays, SigmasArePooledOverAllWays) {
         for (std::size_t way = 0; way < 10; ++way) motions += number(runs, 1 + 3 * way + k, "motions");
         EXPECT_EQ(number(pooled, 1 + k, "motions"), motions);
     }
-    EXPECT_EQ(number(pooled, 3, "motions"), 2 * (29 + 26 + 23 + 20 + 17)) << "from the start";
+    EXPECT_EQ(number(pooled, 3, "motions"), 2 * (35 + 32 + 29 + 26 + 23)) << "from the start";
     EXPECT_EQ(number(pooled, 2, "motions"), 0) << "shorter than 3 s";
     EXPECT_EQ(pooled[2][column(pooled, "nees")], "");
     for (const std::size_t row : {1u, 3u}) {
@@ -138,14 +138,14 @@ TEST_F(StudyWays, SigmasArePooledOverAllWays) {
 }
 
 TEST_F(StudyWays, ErrorsOfTheTrajectoryRaiseTheNees) {
-    testing::Sequence sequence = sliding(10);
+    testing::Sequence sequence = sliding(20);
     for (StampedPose& pose : sequence.truth) pose.T_world_camera.translation() *= 1.3;
     studySigmas({tracked("a", sequence)}, folder());
     EXPECT_GT(number(table("sigmas.csv"), 3, "nees_translation"), 20);
 }
 
 TEST_F(StudyWays, TheDistributionTellsMedianRangeAndRefusals) {
-    const testing::Sequence sequence = sliding(17);
+    const testing::Sequence sequence = sliding(22);
     StudyInput mapped = input("a", sequence, true);
     mapped.modes = {Mode::kBundleAdjustment, Mode::kTracking};
     // No two observations agree so well: every edge is rejected, and keyframes stay as they were
