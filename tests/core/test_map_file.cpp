@@ -25,11 +25,27 @@ simulator::SimulationOptions noisyRoom(unsigned seed, double speed) {
 
 /// What is mapped, and the same room on another day: other tremor, faster, further.
 const Sequence& yesterday() {
-    static const Sequence sequence = simulate(noisyRoom(1, 0.45), 40);
+    static const Sequence sequence = simulate(noisyRoom(1, 0.45), 24);
     return sequence;
 }
 const Sequence& today() {
-    static const Sequence sequence = simulate(noisyRoom(7, 0.8), 60);
+    static const Sequence sequence = simulate(noisyRoom(7, 0.8), 40);
+    return sequence;
+}
+/// Backwards, from further than yesterday's map goes.
+const Sequence& wayBack() {
+    static const Sequence sequence = [] {
+        const simulator::Simulator simulator(noisyRoom(7, 0.8));
+        Sequence back;
+        back.camera = simulator.camera();
+        for (int i = 99; i >= 80; --i) {
+            const simulator::SimulatedFrame frame = simulator.frame(i);
+            const double timestamp = 10 - frame.timestamp;
+            back.frames.push_back({timestamp, frame.grey, frame.depth_noisy, cv::Mat()});
+            back.truth.push_back({timestamp, frame.T_world_camera});
+        }
+        return back;
+    }();
     return sequence;
 }
 const Sequence& elsewhere() {
@@ -44,7 +60,7 @@ const Sequence& elsewhere() {
 OdometryOptions optionsOf(Mode mode) {
     OdometryOptions options;
     options.mode = mode;
-    options.keyframe.max_translation = 0.05;  // more of them in less time
+    options.keyframe.max_translation = 0.025;  // more of them in less time
     return options;
 }
 
@@ -103,7 +119,7 @@ TEST_P(MapFile, WrittenReadAndWrittenAgainIsTheSame) {
     for (const Mode mode : {Mode::kTracking, Mode::kBundleAdjustment}) {
         Odometry odometry = odometryOf(yesterday());
         const int keyframes = load(odometry, yesterdaysMap(mode));
-        EXPECT_GT(keyframes, 3);
+        EXPECT_GE(keyframes, 3);
         EXPECT_EQ(static_cast<int>(odometry.keyframes().size()), keyframes);
         EXPECT_TRUE(mapOf(odometry) == yesterdaysMap(mode));
     }
@@ -124,13 +140,10 @@ TEST_P(MapFile, AnotherRecordingIsLocalisedFromItsFirstFrameOn) {
 }
 
 TEST_P(MapFile, ARecordingThatBeginsElsewhereIsJoined) {
-    // Backwards: what it begins with is further than yesterday's map goes
-    Odometry odometry = odometryOf(today());
+    Odometry odometry = odometryOf(wayBack());
     const int keyframes = load(odometry, map());
     int joined_at = -1;
-    for (std::size_t i = today().frames.size(); i-- > 0;) {
-        RgbdFrame frame = today().frames[i];
-        frame.timestamp = 100 - frame.timestamp;
+    for (const RgbdFrame& frame : wayBack().frames) {
         const FrameResult result = odometry.processFrame(frame);
         EXPECT_TRUE(result.hasPose()) << result.reason;
         EXPECT_EQ(result.found_at, -1);
@@ -138,9 +151,7 @@ TEST_P(MapFile, ARecordingThatBeginsElsewhereIsJoined) {
     }
     EXPECT_GE(joined_at, 0);
     EXPECT_LT(joined_at, keyframes);
-    std::vector<StampedPose> poses = odometry.trajectory();
-    std::reverse(poses.begin(), poses.end());
-    EXPECT_LT(worstError(poses, today()), 0.02) << "those before it was recognised as well";
+    EXPECT_LT(worstError(odometry.trajectory(), wayBack()), 0.02) << "also before it was recognised";
 }
 
 TEST_P(MapFile, AnotherRoomIsNeverRecognised) {
@@ -212,7 +223,7 @@ TEST(MapFileErrors, AreSaidInOneLine) {
     other = map;
     std::memset(&other[12], 0x7F, 8);  // claims more than there is memory
     expect(other, "incomplete");
-    EXPECT_GT(load(odometry, map), 3) << "none of that is left over";
+    EXPECT_GE(load(odometry, map), 3) << "none of that is left over";
 
     PinholeCamera camera = yesterday().camera;
     camera.fx += 1;
