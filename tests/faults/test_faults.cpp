@@ -92,7 +92,7 @@ TEST_P(QuickFaults, AreNamedAndForgotten) {
     for (const std::size_t count : {1, 5}) {
         const auto frames = inject(smallRoom(), fault, kBefore, count, 1);
         const Played played = play(smallRoom(), frames);
-        const Verdict verdict = judge(frames, played, cleanlyPlayed(smallRoom()), fault.expected, count);
+        const Verdict verdict = judge(frames, played, cleanRun(smallRoom()), fault.expected, count);
         EXPECT_TRUE(verdict.broken.empty())
             << count << " frames " << fault.name << ": " << joined(verdict.broken) << story(frames, played);
     }
