@@ -30,7 +30,8 @@ struct Shown {
 enum class Expected {
     kTracked,  ///< ok, with a reason or without
     kNamed,    ///< not ok, or ok with a reason
-    kAny       ///< whatever it is: never a wrong pose without a word
+    kAny,      ///< whatever it is: never a wrong pose without a word
+    kSurvived  ///< no crash, no NaN, no status without a reason; more is not promised
 };
 
 /// Does something to the frames [from, to) of a stream that was made of a recording; may leave frames out or
