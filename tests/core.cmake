@@ -2,7 +2,7 @@ roevo_test(test_core_camera
   SOURCES core/test_pinhole_camera.cpp core/test_undistorter.cpp core/test_depth_registration.cpp
   LIBS roevo_internal opencv_calib3d)
 roevo_test(test_core_edges
-  SOURCES core/test_gradient.cpp core/test_canny.cpp core/test_adjacency.cpp core/test_organize.cpp
+  SOURCES core/test_pixel_kernels.cpp core/test_gradient.cpp core/test_canny.cpp core/test_adjacency.cpp core/test_organize.cpp
           core/test_organize_trees.cpp core/test_normals.cpp core/test_edge_grid.cpp core/test_edge_depth.cpp
           core/test_edge_sides.cpp
   LIBS roevo_internal)

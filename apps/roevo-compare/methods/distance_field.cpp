@@ -102,7 +102,10 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
     for (std::size_t k = 0; k < near_.size(); ++k) {
         const std::size_t i = near_[k];
         const float r = residual_[k], squared = r * r * inverse;
-        if (squared > chi2) continue;
+        if (squared > chi2) {
+            rows_.leaveOut(k);
+            continue;
+        }
         ++inliers_;
         const float w = studentWeight(edges.weight[i] * inverse, squared);
         weights += static_cast<double>(w);

@@ -1,25 +1,52 @@
 #include "camera/undistorter.h"
 
-#include <opencv2/imgproc.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "pixels/pixel_kernels.h"
 
 namespace roevo {
+namespace {
+
+constexpr int kOne = 1 << pixels::kFractionBits;
+
+/// A coordinate in 1/32 px as the first of two neighbouring pixels and the way from it to the second; what is
+/// outside repeats the outermost pixel.
+struct Place {
+    int first, fraction;
+    Place(double coordinate, int size) {
+        const auto most = static_cast<float>(size - 1);
+        const float inside = std::clamp(static_cast<float>(coordinate), 0.0F, most);
+        const int fine = static_cast<int>(std::lrint(kOne * inside));
+        first = std::min(fine / kOne, size - 2);
+        fraction = fine - first * kOne;
+    }
+};
+
+}  // namespace
 
 Undistorter::Undistorter(const PinholeCamera& camera) {
     if (!camera.isDistorted()) return;
-    cv::Mat source(camera.height, camera.width, CV_32FC2);
-    for (int v = 0; v < camera.height; ++v) {
-        auto* row = source.ptr<cv::Vec2f>(v);
-        for (int u = 0; u < camera.width; ++u) {
+    width_ = camera.width;
+    height_ = camera.height;
+    for (int v = 0; v < height_; ++v) {
+        for (int u = 0; u < width_; ++u) {
             const Eigen::Vector2d pixel = camera.distortPixel(Eigen::Vector2d(u, v));
-            row[u] = cv::Vec2f(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+            const Place x(pixel.x(), width_), y(pixel.y(), height_);
+            offset_.push_back(y.first * width_ + x.first);
+            fraction_.push_back(static_cast<std::int16_t>(x.fraction + 256 * y.fraction));
         }
     }
-    cv::convertMaps(source, cv::noArray(), map_, fractions_, CV_16SC2);
+    offset_.resize(offset_.size() + pixels::kRemapPadding);
+    fraction_.resize(offset_.size());
 }
 
 const cv::Mat& Undistorter::apply(const cv::Mat& image, cv::Mat& buffer) const {
     if (isIdentity()) return image;
-    cv::remap(image, buffer, map_, fractions_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+    const cv::Mat whole = image.isContinuous() ? image : image.clone();  // as the offsets assume
+    buffer.create(height_, width_, CV_8UC1);
+    pixels::best().remap(whole.ptr<std::uint8_t>(), width_, {offset_.data(), fraction_.data()},
+                         width_ * height_, buffer.ptr<std::uint8_t>());
     return buffer;
 }
 

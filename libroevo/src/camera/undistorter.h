@@ -1,5 +1,7 @@
 #pragma once
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
+#include <vector>
 
 #include "roevo/camera/pinhole_camera.h"
 
@@ -13,10 +15,12 @@ class Undistorter {
     /// Bilinear, into `buffer`, which is returned; or `image` itself when the lens is ideal.
     const cv::Mat& apply(const cv::Mat& image, cv::Mat& buffer) const;
 
-    bool isIdentity() const { return map_.empty(); }
+    bool isIdentity() const { return offset_.empty(); }
 
   private:
-    cv::Mat map_, fractions_;  ///< fixed-point maps of cv::remap
+    int width_ = 0, height_ = 0;
+    std::vector<std::int32_t> offset_;  ///< of each pixel, as pixels::Remap has them
+    std::vector<std::int16_t> fraction_;
 };
 
 }  // namespace roevo

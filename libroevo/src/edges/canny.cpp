@@ -1,16 +1,16 @@
 #include "edges/canny.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+
+#include "pixels/pixel_kernels.h"
 
 namespace roevo {
 namespace {
 
 constexpr std::uint8_t kNone = 0, kEdge = 1, kWeak = 2;
-constexpr int kBlock = 64;  ///< pixels of a row that are looked at together
 
 /// Magnitudes one step before and after (x, y) along the gradient, interpolated between the two neighbours
 /// that the gradient line passes, and that step in pixels.
@@ -30,53 +30,23 @@ inline Neighbours alongGradient(const float* magnitude, std::ptrdiff_t stride, i
     return by_column ? Neighbours{before, after, 1, slope} : Neighbours{before, after, slope, 1};
 }
 
-/// Non-maximum suppression: the same interpolation as above, multiplied out and without branches, because the
-/// direction of a gradient cannot be predicted. ">=" on one side only, so that a ridge two pixels wide keeps
-/// exactly one of them.
-inline bool isRidge(const float* magnitude, std::ptrdiff_t stride, int gx, int gy) {
-    const int ax = std::abs(gx), ay = std::abs(gy);
-    const std::ptrdiff_t step_x = gx >= 0 ? 1 : -1, step_y = gy >= 0 ? stride : -stride;
-    const std::ptrdiff_t side = ax >= ay ? step_x : step_y, diagonal = step_x + step_y;
-    const auto small = static_cast<float>(std::min(ax, ay)), large = static_cast<float>(std::max(ax, ay));
-    const float after = (large - small) * magnitude[side] + small * magnitude[diagonal];
-    const float before = (large - small) * magnitude[-side] + small * magnitude[-diagonal];
-    const float here = large * magnitude[0];
-    return (here > before) & (here >= after);
-}
-
-bool anyAbove(const float* values, int count, float limit) {
-    int found = 0;
-    for (int i = 0; i < count; ++i) found |= values[i] >= limit ? 1 : 0;
-    return found != 0;
-}
-
 /// Marks ridges of at least `low` in the mask, strong ones from `high` on as edges, and lists these.
 void markRidges(const Gradient& gradient, float low, float high, EdgeMask& out) {
     constexpr int kBorder = EdgeMask::kBorder;
     const int width = gradient.magnitude.cols, height = gradient.magnitude.rows;
     const auto stride = static_cast<std::ptrdiff_t>(gradient.magnitude.step1());
+    const auto& kernels = pixels::best();
     for (int y = kBorder; y < height - kBorder; ++y) {
         const auto* magnitude = gradient.magnitude.ptr<float>(y);
         const auto* gx = gradient.gx.ptr<std::int16_t>(y);
         const auto* gy = gradient.gy.ptr<std::int16_t>(y);
         auto* mask = out.mask.ptr<std::uint8_t>(y);
-        for (int first = kBorder; first < width - kBorder; first += kBlock) {
-            const int end = std::min(first + kBlock, width - kBorder);
-            if (!anyAbove(magnitude + first, end - first, low)) continue;
-            // Collected without branches: where an image has edges, nobody can predict them
-            std::array<int, kBlock> at;
-            std::size_t candidates = 0, ridges = 0;
-            for (int x = first; x < end; ++x) {
-                at[candidates] = x;
-                candidates += magnitude[x] >= low ? 1 : 0;
-            }
-            for (std::size_t i = 0; i < candidates; ++i) {
-                const int x = at[i];
-                at[ridges] = x;
-                ridges += isRidge(magnitude + x, stride, gx[x], gy[x]) ? 1 : 0;
-            }
-            for (std::size_t i = 0; i < ridges; ++i) {
-                const int x = at[i];
+        for (int first = kBorder; first < width - kBorder; first += pixels::kMostRidges) {
+            const int count = std::min(pixels::kMostRidges, width - kBorder - first);
+            std::uint64_t ridges =
+                kernels.ridges(magnitude + first, stride, gx + first, gy + first, count, low);
+            for (; ridges != 0; ridges &= ridges - 1) {
+                const int x = first + __builtin_ctzll(ridges);
                 const bool strong = magnitude[x] >= high;
                 mask[x] = strong ? kEdge : kWeak;
                 if (strong) out.pixels.push_back(y * width + x);
@@ -103,20 +73,18 @@ void followWeak(EdgeMask& out) {
 }
 
 /// Lists the edge pixels in raster order and drops weak pixels that nothing reached; eight pixels at a time,
-/// because few are either.
+/// because few are either. What is left of the image at the end is in the border.
 void listInRasterOrder(EdgeMask& out) {
     out.pixels.clear();
     auto* mask = out.mask.ptr<std::uint8_t>();
     const auto total = static_cast<std::int32_t>(out.mask.total());
-    for (std::int32_t p = 0; p < total; p += 8) {
-        std::uint64_t eight = 0;
-        const auto count = static_cast<std::size_t>(std::min(8, total - p));
-        std::memcpy(&eight, mask + p, count);
+    for (std::int32_t p = 0; p + 8 <= total; p += 8) {
+        std::uint64_t eight;
+        std::memcpy(&eight, mask + p, sizeof eight);
         if (eight == 0) continue;
-        for (std::int32_t q = p; q < p + static_cast<std::int32_t>(count); ++q) {
-            mask[q] &= kEdge;
-            if (mask[q] != 0) out.pixels.push_back(q);
-        }
+        eight &= 0x0101010101010101U * kEdge;
+        std::memcpy(mask + p, &eight, sizeof eight);
+        for (; eight != 0; eight &= eight - 1) out.pixels.push_back(p + __builtin_ctzll(eight) / 8);
     }
 }
 

@@ -11,7 +11,7 @@ constexpr int kMaxRadius = 15;
 constexpr int kMostAcross = 5;     ///< pixels to each side; of larger patches every n-th is looked at
 constexpr int kMinForeground = 3;  ///< fewer near pixels are speckle
 struct Sample {
-    float z, dx, dy;
+    float z, inverse, dx, dy;
 };
 
 /// Inverse depth at the patch's origin of the least-squares plane 1/z = a + b dx + c dy, or of the mean where
@@ -21,13 +21,13 @@ float planeAtOrigin(const Sample* samples, int count) {
     for (int i = 0; i < count; ++i) {
         sum_x += samples[i].dx;
         sum_y += samples[i].dy;
-        sum_q += 1 / samples[i].z;
+        sum_q += samples[i].inverse;
     }
     const float scale = 1 / static_cast<float>(count);
     const float mx = sum_x * scale, my = sum_y * scale, mq = sum_q * scale;
     float xx = 0, xy = 0, yy = 0, xq = 0, yq = 0;
     for (int i = 0; i < count; ++i) {
-        const float dx = samples[i].dx - mx, dy = samples[i].dy - my, dq = 1 / samples[i].z - mq;
+        const float dx = samples[i].dx - mx, dy = samples[i].dy - my, dq = samples[i].inverse - mq;
         xx += dx * dx;
         xy += dx * dy;
         yy += dy * dy;
@@ -57,7 +57,7 @@ EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOpti
         for (int x = std::max(0, cu - radius); x <= std::min(depth.cols - 1, cu + radius); x += step) {
             const float z = row[x];
             if (!(z >= near_limit && z <= far_limit)) continue;
-            samples[static_cast<std::size_t>(count++)] = {z, static_cast<float>(x) - u,
+            samples[static_cast<std::size_t>(count++)] = {z, 1 / z, static_cast<float>(x) - u,
                                                           static_cast<float>(y) - v};
             nearest = std::min(nearest, z);
             farthest = std::max(farthest, z);

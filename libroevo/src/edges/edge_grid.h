@@ -8,6 +8,13 @@
 
 namespace roevo {
 
+/// The pixel that a coordinate lies in.
+inline int nearestPixel(float coordinate) {
+    const float shifted = coordinate + 0.5F;
+    const int towards_zero = static_cast<int>(shifted);
+    return towards_zero - (shifted < static_cast<float>(towards_zero) ? 1 : 0);
+}
+
 /// Pixel-index grid over the points of organized edges: which point, if any, lies in a pixel. Building it is
 /// linear; a radius search looks at one word of occupancy bits per row and then only at the pixels that hold
 /// a point.
@@ -29,9 +36,8 @@ class EdgeGrid {
     }
     /// `count` (< 64) occupancy bits of row y from x on, the first in the lowest bit.
     std::uint64_t occupancy(int x, int y, int count) const {
-        const std::size_t first = bitIndex(x, y), shift = first % 64;
-        const std::uint64_t low = bits_[first / 64] >> shift;
-        const std::uint64_t high = shift == 0 ? 0 : bits_[first / 64 + 1] << (64 - shift);
+        const std::size_t first = bitIndex(x, y), word = first / 64, shift = first % 64;
+        const std::uint64_t low = bits_[word] >> shift, high = bits_[word + 1] << 1 << (63 - shift);
         return (low | high) & ((std::uint64_t{1} << count) - 1);
     }
 
@@ -49,7 +55,7 @@ int EdgeGrid::nearest(float u, float v, float radius, Accept&& accept) const {
           v < static_cast<float>(height_) + kFar)) {
         return -1;
     }
-    const int cu = static_cast<int>(std::lround(u)), cv = static_cast<int>(std::lround(v));
+    const int cu = nearestPixel(u), cv = nearestPixel(v);
     // Points are within half a pixel of their cell's centre, the query within half a pixel of its own
     const int reach = std::min(static_cast<int>(std::ceil(radius)), kMaxRadius) + 1;
     int best = -1;

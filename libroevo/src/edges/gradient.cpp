@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "pixels/pixel_kernels.h"
+
 namespace roevo {
 
 void computeGradient(const cv::Mat& grey, double blur_sigma, Gradient& out) {
@@ -13,16 +15,15 @@ void computeGradient(const cv::Mat& grey, double blur_sigma, Gradient& out) {
         cv::GaussianBlur(grey, out.blurred, {size, size}, blur_sigma, blur_sigma, cv::BORDER_REPLICATE);
     }
     const cv::Mat& source = blur_sigma > 0 ? out.blurred : grey;
-    cv::spatialGradient(source, out.gx, out.gy, 3, cv::BORDER_REPLICATE);
+    out.gx.create(grey.size(), CV_16SC1);
+    out.gy.create(grey.size(), CV_16SC1);
     out.magnitude.create(grey.size(), CV_32FC1);
+    const auto& kernels = pixels::best();
     for (int y = 0; y < grey.rows; ++y) {
-        const auto* gx = out.gx.ptr<std::int16_t>(y);
-        const auto* gy = out.gy.ptr<std::int16_t>(y);
-        auto* magnitude = out.magnitude.ptr<float>(y);
-        for (int x = 0; x < grey.cols; ++x) {
-            const auto dx = static_cast<float>(gx[x]), dy = static_cast<float>(gy[x]);
-            magnitude[x] = std::sqrt(dx * dx + dy * dy);
-        }
+        kernels.gradient(source.ptr<std::uint8_t>(std::max(0, y - 1)), source.ptr<std::uint8_t>(y),
+                         source.ptr<std::uint8_t>(std::min(grey.rows - 1, y + 1)), grey.cols,
+                         out.gx.ptr<std::int16_t>(y), out.gy.ptr<std::int16_t>(y),
+                         out.magnitude.ptr<float>(y));
     }
 }
 

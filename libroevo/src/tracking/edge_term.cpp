@@ -15,7 +15,7 @@ namespace {
 /// moved so far since, px: what they would be associated with instead lies on the same edge next to it.
 constexpr double kKeptMotion = 0.1;
 constexpr double kNarrowing = 4;  ///< iterations in which the radius narrows down
-constexpr float kUnknown = -1;    ///< depth not looked up yet
+constexpr float kUnknown = -1;    ///< depth or blur not looked up yet
 
 }  // namespace
 
@@ -32,6 +32,7 @@ void EdgeTerm::look(const Keyframe& keyframe, const Frame& frame) {
         current_depth_.assign(frame.edges.size(), kUnknown);
     looked_at_ = frame.timestamp();
     keyframe_ = &keyframe;
+    keyframe_blur_.assign(keyframe.edges.size(), kUnknown);
     frame_ = &frame;
     free_readout_ = has_associated_ = false;
 }
@@ -92,12 +93,13 @@ void EdgeTerm::assess(const Pose& T_current_keyframe, const RowMotion& rows) {
 
 void EdgeTerm::project(const Pose& pose, const RowMotion& rows) {
     const EdgePoints3D& edges = keyframe_->edges;
-    if (free_readout_) {
+    const bool moves = free_readout_ && rows.seconds_per_row != keyframe_->row_motion.seconds_per_row;
+    if (moves) {
         moved_ = edges.points;
         exchangeMotion(keyframe_->row_motion, keyframe_->row_motion.at(rows.seconds_per_row), edges.image.y,
                        edges.size(), moved_);
     }
-    roevo::project(free_readout_ ? moved_ : edges.points, pose, ideal_, rows, projected_);
+    roevo::project(moves ? moved_ : edges.points, pose, ideal_, rows, projected_);
 }
 
 void EdgeTerm::associateProjected(const Pose& T_current_keyframe, double radius) {
@@ -121,11 +123,13 @@ void EdgeTerm::tangentResiduals(const RowMotion& rows) {
         // about the associated point rather than its predecessor: unbiased where the edge is curved
         residual_[k] = current.normal_x[p] * (projected_.u[i] - current.x[p]) +
                        current.normal_y[p] * (projected_.v[i] - current.y[p]);
-        const float blur = now.variance(projected_.x[i], projected_.y[i], projected_.z[i],
-                                        current.normal_x[p], current.normal_y[p]) +
-                           then.variance(edges.points.x[i], edges.points.y[i], edges.points.z[i],
+        float& blurred_then = keyframe_blur_[i];
+        if (blurred_then == kUnknown)
+            blurred_then = then.variance(edges.points.x[i], edges.points.y[i], edges.points.z[i],
                                          edges.image.normal_x[i], edges.image.normal_y[i]);
-        sharpness_[k] = 1 / (1 + blur);
+        const float blurred_now = now.variance(projected_.x[i], projected_.y[i], projected_.z[i],
+                                               current.normal_x[p], current.normal_y[p]);
+        sharpness_[k] = 1 / (1 + (blurred_now + blurred_then));
         scratch_.push_back(std::abs(residual_[k]) * std::sqrt(sharpness_[k]));
     }
     if (!scratch_.empty()) scale_ = robustScale(scratch_);
@@ -207,7 +211,10 @@ void EdgeTerm::accumulate(PoseSystem& system) {
     rows_.reset(matches_.size());
     const auto fx = static_cast<float>(ideal_.fx), fy = static_cast<float>(ideal_.fy);
     for (std::size_t k = 0; k < matches_.size(); ++k) {
-        if (weight_[k] <= 0) continue;
+        if (weight_[k] <= 0) {
+            rows_.leaveOut(k);
+            continue;
+        }
         const auto i = static_cast<std::size_t>(matches_.reference[k]);
         const auto p = static_cast<std::size_t>(matches_.current[k]);
         const float nx = current.normal_x[p], ny = current.normal_y[p], w = weight_[k], r = residual_[k];

@@ -76,7 +76,9 @@ class EdgeTerm : public ResidualTerm {
     Points3 moved_;               // keyframe points at another read-out time
     // of the matches; sharpness: information across an edge as a share of what it would be at rest
     std::vector<float> residual_, sharpness_, weight_, depth_residual_, depth_weight_;
-    std::vector<float> current_depth_, scratch_;
+    std::vector<float> current_depth_;  // of the frame's points, m
+    std::vector<float> keyframe_blur_;  // of the keyframe's points: MotionBlur::variance()
+    std::vector<float> scratch_;
     InformationRows rows_;
     double scale_ = 1, slope_ = 1;
     int inliers_ = 0;

@@ -10,9 +10,10 @@ namespace roevo {
 
 void InformationRows::reset(std::size_t count) {
     const std::size_t padded = kernels::paddedSize(count);
-    for (auto& array : matrix_) array.assign(padded, 0);
-    for (auto& array : vector_) array.assign(padded, 0);
-    for (auto* array : {&points_.x, &points_.y, &points_.z}) array->assign(padded, 0);
+    for (auto& array : matrix_) array.resize(padded);
+    for (auto& array : vector_) array.resize(padded);
+    for (auto* array : {&points_.x, &points_.y, &points_.z}) array->resize(padded);
+    for (std::size_t i = count; i < padded; ++i) leaveOut(i);
 }
 
 kernels::NormalEquations InformationRows::sum() const {

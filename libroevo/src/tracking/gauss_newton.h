@@ -22,7 +22,7 @@ struct PosePrior {
 /// What points contribute to the normal equations, laid out as the kernels want it. Keeps its memory.
 class InformationRows {
   public:
-    /// All of `count` points contribute nothing until they are set.
+    /// Room for `count` points, each of which is to be set or left out.
     void reset(std::size_t count);
     /// @param matrix,vector  as in kernels::PointInformation, of a point at (x, y, z), m
     void set(std::size_t point, const float (&matrix)[6], const float (&vector)[3], float x, float y,
@@ -31,6 +31,8 @@ class InformationRows {
         for (int a = 0; a < 3; ++a) vector_[a][point] = vector[a];
         points_.set(point, x, y, z);
     }
+    /// It contributes nothing.
+    void leaveOut(std::size_t point) { set(point, {}, {}, 0, 0, 0); }
     kernels::NormalEquations sum() const;
     /// Adds each of them to its edge; none before anything was set.
     /// @param edge_of(point)  index of its edge

@@ -162,7 +162,10 @@ void PhotometricResiduals::accumulate(const PhotometricPoints& points, int level
     const auto scale = static_cast<float>(factor / (scale_ * scale_));
     const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (weight_[i] == 0) continue;
+        if (weight_[i] == 0) {
+            rows_.leaveOut(i);
+            continue;
+        }
         // From the aligned frame to the image: M = A G A^T, v = A g with A = [c -s; s c]
         // The current image's slopes are `gain` times the reference's: so is the Jacobian
         const float c = axis_x_[i], s = axis_y_[i], w = weight_[i] * scale, slopes = w * gain_,

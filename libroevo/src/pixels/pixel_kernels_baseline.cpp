@@ -1,0 +1,24 @@
+#include "pixels/pixel_kernels.h"
+
+namespace roevo::pixels {
+namespace {
+#include "pixel_kernels_impl.h"
+}  // namespace
+
+const Table& baseline() {
+    static const Table table{"baseline", gradient, ridges, remap};
+    return table;
+}
+
+#if !defined(ROEVO_HAVE_AVX2)
+const Table* avx2() {
+    return nullptr;
+}
+#endif
+
+const Table& best() {
+    static const Table& table = avx2() != nullptr ? *avx2() : baseline();
+    return table;
+}
+
+}  // namespace roevo::pixels
