@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kDampingTranslation = 0.2;  ///< one sigma of a step, as a share of the depth
 constexpr double kDampingRotation = 0.2;     ///< rad
+constexpr double kStill = 0.05;              ///< px of a level that finer ones follow: a small step there
+constexpr double kSameGuess = 0.5;           ///< px of the level: guesses so near end up at the same pose
 
 }  // namespace
 
@@ -26,6 +28,7 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
     loop.focal_length = camera.fx;
     loop.depth = depth;
     loop.keep_best = true;
+    if (level > 0) loop.still = kStill;
     const GaussNewtonResult found =
         minimise(state.T_current_keyframe, shutter, {&photometric, &damping}, loop);
     state.T_current_keyframe = found.T_current_keyframe;
@@ -69,6 +72,7 @@ CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& 
     const int levels = std::min(pyramid.numLevels(), static_cast<int>(keyframe.photometric.patches.size()));
     // The coarsest level on which any guess sees enough points decides between the guesses; finer ones refine
     double best_cost = -1;
+    std::size_t best_guess = 0;
     for (int level = levels - 1; level >= 0; --level) {
         const PinholeCamera scaled = camera.atPyramidLevel(level);
         const cv::Mat& image = pyramid.level(level);
@@ -77,6 +81,9 @@ CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& 
             continue;
         }
         for (const std::size_t i : mostSimilar(keyframe, image, level, scaled, guesses, start)) {
+            if (best_cost >= 0 &&
+                imageMotion(guesses[best_guess], guesses[i], scaled.fx, keyframe.typicalDepth()) < kSameGuess)
+                continue;
             CoarseResult state;
             state.T_current_keyframe = guesses[i];
             state.brightness = start;
@@ -85,6 +92,7 @@ CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& 
             if (cost >= 0 && (best_cost < 0 || cost < 0.95 * best_cost)) {
                 best = state;
                 best_cost = cost;
+                best_guess = i;
             }
         }
     }
