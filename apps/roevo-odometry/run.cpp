@@ -48,21 +48,39 @@ const std::vector<std::string> kResults = {
     "trajectory.txt", "trajectory_live.txt", "trajectory_robot.txt", "keyframes.txt", "map.3Dscene",
     "map.ply",        "map_semi_dense.ply",  "config_used.ini",      "frames.csv",    "summary.json"};
 
-// The file for covariances, there before any work is done, so that a wrong path costs none.
-void open(std::optional<AtomicFile>& file, const RunSettings& settings) {
+bool isSameFile(const fs::path& a, const fs::path& b) {
+    return fs::weakly_canonical(a) == fs::weakly_canonical(b);
+}
+
+// What is written besides the results must not take the place of what is read, or of a result.
+void checkNames(const RunSettings& settings) {
+    const auto check = [&](const char* option, const std::string& file) {
+        if (file.empty()) return;
+        const auto refuse = [&](const std::string& what) {
+            throw UsageError(std::string(option) + " " + file + " is " + what + "; give another name");
+        };
+        if (isSameFile(file, settings.input) ||
+            (!settings.ground_truth.empty() && isSameFile(file, settings.ground_truth)))
+            refuse("an input");
+        for (const std::string& name : kResults)
+            if (isSameFile(file, fs::path(settings.output_dir) / name)) refuse("what the run writes itself");
+    };
+    check("--covariances", settings.covariances);
+    check("--map-out", settings.map_out);
     if (settings.covariances.empty()) return;
-    const auto refuse = [&](const std::string& what) {
-        throw UsageError("--covariances " + settings.covariances + " is " + what + "; give another name");
-    };
-    const auto isAt = [&](const fs::path& other) {
-        return fs::weakly_canonical(settings.covariances) == fs::weakly_canonical(other);
-    };
-    if (isAt(settings.input) || (!settings.ground_truth.empty() && isAt(settings.ground_truth)))
-        refuse("an input");
-    for (const std::string& name : kResults)
-        if (isAt(fs::path(settings.output_dir) / name)) refuse("what the run writes itself");
-    file.emplace(settings.covariances);
-    file->stream();
+    for (const std::string& map : {settings.map_in, settings.map_out})
+        if (!map.empty() && isSameFile(settings.covariances, map))
+            throw UsageError("--covariances " + settings.covariances + " is the map; give another name");
+}
+
+// There before any work is done, so that a wrong path costs none.
+void open(std::optional<AtomicFile>& file, const std::string& name) {
+    if (!name.empty()) file.emplace(name).stream();
+}
+
+// Else the results would get their names, and this would not.
+void finish(std::optional<AtomicFile>& file, const std::string& name) {
+    if (file && !file->stream().flush()) throw std::runtime_error("cannot write " + name);
 }
 
 constexpr double kLongestGap = 1;  // s; a recording that stood still, or a stray stamp, is not waited for
@@ -205,6 +223,7 @@ void printInput(const RunReport& report, const FrameSource& source) {
 
 RunReport runOdometry(const RunSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
+    checkNames(settings);
     auto source = prefetch(openSource(settings.input, settings.sensor_label));
     RunReport report = reportOn(*source, settings);
     Odometry odometry(source->camera(), settings.options);
@@ -212,8 +231,8 @@ RunReport runOdometry(const RunSettings& settings) {
     prepareOutputFolder(settings.output_dir);
     WholeOutputs files(settings.output_dir, kResults);
     std::optional<AtomicFile> map_file, covariances;  // opened now, else nothing is begun
-    if (!settings.map_out.empty()) map_file.emplace(settings.map_out).stream();
-    open(covariances, settings);
+    open(map_file, settings.map_out);
+    open(covariances, settings.covariances);
 
     const GroundTruth ground_truth = groundTruthFor(settings.ground_truth, *source);
     report.ground_truth = ground_truth.file;
@@ -254,11 +273,11 @@ RunReport runOdometry(const RunSettings& settings) {
     writeTextAtomically(files.path("frames.csv"), framesCsv(report));
     report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     writeTextAtomically(files.path("summary.json"), summaryJson(report));
-    if (covariances && failure.empty()) {
-        covariances->stream() << covariancesText(report);
-        covariances->commit();
-    }
+    if (covariances) covariances->stream() << covariancesText(report);
+    finish(covariances, settings.covariances);
+    finish(map_file, settings.map_out);
     files.commit();
+    if (covariances && failure.empty()) covariances->commit();
     if (!report.map_out.file.empty()) map_file->commit();
     if (!failure.empty())
         throw std::runtime_error(settings.input + ": " + failure + " (see " +

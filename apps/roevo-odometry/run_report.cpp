@@ -121,7 +121,8 @@ std::string framesCsv(const RunReport& report) {
 std::string covariancesText(const RunReport& report) {
     std::string text =
         "# Covariance of each pose T_world_camera, as it was known when its frame was processed\n"
-        "# order: position x y z, orientation x y z; both along the axes of the world of trajectory.txt\n"
+        "# order: position x y z, orientation x y z; both along the axes of the world of "
+        "trajectory_live.txt\n"
         "# units: m and rad, so m^2, m rad and rad^2; an orientation error phi is meant as R <- exp(phi) R\n"
         "# timestamp, then the 6x6 matrix row by row: 37 columns\n";
     for (const FrameRecord& f : report.frames) {

@@ -129,9 +129,10 @@ Json mapInJson(const RunReport& report) {
                  {"keyframes", report.map_in->keyframes},
                  {"localise_only", report.map_in->localise_only},
                  {"localised", nullptr}};
-    for (std::size_t i = 0; i < report.frames.size(); ++i) {
+    const FrameResult* const localised = report.localised();
+    for (std::size_t i = 0; localised != nullptr && i < report.frames.size(); ++i) {
         const FrameResult& frame = report.frames[i].result;
-        if (&frame != report.localised()) continue;
+        if (&frame != localised) continue;
         json["localised"] = {
             {"frame", i}, {"timestamp", frame.timestamp}, {"keyframe", report.mapKeyframeOf(frame)}};
     }

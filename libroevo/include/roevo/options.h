@@ -52,7 +52,7 @@ struct EdgeOptions {
 
 struct CoarseOptions {
     int levels = 4;           ///< image pyramid levels
-    int max_points = 1500;    ///< sampled edge points
+    int max_points = 800;     ///< sampled edge points
     int min_points = 30;      ///< fewer cannot carry a photometric pose
     int max_iterations = 12;  ///< Gauss-Newton steps per level
 };

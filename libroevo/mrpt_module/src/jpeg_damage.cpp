@@ -2,6 +2,7 @@
 
 #include <csetjmp>
 #include <cstdio>
+#include <new>
 // After <cstdio>: it uses FILE
 #include <jerror.h>
 #include <jpeglib.h>
@@ -9,7 +10,8 @@
 namespace roevo {
 namespace {
 
-constexpr int kPadding = 8;  ///< bytes before a marker that cameras leave there
+constexpr JDIMENSION kLargest = 8192;  ///< px; larger images are refused by their size
+constexpr int kPadding = 8;            ///< bytes before a marker that cameras leave there
 
 /// libjpeg goes on after damage, and tells of it here.
 struct Reports {
@@ -41,16 +43,19 @@ void note(j_common_ptr decoder, int level) {
 
 /// Decodes the coefficients, not the pixels. Nothing here has a destructor, which longjmp would pass over.
 void readCoefficients(const std::uint8_t* bytes, std::size_t size, Reports& reports) {
-    jpeg_decompress_struct decoder;
+    jpeg_decompress_struct decoder{};
     decoder.err = jpeg_std_error(&reports.base);
     reports.base.emit_message = note;
     reports.base.error_exit = fail;
-    jpeg_create_decompress(&decoder);
     if (setjmp(reports.failed) == 0) {
+        jpeg_create_decompress(&decoder);
         jpeg_mem_src(&decoder, bytes, size);
         jpeg_read_header(&decoder, TRUE);
-        jpeg_read_coefficients(&decoder);
-        jpeg_finish_decompress(&decoder);
+        // Coefficients of the whole image are held in memory; no camera may be larger than this
+        if (decoder.image_width <= kLargest && decoder.image_height <= kLargest) {
+            jpeg_read_coefficients(&decoder);
+            jpeg_finish_decompress(&decoder);
+        }
     }
     jpeg_destroy_decompress(&decoder);
 }
@@ -60,6 +65,7 @@ void readCoefficients(const std::uint8_t* bytes, std::size_t size, Reports& repo
 std::string jpegDataDamage(const std::vector<std::uint8_t>& bytes) {
     Reports reports{};
     readCoefficients(bytes.data(), bytes.size(), reports);
+    if (reports.damaged && reports.base.msg_code == JERR_OUT_OF_MEMORY) throw std::bad_alloc();
     return reports.damaged ? reports.text : "";
 }
 

@@ -5,7 +5,7 @@
 
 namespace roevo {
 
-/// What is wrong with the compressed data of a JPEG file, empty when nothing is. Decoders make a picture of
+/// Decodes all but the pixels. What is wrong with the compressed data of a JPEG file, empty when nothing is. Decoders make a picture of
 /// damaged data, too: whatever its pixels happen to be.
 std::string jpegDataDamage(const std::vector<std::uint8_t>& bytes);
 

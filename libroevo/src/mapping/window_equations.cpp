@@ -151,7 +151,8 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
         }
         if (count >= 2) addPoint(points[static_cast<std::size_t>(points_[p])], p % stride == 0);
         for (const std::int32_t slot : touched_) point_blocks_[static_cast<std::size_t>(slot)].used = false;
-        if (p + 1 == points_.size() || edge_of_[p + 1] != edge_of_[p]) addPulls(edge_of_[p]);
+        const bool last_of_edge = p + 1 == points_.size() || edge_of_[p + 1] != edge_of_[p];
+        if (anchor_ >= 1 && last_of_edge) addPulls(edge_of_[p]);
     }
     hessian_factor_ = static_cast<double>(stride);
     for (std::size_t a = 0; a < rows_.size(); ++a) {
@@ -220,6 +221,7 @@ void WindowEquations::addPoint(Eigen::Vector3d& point, bool to_hessian) {
         const Eigen::Vector3d turning = (point - origin_).cross(b);
         gradients_[s].head<3>() -= b;
         gradients_[s].tail<3>() -= turning;
+        if (anchor_ < 1) continue;  // nobody asks for pulls
         edge_gradients_[s].head<3>() -= b;
         edge_gradients_[s].tail<3>() -= turning;
     }

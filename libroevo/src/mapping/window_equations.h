@@ -36,7 +36,8 @@ class WindowEquations {
     /// First row of a keyframe in the normal equations, -1: fixed.
     int row(std::size_t slot) const { return rows_[slot]; }
     int numRows() const { return num_rows_; }
-    /// The newest of the fixed keyframes; -1: none is fixed.
+    /// The newest of the fixed keyframes; -1: none is fixed. Where it is not the only one, what follows is
+    /// known.
     int anchor() const { return anchor_; }
     /// What the residuals relate the anchor's pose to a keyframe's by: that block of the Hessian.
     Matrix6d anchorBlock(std::size_t slot) const {
@@ -86,7 +87,7 @@ class WindowEquations {
     void addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse);
     void addPulls(std::int32_t edge);
     bool isInHessian(std::int32_t slot) const {
-        return rows_[static_cast<std::size_t>(slot)] >= 0 || slot == anchor_;
+        return rows_[static_cast<std::size_t>(slot)] >= 0 || (slot == anchor_ && slot > 0);
     }
     Block& block(std::int32_t row_slot, std::int32_t column_slot) {
         return blocks_[static_cast<std::size_t>(row_slot) * rows_.size() +

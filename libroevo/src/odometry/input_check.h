@@ -9,7 +9,7 @@ namespace roevo {
 /// @param last_timestamp  s, of the frame before
 [[nodiscard]] Fault inputFault(const RgbdFrame& frame, const PinholeCamera& camera, double last_timestamp);
 
-/// Whether two grey images are the same to the last bit: none that a camera takes anew ever is.
+/// Whether two grey images are the same to the last bit: a camera with noise never takes two such images.
 bool sameBytes(const cv::Mat& a, const cv::Mat& b);
 
 }  // namespace roevo

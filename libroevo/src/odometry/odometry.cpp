@@ -11,6 +11,7 @@
 #include "outcome.h"
 #include "stopwatch.h"
 #include "tracking/camera_scale.h"
+#include "tracking/se3.h"
 #include "world.h"
 
 namespace roevo {
@@ -39,13 +40,15 @@ struct Odometry::Impl {
     double last_timestamp = -std::numeric_limits<double>::infinity();
     std::optional<double> leap;  // s, stamp of the frame before, if it was not believed
     double edges_ms = 0;
-    bool measured = false;  // the frame's pose was
+    bool measured = false;   // the pose of what is in `frame` was
+    bool is_frozen = false;  // images since then are the same
     int lost_frames = 0;
     double lost_since = 0;  // s
 
     FrameResult processFrame(const RgbdFrame& images);
     void expect(double timestamp);
     void prepare(const RgbdFrame& images);
+    bool isFrozen(const RgbdFrame& images);
     Fault stampFault(double timestamp);
     Outcome frozen(double timestamp);
     Outcome start();
@@ -67,7 +70,7 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     if (const Fault fault = inputFault(images, camera, last_timestamp))
         return rejected(images.timestamp, fault);
     if (const Fault fault = stampFault(images.timestamp)) return rejected(images.timestamp, fault);
-    if (measured && sameBytes(images.grey, frame->images.grey)) return report(frozen(images.timestamp));
+    if (isFrozen(images)) return report(frozen(images.timestamp));
     prepare(images);  // Sec. IV
     if (world.empty()) return report(start());
     const Prediction prediction = motion.predict(images.timestamp);
@@ -91,10 +94,10 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
 /// ahead is not believed until the next one comes soon after it.
 Fault Odometry::Impl::stampFault(double timestamp) {
     constexpr double kLeap = 60;  // s
-    const double last = leap && timestamp > *leap ? *leap : last_timestamp;
+    const double ahead = timestamp - last_timestamp;
+    const bool goes_on = leap && timestamp > *leap && timestamp - *leap <= *leap - last_timestamp;
     leap.reset();
-    const double ahead = timestamp - last;
-    if (world.empty() || ahead <= kLeap) return {};
+    if (world.empty() || ahead <= kLeap || goes_on) return {};
     leap = timestamp;
     return {Fault::Kind::kTimeLeap, {static_cast<int>(std::min(ahead, 1e9))}};
 }
@@ -106,6 +109,7 @@ void Odometry::Impl::expect(double timestamp) {
 }
 
 void Odometry::Impl::prepare(const RgbdFrame& images) {
+    is_frozen = false;
     expect(images.timestamp);
     const Stopwatch watch;
     std::swap(frame, frame_before);
@@ -122,9 +126,20 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
     return tracking;
 }
 
+/// Whether a camera that moves shows the same image once more. One at rest may, where nothing makes noise.
+bool Odometry::Impl::isFrozen(const RgbdFrame& images) {
+    constexpr double kAtRest = 0.5;  // px of image motion
+    if (!measured || !sameBytes(images.grey, frame->images.grey)) return false;
+    if (is_frozen) return true;
+    const Prediction prediction = motion.predict(images.timestamp);
+    return imageMotion(prediction.T_reference_camera.inverse(), prediction.T_reference_last.inverse(),
+                       camera.fx, world.reference().typicalDepth()) > kAtRest;
+}
+
 /// What the camera has seen before tells nothing of where it is now, and is not tracked: it would be taken
 /// for standing still.
 Outcome Odometry::Impl::frozen(double timestamp) {
+    is_frozen = true;
     expect(timestamp);
     edges_ms = 0;
     const Prediction prediction = motion.predict(timestamp);
@@ -253,7 +268,9 @@ void Odometry::Impl::renewReference(Outcome& outcome) {
         // What is seen from afar should be seen from nearby
         outcome.not_from_newest = again.fault;
         tracking.doubt();
+        outcome.measured = tracking.pose.uncertainty;
         tracking.matches = {};  // with another keyframe
+        tracking.inliers = 0;
         return;
     }
     learn(again, prediction);
