@@ -121,8 +121,16 @@ TEST_F(MapProgram, AMapIsWrittenWholeOrNotAtAll) {
     test::writeTumFolder(recording(), slidingRecording(3));
     expectError(run(recording(), {"--map-out", folder_ / "no/such/wall.map"}), 1, kName,
                 {"no/such/wall.map", "cannot write"});
-    expectError(run(recording(), {"--map-out", recording()}), 1, kName, {"it is a folder"});
+    expectError(run(recording(), {"--map-out", folder_.path().string()}), 1, kName, {"it is a folder"});
     EXPECT_FALSE(fs::exists(map()));
+    // Nothing that is read, or written besides, is written over
+    fs::remove_all(output());
+    expectError(run(recording(), {"--map-out", recording()}), 2, kName, {"--map-out", "an input"});
+    expectError(run(recording(), {"--map-out", output() + "/trajectory.txt"}), 2, kName,
+                {"--map-out", "trajectory.txt", "the run writes itself"});
+    expectError(run(recording(), {"--map-out", map(), "--covariances", map()}), 2, kName,
+                {"--covariances", "is the map"});
+    EXPECT_FALSE(fs::exists(output())) << "refused before anything is begun";
     // A run that fails leaves what was there
     std::ofstream(map()) << "what was there";
     std::vector<test::TumFrame> blank = slidingRecording(3);

@@ -215,7 +215,7 @@ const std::vector<Fault>& allFaults() {
         {"salt and pepper", E::kAny, each(saltAndPepper)},
         {"noise of 25 grey levels", E::kAny, each(noisy)},
         {"mirrored", E::kSurvived, each(mirrored)},
-        {"torn", E::kAny, torn},
+        {"torn", E::kSurvived, torn},
         {"half covered", E::kAny, each(coverHalf)},
         {"a hand", E::kTracked, each(hand)},
         {"brightness x1.5", E::kTracked, brightness(1.5)},

@@ -11,7 +11,7 @@ namespace roevo {
 namespace {
 
 constexpr JDIMENSION kLargest = 8192;  ///< px; larger images are refused by their size
-constexpr int kPadding = 8;            ///< bytes before a marker that cameras leave there
+constexpr int kPadding = 8;            ///< bytes before the end that cameras leave there
 
 /// libjpeg goes on after damage, and tells of it here.
 struct Reports {
@@ -27,8 +27,8 @@ Reports& reportsOf(j_common_ptr decoder) {
 
 void note(j_common_ptr decoder, int level) {
     Reports& reports = reportsOf(decoder);
-    const bool is_padding =
-        reports.base.msg_code == JWRN_EXTRANEOUS_DATA && reports.base.msg_parm.i[0] <= kPadding;
+    const bool is_padding = reports.base.msg_code == JWRN_EXTRANEOUS_DATA &&
+                            reports.base.msg_parm.i[0] <= kPadding && reports.base.msg_parm.i[1] == JPEG_EOI;
     if (level >= 0 || is_padding || reports.damaged) return;  // warnings have level -1
     reports.base.format_message(decoder, reports.text);
     reports.damaged = true;
