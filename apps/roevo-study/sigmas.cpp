@@ -197,7 +197,7 @@ StudyReport studySigmas(const std::vector<StudyInput>& inputs, const std::string
     report.table = shown(rows);
     report.notes.push_back(format(
         "Mean NEES per degree of freedom (share inside the 95 %% ellipsoid; translation alone, rotation "
-        "alone) of the live poses' motion, all ways through a recording pooled; 1 and 95 %% would be "
+        "alone) of motions as they are known then, all ways through a recording pooled; 1 and 95 %% would be "
         "right. The ground truth is taken to err by %g mm and %g degrees per axis.",
         1e3 * inputs.front().truth_noise.position, inputs.front().truth_noise.orientation / kDegree));
     return report;

@@ -11,7 +11,7 @@ enum class FrameStatus {
     kOk,           ///< tracked
     kInitialised,  ///< first usable frame, or re-anchored after a loss: a new keyframe with no measured
                    ///< motion
-    kPredicted,    ///< tracking lost: constant velocity
+    kPredicted,    ///< tracking lost, or the image frozen: constant velocity
     kLost,         ///< tracking lost for longer than prediction is trusted; pose held
     kRejected      ///< bad input, not processed; no pose
 };
@@ -36,7 +36,7 @@ struct FrameResult {
     bool new_keyframe = false;          ///< this frame brought a new keyframe: itself or the frame before it
     int num_edges = 0, num_points = 0;  ///< organized edges and their points in this frame
     int found_at = -1;                  ///< keyframe that a lost camera was recognised by
-    int joined_at = -1;                 ///< keyframe of an older track that this frame's track was joined to
+    int joined_at = -1;                 ///< keyframe of another track; the younger of both tracks was moved
     int closed_at = -1;                 ///< keyframe that a loop was closed to
     double matched_ratio = 0;           ///< share of the keyframe's visible edges that were associated, 0..1
     int inliers = 0;                    ///< associated edge points (in tr: that passed the chi-square test)
