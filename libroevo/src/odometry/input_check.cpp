@@ -1,5 +1,6 @@
 #include "input_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -23,6 +24,16 @@ Fault inputFault(const RgbdFrame& frame, const PinholeCamera& camera, double las
     if (frame.depth.type() != CV_32FC1) return {Kind::kDepthType, {}};
     if (!fits(frame.depth)) return sizes(Kind::kDepthSize, frame.depth);
     return {};
+}
+
+Fault LeapCheck::check(double timestamp, double last_timestamp) {
+    constexpr double kLeap = 60;  // s
+    const double ahead = timestamp - last_timestamp;
+    const bool goes_on = leap_ && timestamp > *leap_ && timestamp - *leap_ <= *leap_ - last_timestamp;
+    leap_.reset();
+    if (ahead <= kLeap || goes_on) return {};
+    leap_ = timestamp;
+    return {Fault::Kind::kTimeLeap, {static_cast<int>(std::min(ahead, 1e9))}};
 }
 
 bool sameBytes(const cv::Mat& a, const cv::Mat& b) {

@@ -1,6 +1,5 @@
 #include "roevo/odometry.h"
 
-#include <algorithm>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -38,7 +37,7 @@ struct Odometry::Impl {
     std::unique_ptr<Frame> frame = std::make_unique<Frame>(), frame_before = std::make_unique<Frame>();
     std::optional<Tracking> candidate;  // of the frame before, if it can still become a keyframe
     double last_timestamp = -std::numeric_limits<double>::infinity();
-    std::optional<double> leap;  // s, stamp of the frame before, if it was not believed
+    LeapCheck leaps;
     double edges_ms = 0;
     bool measured = false;   // the pose of what is in `frame` was
     bool is_frozen = false;  // images since then are the same
@@ -49,7 +48,6 @@ struct Odometry::Impl {
     void expect(double timestamp);
     void prepare(const RgbdFrame& images);
     bool isFrozen(const RgbdFrame& images);
-    Fault stampFault(double timestamp);
     Outcome frozen(double timestamp);
     Outcome start();
     Tracking track(const Prediction& prediction);
@@ -69,7 +67,8 @@ struct Odometry::Impl {
 FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     if (const Fault fault = inputFault(images, camera, last_timestamp))
         return rejected(images.timestamp, fault);
-    if (const Fault fault = stampFault(images.timestamp)) return rejected(images.timestamp, fault);
+    if (const Fault fault = world.empty() ? Fault() : leaps.check(images.timestamp, last_timestamp))
+        return rejected(images.timestamp, fault);
     if (isFrozen(images)) return report(frozen(images.timestamp));
     prepare(images);  // Sec. IV
     if (world.empty()) return report(start());
@@ -88,18 +87,6 @@ FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     FrameResult result = report(outcome);
     if (!outcome.is_keyframe) candidate = std::move(outcome.tracking);
     return result;
-}
-
-/// One damaged stamp far ahead would have all frames after it rejected, as going backward. A frame that leaps
-/// ahead is not believed until the next one comes soon after it.
-Fault Odometry::Impl::stampFault(double timestamp) {
-    constexpr double kLeap = 60;  // s
-    const double ahead = timestamp - last_timestamp;
-    const bool goes_on = leap && timestamp > *leap && timestamp - *leap <= *leap - last_timestamp;
-    leap.reset();
-    if (world.empty() || ahead <= kLeap || goes_on) return {};
-    leap = timestamp;
-    return {Fault::Kind::kTimeLeap, {static_cast<int>(std::min(ahead, 1e9))}};
 }
 
 void Odometry::Impl::expect(double timestamp) {
@@ -329,27 +316,13 @@ FrameResult Odometry::Impl::report(const Outcome& outcome) {
         result.reason = "cannot start here: " + describe(tracking.fault);
         return result;
     }
-    const bool is_measured =
-        outcome.status != FrameStatus::kPredicted && outcome.status != FrameStatus::kLost;
+    const bool is_measured = outcome.hasMeasuredPose();
     // A frozen frame leaves the one before it as the last that was looked at
     if (outcome.tracking.fault.kind != Fault::Kind::kFrozen) measured = is_measured;
     world.addFrame(result.timestamp, tracking.pose, is_measured);
-    result.reason = describe(outcome, change);
     result.T_world_camera = world.trajectory().worldPose(tracking.pose);
     result.covariance = world.trajectory().worldCovariance(tracking.pose);
-    result.new_keyframe = outcome.new_keyframe;
-    result.found_at = outcome.found_at;
-    result.joined_at = change.joined_at;
-    result.closed_at = change.closed_at;
-    result.matched_ratio = tracking.matchedRatio();
-    result.inliers = tracking.inliers;
-    result.map_correction = change.moved;
-    result.map_turn = change.turned;
-    result.map_refusals = change.refusals;
-    result.ms.coarse = tracking.ms_coarse;
-    result.ms.fine = tracking.ms_fine;
-    result.ms.mapping = change.mapping_ms;
-    result.ms.waiting = change.waiting_ms;
+    fill(result, outcome, change);
     return result;
 }
 

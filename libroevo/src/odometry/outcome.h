@@ -16,11 +16,16 @@ struct Outcome {
     bool new_keyframe = false;  ///< this frame brought a new keyframe: itself or the frame before it
     int lost_frames = 0;        ///< until this one
     int found_at = -1;          ///< keyframe that a lost frame was recognised by
+
+    bool hasMeasuredPose() const { return status != FrameStatus::kPredicted && status != FrameStatus::kLost; }
 };
 
 /// The reason of a frame's status, and what became of the world, in words: the one place where they are
 /// made.
 std::string describe(const Outcome& outcome, const WorldChange& change);
+
+/// What a frame's result says of both: all but its pose and what was seen in its images.
+void fill(FrameResult& result, const Outcome& outcome, const WorldChange& change);
 
 /// A frame that is not processed.
 FrameResult rejected(double timestamp, const Fault& fault, const char* where = "");
