@@ -17,7 +17,7 @@ roevo_test(test_core_mapping
   SOURCES core/test_disjoint_set.cpp core/test_covisibility.cpp core/test_semi_dense.cpp
           core/test_edge_smoothing.cpp core/test_edge_fusion.cpp core/test_bundle_adjustment.cpp core/test_bundle_ceres.cpp core/test_pseudo_edges.cpp
           core/test_local_mapper.cpp core/test_packed_keyframe.cpp core/test_pose_graph.cpp
-          core/test_window_posterior.cpp
+          core/test_window_posterior.cpp core/test_refine_all.cpp
   LIBS roevo_internal Ceres::ceres)
 # One ctest entry per suite, since the cases of a suite share a rendered sequence.
 add_executable(test_core_odometry core/test_trajectory.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp core/test_odometry_accuracy.cpp core/test_odometry_status.cpp

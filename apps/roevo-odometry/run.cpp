@@ -243,6 +243,7 @@ RunReport runOdometry(const RunSettings& settings) {
     report.warning = source->warning();
     source.reset();
 
+    odometry.refineAll();
     report.trajectory = odometry.trajectory();
     report.keyframes = odometry.keyframes();
     if (report.map_in)  // those of this recording

@@ -29,6 +29,7 @@ StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options,
         ++processed;
     }
     if (processed > 0) run.points /= static_cast<double>(processed);
+    odometry.refineAll();
     run.trajectory = odometry.trajectory();
     run.live = odometry.liveTrajectory();
     for (const KeyframeInfo& keyframe : odometry.keyframes())

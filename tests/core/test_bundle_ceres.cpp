@@ -2,7 +2,12 @@
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
+#include <Eigen/Cholesky>
+
 #include "core/support/bundle_fixture.h"
+#include "mapping/window_equations.h"
+#include "tracking/robust.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -55,13 +60,21 @@ struct CeresHold {
     }
 };
 
-/// Camera centres of the window by Ceres, from where the poses and points are now. No robust loss.
-std::vector<Eigen::Vector3d> solveWithCeres(const std::vector<WindowKeyframe>& window,
-                                            const FusedEdges& edges, const MappingOptions& mapping,
-                                            const SensorOptions& sensor, double scale) {
-    std::vector<std::array<double, 6>> poses(window.size());
-    std::vector<Eigen::Vector3d> points = edges.points;
-    ceres::Problem problem;
+using CeresPose = std::array<double, 6>;  ///< T_camera_world: angle-axis, translation
+
+Pose fromCeres(const CeresPose& pose) {
+    const Eigen::Vector3d turn(pose[0], pose[1], pose[2]);
+    const Eigen::Quaterniond rotation(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+    return Pose(rotation, {pose[3], pose[4], pose[5]}).inverse();
+}
+
+/// The window for Ceres, from where the poses and points are now. No robust loss.
+void addToProblem(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
+                  const MappingOptions& mapping, const SensorOptions& sensor, double scale,
+                  std::vector<CeresPose>& poses, std::vector<Eigen::Vector3d>& points,
+                  ceres::Problem& problem) {
+    poses.resize(window.size());
+    points = edges.points;
     for (std::size_t s = 0; s < window.size(); ++s) {
         const Pose T = window[s].T_world_camera.inverse();
         const Eigen::AngleAxisd turn(T.linear());
@@ -104,6 +117,16 @@ std::vector<Eigen::Vector3d> solveWithCeres(const std::vector<WindowKeyframe>& w
                 nullptr, poses[slot].data(), points[p].data());
         }
     }
+}
+
+/// Camera centres of the window by Ceres.
+std::vector<Eigen::Vector3d> solveWithCeres(const std::vector<WindowKeyframe>& window,
+                                            const FusedEdges& edges, const MappingOptions& mapping,
+                                            const SensorOptions& sensor, double scale) {
+    std::vector<CeresPose> poses;
+    std::vector<Eigen::Vector3d> points;
+    ceres::Problem problem;
+    addToProblem(window, edges, mapping, sensor, scale, poses, points, problem);
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::SPARSE_SCHUR;
     options.max_num_iterations = 100;
@@ -114,13 +137,34 @@ std::vector<Eigen::Vector3d> solveWithCeres(const std::vector<WindowKeyframe>& w
     ceres::Solve(options, &problem, &summary);
     EXPECT_TRUE(summary.IsSolutionUsable()) << summary.FullReport();
     std::vector<Eigen::Vector3d> centres;
-    for (const auto& pose : poses) {
-        const double back[3] = {-pose[0], -pose[1], -pose[2]}, t[3] = {-pose[3], -pose[4], -pose[5]};
-        Eigen::Vector3d centre;
-        ceres::AngleAxisRotatePoint(back, t, centre.data());
-        centres.push_back(centre);
-    }
+    for (const CeresPose& pose : poses) centres.push_back(fromCeres(pose).translation());
     return centres;
+}
+
+/// Covariance of the newest keyframe by Ceres, along its own axes: position in m, orientation in rad.
+Matrix6d covarianceByCeres(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
+                           const MappingOptions& mapping, const SensorOptions& sensor, double scale) {
+    std::vector<CeresPose> poses;
+    std::vector<Eigen::Vector3d> points;
+    ceres::Problem problem;
+    addToProblem(window, edges, mapping, sensor, scale, poses, points, problem);
+    ceres::Covariance covariance({});
+    const double* newest = poses.back().data();
+    EXPECT_TRUE(covariance.Compute(std::vector<const double*>{newest}, &problem));
+    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> own;
+    EXPECT_TRUE(covariance.GetCovarianceBlock(newest, newest, own.data()));
+    constexpr double kStep = 1e-6;
+    Matrix6d to_axes;
+    for (int k = 0; k < 6; ++k) {
+        CeresPose less = poses.back(), more = less;
+        less[static_cast<std::size_t>(k)] -= kStep;
+        more[static_cast<std::size_t>(k)] += kStep;
+        const Pose between = fromCeres(less).inverse() * fromCeres(more);
+        const Eigen::AngleAxisd angle(between.linear());
+        to_axes.col(k) << between.translation(), angle.angle() * angle.axis();
+    }
+    to_axes /= 2 * kStep;
+    return to_axes * own * to_axes.transpose();
 }
 
 TEST_F(BundleOracle, AgreesWithCeresOnNoisyKeyframes) {
@@ -160,6 +204,35 @@ TEST_F(BundleOracle, AgreesWithCeresOnNoisyKeyframes) {
         EXPECT_GT(moved, 2e-5) << "the noise must matter for the comparison to mean something";
         EXPECT_LT(apart, 0.01 * moved) << "weights differ by up to 1 %";
     }
+}
+
+/// What independent errors leave of the newest pose when the points are eliminated.
+TEST_F(BundleOracle, InverseOfTheEquationsIsTheCovarianceThatCeresComputes) {
+    std::mt19937 random(3);
+    for (auto& made : made_)
+        for (float& weight : made.keyframe.weight) weight = static_cast<float>(uniform(random, 0.2, 1));
+    look(std::move(made_));
+    WindowEquations equations(mapping_, sensor_, mappingCamera());
+    equations.gather(window_, edges_);
+    equations.evaluate(window_, edges_.points, 0.5);  // far above the residuals: all weights are alike
+    equations.build(window_, edges_.points);
+    const Eigen::MatrixXd inverse =
+        Eigen::MatrixXd(equations.hessian.selfadjointView<Eigen::Upper>()).inverse();
+    // From turns about the window's origin to the camera's own axes
+    const Pose& newest = window_.back().T_world_camera;
+    Matrix6d to_camera = Matrix6d::Identity();
+    to_camera.topRightCorner<3, 3>() = -skew(newest.translation() - equations.origin());
+    Matrix6d turned = Matrix6d::Zero();
+    turned.topLeftCorner<3, 3>() = turned.bottomRightCorner<3, 3>() = newest.linear().transpose();
+    to_camera = turned * to_camera;
+    const int row = equations.row(window_.size() - 1);
+    // Weights of the t-distribution at residuals of nothing
+    const double weight = (kStudentNu + 1) / kStudentNu;
+    const Matrix6d own = weight * to_camera * inverse.block<6, 6>(row, row) * to_camera.transpose();
+    const Matrix6d expected = covarianceByCeres(window_, edges_, mapping_, sensor_, equations.scale);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> ratios(own, expected);
+    EXPECT_GT(ratios.eigenvalues().minCoeff(), 0.97) << ratios.eigenvalues().transpose();
+    EXPECT_LT(ratios.eigenvalues().maxCoeff(), 1.03) << ratios.eigenvalues().transpose();
 }
 
 }  // namespace

@@ -48,5 +48,44 @@ TEST(MappingReuse, TakesBackTheDriftOfASensorsNoise) {
     EXPECT_LT(end[1], 0.8 * end[0]);
 }
 
+TEST(MappingReuse, AllKeyframesTogetherAndFramesThatFollow) {
+    const Sequence path = backAndForth(40);
+    Odometry odometry(path.camera, manyKeyframes());
+    const std::size_t first_half = path.frames.size() / 2;
+    for (std::size_t i = 0; i < path.frames.size(); ++i) {
+        if (i == first_half) odometry.refineAll();
+        const FrameResult result = odometry.processFrame(path.frames[i]);
+        EXPECT_NE(result.status, FrameStatus::kLost) << i;
+    }
+    odometry.refineAll();
+    const auto refined = odometry.trajectory();
+    ASSERT_EQ(refined.size(), path.frames.size());
+    for (std::size_t i = 0; i < refined.size(); ++i) {
+        const Pose truth = path.start().inverse() * path.truth[i].T_world_camera;
+        EXPECT_LT((refined[i].T_world_camera.translation() - truth.translation()).norm(), 0.005) << i;
+    }
+    // Whoever asks again gets about the same: all is settled
+    odometry.refineAll();
+    const auto again = odometry.trajectory();
+    for (std::size_t i = 0; i < refined.size(); ++i)
+        EXPECT_LT((refined[i].T_world_camera.translation() - again[i].T_world_camera.translation()).norm(),
+                  5e-4);
+}
+
+TEST(MappingReuse, WithoutAMapOrAFrameThereIsNothingToRefine) {
+    const Sequence path = backAndForth(6);
+    OdometryOptions options;
+    options.mode = Mode::kTracking;
+    Odometry odometry(path.camera, options);
+    odometry.refineAll();
+    for (const RgbdFrame& frame : path.frames) (void)odometry.processFrame(frame);
+    const auto before = odometry.trajectory();
+    odometry.refineAll();
+    const auto after = odometry.trajectory();
+    ASSERT_EQ(before.size(), after.size());
+    for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_EQ(before[i].T_world_camera.matrix(), after[i].T_world_camera.matrix());
+}
+
 }  // namespace
 }  // namespace roevo

@@ -37,7 +37,10 @@ class RoevoMethod : public Method {
         return out;
     }
 
-    std::optional<std::vector<StampedPose>> finalTrajectory() override { return odometry_.trajectory(); }
+    std::optional<std::vector<StampedPose>> finalTrajectory() override {
+        odometry_.refineAll();
+        return odometry_.trajectory();
+    }
 
     std::optional<Background> background() const override {
         if (mode() != Mode::kBundleAdjustment) return std::nullopt;

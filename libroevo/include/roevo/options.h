@@ -103,13 +103,14 @@ struct MappingOptions {
     double chi2 = 16;              ///< chi-square limit of a point-to-tangent residual
     double depth_weight = 0.3;     ///< weight of the depth of an observation
     double depth_chi2 = 12;        ///< chi-square limit of a depth
-    double prior_weight = 0.03;    ///< weight of the tracked motion between keyframes
+    double prior_weight = 0.15;    ///< weight of the tracked motion between keyframes, against all points
     double max_spread = 16;        ///< sigmas; an edge whose observations differ by more is a pseudo-edge
     double min_seen = 0.5;         ///< share of the keyframes that look at an edge's place and must see it
     int min_looks = 3;             ///< fewer such keyframes cannot judge
     bool reuse_keyframes = true;   ///< old keyframes that look at the same place take part again
     int max_reused = 4;            ///< at most this many of them
     bool close_loops = true;       ///< places that are recognised correct the whole path since
+    int final_rounds = 5;          ///< most rounds in which all keyframes are refined together at the end
     bool deterministic = true;     ///< the tracker waits for the map; else it takes what is ready
     int latency = 4;               ///< frames after which the mapping of a keyframe takes effect
     double pseudo_weight = 0.3;    ///< what pseudo-edges of the keyframe still count in tracking

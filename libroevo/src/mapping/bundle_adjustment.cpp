@@ -11,9 +11,6 @@
 namespace roevo {
 namespace {
 
-/// How many points tell as much as one independent one, against the priors. What tracking measures of it
-/// (PoseUncertainty::designEffect) was no better here.
-constexpr double kCorrelatedPoints = 5;
 constexpr double kStill = 0.005;  ///< px of image motion; smaller steps end the refinement
 
 /// Adds the error of T_world_to against T_world_from * T_from_to, as a perturbation in the world's axes.
@@ -51,8 +48,9 @@ Matrix6d RelativePrior::toCentre(const std::vector<WindowKeyframe>& window,
 }
 
 BundleAdjuster::BundleAdjuster(const MappingOptions& mapping, const SensorOptions& sensor,
-                               const PinholeCamera& camera)
-    : focal_length_(camera.fx), equations_(std::make_unique<WindowEquations>(mapping, sensor, camera)) {}
+                               const PinholeCamera& camera, std::size_t hessian_points)
+    : focal_length_(camera.fx),
+      equations_(std::make_unique<WindowEquations>(mapping, sensor, camera, hessian_points)) {}
 
 BundleAdjuster::~BundleAdjuster() = default;
 BundleAdjuster::BundleAdjuster(BundleAdjuster&&) noexcept = default;
@@ -72,13 +70,11 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
         if (equations.numRows() == 0) continue;  // all poses are fixed: only the points are fitted
         Eigen::MatrixXd& hessian = equations.hessian;
         Eigen::VectorXd& gradient = equations.gradient;
-        hessian /= kCorrelatedPoints;
-        gradient /= kCorrelatedPoints;
         for (const RelativePrior& prior : priors) {
             addPrior(prior, window, equations.origin(), equations.row(static_cast<std::size_t>(prior.from)),
                      equations.row(static_cast<std::size_t>(prior.to)), hessian, gradient);
         }
-        hessian.diagonal().array() += 1e-6;
+        hessian.diagonal().array() += 5e-6;
         const Eigen::VectorXd step = -hessian.selfadjointView<Eigen::Upper>().ldlt().solve(gradient);
         if (!step.allFinite()) break;
         ++result.iterations;
@@ -94,7 +90,7 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
 std::optional<WindowPosterior> BundleAdjuster::posterior(const std::vector<WindowKeyframe>& window,
                                                          const std::vector<std::int32_t>& clusters,
                                                          const std::vector<RelativePrior>& priors) const {
-    return posteriorOf(window, *equations_, clusters, 1 / kCorrelatedPoints, priors);
+    return posteriorOf(window, *equations_, clusters, priors);
 }
 
 double BundleAdjuster::move(std::vector<WindowKeyframe>& window, const Eigen::VectorXd& step) const {

@@ -67,6 +67,10 @@ class LocalMapper {
 
     void correct(const Correction& correction);
 
+    /// Refines all keyframes of each track together, but for the first one and those that were loaded. Which
+    /// edges are pseudo-edges stays as it was judged.
+    MapUpdate refineAll();
+
     /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
     void setFound(int keyframe, std::vector<float> shares);
 
@@ -94,6 +98,8 @@ class LocalMapper {
                                              const std::vector<const MapKeyframe*>& recent) const;
     void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
     void takePoses(MapUpdate& update);
+    void refineTogether(const std::vector<const MapKeyframe*>& members, std::size_t fixed,
+                        BundleAdjuster& adjuster, MapUpdate& update);
     std::optional<MapRefusal> refusalOf(const WindowKeyframe& view, int inliers) const;
     void addPriors();
     void keepVerdicts();

@@ -12,24 +12,26 @@ namespace {
 
 constexpr int kIterations = 3;  ///< that fit the fused points; the poses stay
 
-/// What most of the keyframe edges that a fused edge is made of were thought to be.
-EdgeVerdict keptVerdict(const MapContents& map, const std::vector<WindowKeyframe>& window,
-                        const FusedEdges& edges, std::size_t edge) {
-    std::array<int, 4> votes{};
-    const auto [first, end] = edges.observationsOfEdge(edge);
-    for (std::size_t k = first; k < end; ++k) {
-        const MapKeyframe& keyframe = *window[static_cast<std::size_t>(edges.observations[k].slot)].keyframe;
-        const auto kept = map.verdicts.find(keyframe.id);
-        if (kept == map.verdicts.end()) continue;
-        const auto own = static_cast<std::size_t>(
-            keyframe.image.edge_of[static_cast<std::size_t>(edges.observations[k].point)]);
-        ++votes[static_cast<std::size_t>(kept->second[own])];
-    }
-    const auto most = std::max_element(votes.begin(), votes.end());
-    return static_cast<EdgeVerdict>(most - votes.begin());
-}
-
 }  // namespace
+
+void takeKeptVerdicts(const std::map<int, std::vector<EdgeVerdict>>& verdicts,
+                      const std::vector<WindowKeyframe>& window, FusedEdges& edges) {
+    for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
+        std::array<int, 4> votes{};
+        const auto [first, end] = edges.observationsOfEdge(edge);
+        for (std::size_t k = first; k < end; ++k) {
+            const MapKeyframe& keyframe =
+                *window[static_cast<std::size_t>(edges.observations[k].slot)].keyframe;
+            const auto kept = verdicts.find(keyframe.id);
+            if (kept == verdicts.end()) continue;
+            const auto own = static_cast<std::size_t>(
+                keyframe.image.edge_of[static_cast<std::size_t>(edges.observations[k].point)]);
+            ++votes[static_cast<std::size_t>(kept->second[own])];
+        }
+        const auto most = std::max_element(votes.begin(), votes.end());
+        edges.verdicts[edge] = static_cast<EdgeVerdict>(most - votes.begin());
+    }
+}
 
 EdgeMap fuseEdges(const MapContents& contents, const PinholeCamera& camera, const OdometryOptions& options) {
     std::vector<WindowKeyframe> window;
@@ -39,12 +41,13 @@ EdgeMap fuseEdges(const MapContents& contents, const PinholeCamera& camera, cons
     EdgeFuser fuser(options.sensor);
     fuser.fuse(window, contents.clusters, edges);
     BundleAdjuster(options.mapping, options.sensor, camera).refine(window, edges, {}, kIterations);
+    takeKeptVerdicts(contents.verdicts, window, edges);
     EdgeMap map;
     for (std::size_t number = 0; number < edges.views.size(); ++number) {
         MapEdge edge;
         edge.cluster = edges.clusters[number];
         edge.views = edges.views[number];
-        edge.verdict = keptVerdict(contents, window, edges, number);
+        edge.verdict = edges.verdicts[number];
         edge.confidence = isPseudo(edge.verdict) ? 0 : 1 - 1 / (1 + static_cast<float>(edge.views));
         const auto [first, end] = edges.pointsOf(number);
         std::vector<Eigen::Vector3d> points(edges.points.data() + first, edges.points.data() + end);

@@ -2,6 +2,7 @@
 #include <map>
 #include <vector>
 
+#include "mapping/edge_fusion.h"
 #include "mapping/map_keyframe.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/edge_map.h"
@@ -15,6 +16,10 @@ struct MapContents {
     std::vector<std::vector<int>> clusters;                   ///< of each keyframe's edges, in the same order
     const std::map<int, std::vector<EdgeVerdict>>& verdicts;  ///< of each keyframe's edges
 };
+
+/// What most of the keyframes' edges that each fused edge is made of were thought to be.
+void takeKeptVerdicts(const std::map<int, std::vector<EdgeVerdict>>& verdicts,
+                      const std::vector<WindowKeyframe>& window, FusedEdges& edges);
 
 /// All keyframes' edges fused at the present poses (Eqs. (14)-(16)).
 EdgeMap fuseEdges(const MapContents& map, const PinholeCamera& camera, const OdometryOptions& options);

@@ -36,6 +36,7 @@ class CollectingMapper : public Mapper {
     }
     std::vector<MapUpdate> due(double, double&) override { return {}; }
     const std::deque<MapUpdate>& outstanding() override { return none_; }
+    std::vector<MapUpdate> refineAll() override { return {}; }
     EdgeMap fusedMap() const override { return map_; }
     EdgeMap keyframeEdges() const override { return map_; }
 
@@ -89,6 +90,7 @@ class RefiningMapper : public Mapper {
     void correct(const Correction& correction) override;
     std::vector<MapUpdate> due(double timestamp, double& waited_ms) override;
     const std::deque<MapUpdate>& outstanding() override;
+    std::vector<MapUpdate> refineAll() override;
     EdgeMap fusedMap() const override { return finished().fusedMap(); }
     EdgeMap keyframeEdges() const override { return finished().keyframeEdges(); }
 
@@ -176,6 +178,17 @@ std::vector<MapUpdate> RefiningMapper::due(double timestamp, double& waited_ms) 
 const std::deque<MapUpdate>& RefiningMapper::outstanding() {
     while (taken_.size() < due_.size()) taken_.push_back(take());
     return taken_;
+}
+
+std::vector<MapUpdate> RefiningMapper::refineAll() {
+    (void)outstanding();
+    (void)finished();
+    std::vector<MapUpdate> updates(std::make_move_iterator(taken_.begin()),
+                                   std::make_move_iterator(taken_.end()));
+    taken_.clear();
+    due_.clear();
+    if (options_.final_rounds > 0) updates.push_back(mapper_.refineAll());
+    return updates;
 }
 
 MapUpdate RefiningMapper::run(Job job) {

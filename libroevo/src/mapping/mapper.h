@@ -42,6 +42,10 @@ class Mapper {
     /// What has not taken effect yet, and still will; waits for it.
     [[nodiscard]] virtual const std::deque<MapUpdate>& outstanding() = 0;
 
+    /// What has not taken effect yet, and last what becomes of all keyframes when they are refined together;
+    /// waits. From now on it has taken effect.
+    [[nodiscard]] virtual std::vector<MapUpdate> refineAll() = 0;
+
     /// The edges in the world: fused, and as each keyframe saw them. Of all keyframes that were inserted;
     /// waits.
     virtual EdgeMap fusedMap() const = 0;

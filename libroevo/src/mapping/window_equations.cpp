@@ -13,9 +13,6 @@ namespace {
 constexpr double kNoScale = 2.0;       ///< px of spread where nothing is seen
 constexpr double kNearest = 0.05;      ///< m; nearer points cannot be projected
 constexpr std::size_t kScaleStep = 3;  ///< every third point is enough for a median
-/// Points that make the Hessian; there are more than it needs. All make the gradient, so that nothing but the
-/// step to the optimum is approximate.
-constexpr std::size_t kHessianPoints = 1500;
 constexpr std::int32_t kAnySlot = -1;
 /// Damping of a point's step along its edge, relative to the information across it: normals and slopes differ
 /// by noise, and points that follow them slide. 1 and 0.001 are about as good.
@@ -136,7 +133,7 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
     for (auto& entry : edge_gradients_) entry.setZero();
     pulls_.clear();
     inliers.assign(window.size(), 0);
-    const std::size_t stride = 1 + points_.size() / kHessianPoints;
+    const std::size_t stride = 1 + points_.size() / hessian_points_;
     for (std::size_t p = 0; p < points_.size(); ++p) {
         int count = 0;
         touched_.clear();

@@ -28,7 +28,7 @@ Matrix6d toCamera(const Pose& T_world_camera, const Eigen::Vector3d& origin) {
 
 std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& window,
                                            const WindowEquations& equations,
-                                           const std::vector<std::int32_t>& clusters, double share,
+                                           const std::vector<std::int32_t>& clusters,
                                            const std::vector<RelativePrior>& priors) {
     const int anchor = equations.anchor();
     const auto newest = static_cast<int>(window.size()) - 1;
@@ -57,7 +57,7 @@ std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& wi
     out.reused = window[0].keyframe->id;
     out.follows.setZero();
     for (int slot = anchor + 1; slot <= newest; ++slot)
-        out.follows -= moves(slot, share * equations.anchorBlock(static_cast<std::size_t>(slot)).transpose());
+        out.follows -= moves(slot, equations.anchorBlock(static_cast<std::size_t>(slot)).transpose());
     for (const RelativePrior& prior : priors) {
         const Matrix6d to_centre = prior.toCentre(window, equations.origin());
         const Matrix6d information = to_centre.transpose() * prior.information * to_centre;
@@ -75,7 +75,7 @@ std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& wi
         if (row < 0) continue;
         Vector6d& sum =
             moved.try_emplace(clusters[static_cast<std::size_t>(pull.edge)], Vector6d::Zero()).first->second;
-        sum += share * (gain.middleCols<6>(row) * pull.gradient);
+        sum += gain.middleCols<6>(row) * pull.gradient;
     }
     const auto edges = static_cast<double>(moved.size());
     if (edges < 2) return std::nullopt;

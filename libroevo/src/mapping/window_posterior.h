@@ -24,11 +24,10 @@ struct WindowPosterior {
 /// errs independently, and so do the priors.
 /// @param equations  with the priors, as they were solved
 /// @param clusters  of each fused edge: how tracking numbers it (Keyframe::clusters)
-/// @param share  by which residuals were weighed against the priors
 /// @return none where the edges do not tell, or where no keyframe from before the window takes part
 std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& window,
                                            const WindowEquations& equations,
-                                           const std::vector<std::int32_t>& clusters, double share,
+                                           const std::vector<std::int32_t>& clusters,
                                            const std::vector<RelativePrior>& priors);
 
 }  // namespace roevo

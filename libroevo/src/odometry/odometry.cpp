@@ -363,6 +363,9 @@ FrameResult Odometry::processFrame(const RgbdFrame& images) {
     return result;
 }
 
+void Odometry::refineAll() {
+    impl_->world.refineAll();
+}
 std::vector<StampedPose> Odometry::trajectory() const {
     return impl_->world.finalTrajectory().frames();
 }

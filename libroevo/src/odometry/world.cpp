@@ -239,6 +239,12 @@ std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& 
                              {pose.translation(), kReach + kTopSpeed * since_measured, unrelated()});
 }
 
+void World::refineAll() {
+    if (!reference_) return;
+    recognise();
+    for (const MapUpdate& update : mapper_->refineAll()) takeUpdate(update);
+}
+
 Trajectory World::finalTrajectory() const {
     Trajectory poses = trajectory_;
     for (const MapUpdate& update : mapper_->outstanding()) poses.apply(update);

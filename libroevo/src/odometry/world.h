@@ -69,6 +69,9 @@ class World {
     void setLostFor(double seconds) { lost_for_ = seconds; }
     double lostFor() const { return lost_for_; }
 
+    /// See Odometry::refineAll().
+    void refineAll();
+
     /// With what has not taken effect yet.
     Trajectory finalTrajectory() const;
     // A map that the camera was never recognised in is in a world of its own

@@ -1,0 +1,118 @@
+// All keyframes refined together, when a recording ends or there is time.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <optional>
+
+#include "core/support/mapping_world.h"
+#include "mapping/local_mapper.h"
+
+namespace roevo {
+namespace {
+
+using namespace testing;
+
+class RefineAll : public ::testing::Test {
+  protected:
+    /// Along the path and back, again and again.
+    static int placeOf(int id) {
+        constexpr int kPlaces = 12;
+        const int at = id % (2 * kPlaces);
+        return at < kPlaces ? at : 2 * kPlaces - 1 - at;
+    }
+    static MapKeyframe keyframeAt(int id, const Pose& error) {
+        const auto curves = room();
+        MapKeyframe keyframe =
+            makeKeyframe(id, placeOnPath(placeOf(id)), curves, seeAll(curves, std::fmod(0.37 * id, 1.0)))
+                .keyframe;
+        if (id == 0) return keyframe;
+        keyframe.parent = id - 1;
+        keyframe.T_parent_camera = placeOnPath(placeOf(id - 1)).inverse() * placeOnPath(placeOf(id)) * error;
+        return keyframe;
+    }
+    /// With windows so small that each is refined with the next one only.
+    void map(int keyframes) {
+        options_.mapping.window = 2;
+        options_.mapping.reuse_keyframes = false;
+        mapper_.emplace(mappingCamera(), options_);
+        std::mt19937 random(4);
+        for (int id = 0; id < keyframes; ++id)
+            mapper_->insert(keyframeAt(id, randomPose(random, 0.003, 0.2 * kDegree)));
+    }
+    double worstError() const {
+        double worst = 0;
+        for (const auto& [id, keyframe] : mapper_->keyframes())
+            worst = std::max(
+                worst,
+                (keyframe.T_world_camera.translation() - placeOnPath(placeOf(id)).translation()).norm());
+        return worst;
+    }
+
+    OdometryOptions options_;
+    std::optional<LocalMapper> mapper_;
+};
+
+TEST_F(RefineAll, BringsPerfectObservationsToTheTruth) {
+    map(12);
+    const double before = worstError();
+    const MapUpdate update = mapper_->refineAll();
+    RecordProperty("before_mm", std::to_string(1000 * before));
+    RecordProperty("after_mm", std::to_string(1000 * worstError()));
+    EXPECT_TRUE(update.refusals.empty());
+    EXPECT_GT(before, 2e-4);
+    EXPECT_LT(worstError(), before / 2);
+    EXPECT_LT(worstError(), 1.5e-4);
+    EXPECT_EQ(update.poses.size(), 11U) << "all but the first";
+    for (const auto& [id, pose] : update.poses)
+        EXPECT_EQ(pose.matrix(), mapper_->keyframes().at(id).T_world_camera.matrix());
+    EXPECT_EQ(mapper_->keyframes().at(0).T_world_camera.matrix(), placeOnPath(0).matrix());
+}
+
+TEST_F(RefineAll, KeyframesMayFollow) {
+    map(8);
+    mapper_->refineAll();
+    for (int id = 8; id < 12; ++id) {
+        const MapUpdate update = mapper_->insert(keyframeAt(id, Pose::Identity()));
+        EXPECT_TRUE(update.refusals.empty());
+    }
+    EXPECT_LT(worstError(), 4e-4);
+}
+
+TEST_F(RefineAll, EachTrackKeepsItsFirstKeyframe) {
+    map(5);
+    for (int id = 5; id < 10; ++id) {
+        MapKeyframe keyframe = keyframeAt(id, Pose::Identity());
+        if (id == 5) keyframe.parent = -1, keyframe.track = 5;  // as after a loss
+        mapper_->insert(std::move(keyframe));
+    }
+    const Pose begin = mapper_->keyframes().at(5).T_world_camera;
+    const MapUpdate update = mapper_->refineAll();
+    for (const auto& [id, pose] : update.poses) EXPECT_TRUE(id != 0 && id != 5) << id;
+    EXPECT_EQ(update.poses.size(), 8U);
+    EXPECT_EQ(mapper_->keyframes().at(5).T_world_camera.matrix(), begin.matrix());
+}
+
+TEST_F(RefineAll, LongTracksAreRefinedInPartsThatOverlap) {
+    options_.mapping.final_rounds = 1;
+    map(230);
+    const double before = worstError();
+    const MapUpdate update = mapper_->refineAll();
+    RecordProperty("before_mm", std::to_string(1000 * before));
+    RecordProperty("after_mm", std::to_string(1000 * worstError()));
+    std::map<int, int> times;
+    for (const auto& [id, pose] : update.poses) {
+        ASSERT_TRUE(pose.isFinite());
+        ++times[id];
+    }
+    EXPECT_EQ(times.size(), 229U);
+    EXPECT_LE(worstError(), before);
+}
+
+TEST_F(RefineAll, NothingMovesWithoutRounds) {
+    options_.mapping.final_rounds = 0;
+    map(6);
+    EXPECT_TRUE(mapper_->refineAll().poses.empty());
+}
+
+}  // namespace
+}  // namespace roevo
