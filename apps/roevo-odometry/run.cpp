@@ -243,7 +243,9 @@ RunReport runOdometry(const RunSettings& settings) {
     report.warning = source->warning();
     source.reset();
 
+    const auto tracked = std::chrono::steady_clock::now();
     odometry.refineAll();
+    report.final_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - tracked).count();
     report.trajectory = odometry.trajectory();
     report.keyframes = odometry.keyframes();
     if (report.map_in)  // those of this recording

@@ -52,6 +52,7 @@ struct RunReport {
     std::vector<StampedPose> camera_on_robot;  ///< T_robot_camera of the frames with a pose
     bool mounted = false;     ///< some frame's sensor sat elsewhere than on the robot's origin
     std::size_t dropped = 0;  ///< frames that came while tracking was busy (--realtime)
+    double final_seconds = 0;  ///< of refining all keyframes together at the end
     double wall_seconds = 0;
     std::string ground_truth;              ///< file or folder, empty when there is none
     std::optional<Evaluation> evaluation;  ///< against the ground truth

@@ -116,6 +116,7 @@ Json mappingJson(const RunReport& report) {
     return {{"keyframes", times.size()},
             {"mean_ms", times.empty() ? 0 : sumOf(times) / static_cast<double>(times.size())},
             {"max_ms", percentile(times, 1)},
+            {"final_s", report.final_seconds},
             {"longest_wait_ms", longest_wait},
             {"largest_correction_m", largest_correction},
             {"largest_correction_deg", largest_turn / kDegree},
@@ -242,8 +243,9 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
         "time        %.1f ms per frame (median), %.1f ms (95 %%), decoding apart; %.1f s in all, %.0f MB\n",
         percentile(total, 0.5), percentile(total, 0.95), report.wall_seconds, memoryPeakMb());
     if (const auto times = mappingTimes(report); !times.empty())
-        std::printf("mapping     %.1f ms per keyframe (mean), beside tracking\n",
-                    sumOf(times) / static_cast<double>(times.size()));
+        std::printf(
+            "mapping     %.1f ms per keyframe (mean), beside tracking; all together at the end %.1f s\n",
+            sumOf(times) / static_cast<double>(times.size()), report.final_seconds);
     if (report.dropped > 0)
         std::printf("dropped     %zu frames came while tracking was busy\n", report.dropped);
     std::printf("path        %.2f m\n", pathLength(report.trajectory));

@@ -108,6 +108,10 @@ mrpt::poses::CPose3DPDF::Ptr CRoevoOdometry::getCurrentPoseEstimation() const {
         latest_->T_world_camera, latest_->covariance, robotFromOptical(latest_->timestamp).inverse()));
 }
 
+void CRoevoOdometry::refineAll() {
+    if (odometry_) odometry_->refineAll();
+}
+
 mrpt::poses::CPose3DInterpolator CRoevoOdometry::getTrajectory() const {
     mrpt::poses::CPose3DInterpolator out;
     if (!odometry_) return out;

@@ -73,6 +73,9 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// The robot's poses at all tracked observations.
     mrpt::poses::CPose3DInterpolator getTrajectory() const;
 
+    /// When a recording ends, or whenever there is time: see roevo::Odometry::refineAll().
+    void refineAll();
+
     /// The keyframes: robot pose, and the keyframe's edges as it saw them (pseudo-edges too) as a
     /// CObservationPointCloud of a CColouredPointsMap.
     void getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out) const;
