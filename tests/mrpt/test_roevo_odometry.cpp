@@ -61,6 +61,7 @@ TEST_F(RoevoOdometryTest, AStillCameraStaysAndTheRobotIsWhereTheSensorPoseSays) 
     odometry_.processObservation(*scan_);
     const FrameResult second = odometry_.processObservation(*laterScan(*scan_, 0.033));
     ASSERT_EQ(second.status, FrameStatus::kOk) << second.reason;
+    odometry_.refineAll();
     const auto path = odometry_.getTrajectory();
     ASSERT_EQ(path.size(), 2u);
     for (const auto& [time, pose] : path) EXPECT_TRUE(toEigen(CPose3D(pose)).isApprox(toEigen(start), 1e-3));
