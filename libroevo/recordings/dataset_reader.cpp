@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "programs/program.h"
+#include "recordings/bags/bag_dataset.h"
 #include "recordings/depth_scale.h"
 #include "recordings/eth3d.h"
 #include "recordings/icl.h"
@@ -36,6 +38,7 @@ struct Format {
 
 /// The more particular layouts come first.
 const Format kFormats[] = {
+    {"bag", &isBag, &loadBag, "a .bag of ROS 1"},
     {"7scenes", &isSevenScenesFolder, &loadSevenScenes, "frame-000000.color.png, .depth.png, .pose.txt"},
     {"eth3d", &isEth3dFolder, &loadEth3d, "calibration.txt and associated.txt, or rgb.txt and depth.txt"},
     {"icl", &isIclFolder, &loadIcl, "associations.txt with whole numbers for times, files named alike"},
@@ -81,6 +84,7 @@ float DatasetReader::depthUnit() const {
 }
 
 void DatasetReader::checkFiles(bool tolerate_missing) {
+    if (description_.images) return;
     std::size_t missing = 0;
     std::string first_missing;
     for (const DatasetEntry& frame : description_.frames)
@@ -107,7 +111,7 @@ void DatasetReader::checkDepthScale() {
     for (std::size_t i = 0; i < size() && empty < kMostEmpty; i++) {
         cv::Mat depth;
         try {
-            depth = readDepthFile(entry(i).depth);
+            depth = readStoredDepth(i);
         } catch (const std::runtime_error&) {
             if (i + 1 < size()) continue;
             throw;
@@ -125,7 +129,8 @@ void DatasetReader::checkDepthScale() {
                       depthScale());
         const std::string likely = likelyDepthScales(median_units);
         throw std::runtime_error(entry(i).depth + ": " + text + (likely.empty() ? "" : "; " + likely) +
-                                 ": put the sensor's own into camera.txt");
+                                 (description_.images ? ": is it depth? (--depth-topic)"
+                                                      : ": put the sensor's own into camera.txt"));
     }
     if (empty > 0)
         description_.notes.push_back("warning: the first " + std::to_string(empty) +
@@ -140,8 +145,12 @@ void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,
                              std::to_string(camera.height));
 }
 
+cv::Mat DatasetReader::readStoredDepth(std::size_t i) const {
+    return description_.images ? description_.images->depth(i) : readDepthFile(entry(i).depth);
+}
+
 cv::Mat DatasetReader::readDepth(std::size_t i) const {
-    cv::Mat depth = readDepthFile(entry(i).depth);
+    cv::Mat depth = readStoredDepth(i);
     checkSize(depth, depthCamera(), entry(i).depth);
     if (description_.invalid_depth != 0) depth.setTo(0, depth == description_.invalid_depth);
     return depth;
@@ -154,7 +163,7 @@ cv::Mat DatasetReader::toFrameDepth(const cv::Mat& depth_u16) const {
 }
 
 cv::Mat DatasetReader::readImage(std::size_t i) const {
-    cv::Mat image = readColourFile(entry(i).image);
+    cv::Mat image = description_.images ? description_.images->colour(i) : readColourFile(entry(i).image);
     checkSize(image, camera(), entry(i).image);
     return image;
 }
@@ -191,14 +200,16 @@ std::vector<std::string> DatasetReader::notes() const {
 }
 
 DatasetReader openDataset(const std::string& folder, const DatasetOptions& options) {
+    const bool is_bag = options.format == "bag" || isBag(folder);
     std::error_code fault;
-    if (!fs::exists(folder, fault)) {
+    if (!is_bag && !fs::exists(folder, fault)) {
         if (fault && fault != std::errc::no_such_file_or_directory)
             throw std::runtime_error("cannot read folder " + folder + ": " + fault.message());
         throw std::runtime_error("dataset folder not found: " + folder);
     }
-    if (!fs::is_directory(folder)) throw std::runtime_error("not a folder: " + folder);
-    if (!isPermitted(folder, R_OK | X_OK))
+    if (options.topics.any() && !is_bag) throw UsageError("topics are for bags, and " + folder + " is none");
+    if (!fs::is_directory(folder) && !is_bag) throw std::runtime_error("not a folder: " + folder);
+    if (fs::is_directory(folder) && !isPermitted(folder, R_OK | X_OK))
         throw std::runtime_error("cannot read folder " + folder + ": " + std::strerror(errno));
     std::string names, needs;
     for (const Format& format : kFormats) {

@@ -1,9 +1,7 @@
 #pragma once
-#include <sensor_msgs/CameraInfo.h>
-
 #include <string>
 
-#include "bag2rawlog/bag_file.h"
+#include "recordings/bags/bag_file.h"
 #include "roevo/camera/pinhole_camera.h"
 
 namespace roevo {
@@ -11,7 +9,7 @@ namespace roevo {
 /// The camera of a CameraInfo message.
 /// @param rectified  the images are undistorted: P counts, and there is no distortion; else K and D
 /// @throws std::runtime_error in one line: not calibrated, or a lens model other than none or plumb_bob.
-PinholeCamera cameraOf(const sensor_msgs::CameraInfo& message, bool rectified);
+PinholeCamera cameraOf(const CameraInfoMessage& message, bool rectified);
 
 struct BagCamera {
     PinholeCamera camera;
@@ -21,6 +19,6 @@ struct BagCamera {
 
 /// The camera that took `images`, by the first message of `info_topic`.
 /// @throws std::runtime_error naming the topic.
-BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const std::string& images);
+BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const BagTopic& images);
 
 }  // namespace roevo
