@@ -11,6 +11,10 @@ target_include_directories(test_rawlog_tools PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}
 target_include_directories(test_rawlog_tools SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 add_dependencies(test_rawlog_tools rgbd2rawlog rawlog2rgbd rawlog-simulate)
 include(${CMAKE_CURRENT_LIST_DIR}/simulator.cmake OPTIONAL)
+roevo_test(test_ros_bags SOURCES tools/test_ros_bags.cpp tools/test_ros_messages.cpp tools/test_ros_bags_bad_input.cpp
+           LIBS roevo_datasets roevo_mrpt SQLite::SQLite3 BZip2::BZip2 PkgConfig::LZ4 PkgConfig::ZSTD ZLIB::ZLIB)
+target_include_directories(test_ros_bags PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+add_dependencies(test_ros_bags rawlog-simulate rgbd2rawlog bag2rawlog roevo-odometry roevo-compare roevo-study)
 include(${CMAKE_CURRENT_LIST_DIR}/rosbag.cmake)
 if(TARGET roevo_rosbag)
   roevo_test(test_bag SOURCES tools/test_bag.cpp tools/test_bag_errors.cpp LIBS roevo_datasets roevo_mrpt roevo_rosbag)

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -38,7 +39,8 @@ struct Format {
 
 /// The more particular layouts come first.
 const Format kFormats[] = {
-    {"bag", &isBag, &loadBag, "a .bag of ROS 1"},
+    {"bag", &isBag, &loadBag,
+     "a .bag of ROS 1; of ROS 2 .db3 or .mcap, or the folder of metadata.yaml with them"},
     {"7scenes", &isSevenScenesFolder, &loadSevenScenes, "frame-000000.color.png, .depth.png, .pose.txt"},
     {"eth3d", &isEth3dFolder, &loadEth3d, "calibration.txt and associated.txt, or rgb.txt and depth.txt"},
     {"icl", &isIclFolder, &loadIcl, "associations.txt with whole numbers for times, files named alike"},
@@ -123,7 +125,10 @@ void DatasetReader::checkDepthScale() {
             continue;
         }
         const double median = median_units / depthScale();
-        if (isPlausibleMedianDepth(median)) return;
+        if (isPlausibleMedianDepth(median)) {
+            noteFacts(median);
+            return;
+        }
         char text[160];
         std::snprintf(text, sizeof text, "median depth %.3g m with depth_scale %g makes no sense", median,
                       depthScale());
@@ -135,6 +140,18 @@ void DatasetReader::checkDepthScale() {
     if (empty > 0)
         description_.notes.push_back("warning: the first " + std::to_string(empty) +
                                      " depth images hold no depth at all");
+}
+
+/// What makes a wrong scale or wrong stamps seen although all can be read.
+void DatasetReader::noteFacts(double median_depth) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < size(); i++) steps.push_back(entry(i).timestamp - entry(i - 1).timestamp);
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    char text[160];
+    std::snprintf(text, sizeof text, "%.1f Hz, %s, median depth %.3g m", steps.empty() ? 0 : 1 / *middle,
+                  camera().isDistorted() ? "lens distortion" : "no lens distortion", median_depth);
+    description_.notes.emplace_back(text);
 }
 
 void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,

@@ -118,6 +118,7 @@ class DatasetReader {
     void checkSize(const cv::Mat& image, const PinholeCamera& camera, const std::string& file) const;
     void checkFiles(bool tolerate_missing);
     void checkDepthScale();
+    void noteFacts(double median_depth);
 
     DatasetDescription description_;
     Pose T_colour_depth_ = Pose::Identity();  ///< of the registration

@@ -9,6 +9,16 @@
 
 namespace roevo {
 
+namespace {
+
+const StoredMessage& messageOf(const StoredTopic& topic, std::size_t i) {
+    if (i >= topic.messages.size())
+        throw std::runtime_error(excerpt(topic.name) + " has no message " + std::to_string(i + 1));
+    return topic.messages[i];
+}
+
+}  // namespace
+
 std::string BagTopic::toText() const {
     return excerpt(name) + " (" + excerpt(type) + (encoding.empty() ? "" : ", " + excerpt(encoding)) + ", " +
            std::to_string(messages) + (messages == 1 ? " message)" : " messages)");
@@ -16,10 +26,11 @@ std::string BagTopic::toText() const {
 
 BagFile::BagFile(const std::string& path) : path_(path), store_(openMessageStore(path)) {
     for (const StoredTopic& stored : store_->topics()) {
+        if (&stored != &this->stored(stored.name)) continue;
         BagTopic& topic = topics_.emplace_back();
         topic.name = stored.name;
         topic.type = stored.type;
-        topic.messages = stored.count;
+        topic.messages = isReadType(stored.type) ? stored.messages.size() : stored.count;
     }
     std::stable_sort(topics_.begin(), topics_.end(),
                      [](const BagTopic& a, const BagTopic& b) { return a.name < b.name; });
@@ -57,20 +68,22 @@ const BagTopic* BagFile::find(const std::string& topic) const {
 }
 
 const StoredTopic& BagFile::stored(const std::string& topic) const {
-    const auto& all = store_->topics();
-    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& t) { return t.name == topic; });
-    if (found == all.end()) throw std::runtime_error("no topic " + excerpt(topic));
+    const StoredTopic* found = nullptr;
+    for (const StoredTopic& candidate : store_->topics())
+        if (candidate.name == topic && (found == nullptr || candidate.count > found->count))
+            found = &candidate;
+    if (found == nullptr) throw std::runtime_error("no topic " + excerpt(topic));
     return *found;
 }
 
 MessageBytes BagFile::message(const std::string& topic, std::size_t i) const {
     const StoredTopic& from = stored(topic);
-    return {store_->read(from.messages.at(i)), from.wire()};
+    return {store_->read(messageOf(from, i)), from.wire()};
 }
 
 double BagFile::stamp(const std::string& topic, std::size_t i) const {
     const StoredTopic& from = stored(topic);
-    const StoredMessage& message = from.messages.at(i);
+    const StoredMessage& message = messageOf(from, i);
     const std::size_t known = std::min<std::size_t>(message.head.size(), message.size);
     return parseStamp({std::string_view(message.head.data(), known), from.wire()});
 }

@@ -44,6 +44,7 @@ class BagFile {
     double stamp(const std::string& topic, std::size_t i) const;
 
   private:
+    /// Of several topics of one name, which differ in their type, that with the most messages.
     const StoredTopic& stored(const std::string& topic) const;
     void describe(BagTopic& topic) const;
 

@@ -29,16 +29,22 @@ bool beginsWith(const std::string& text, const std::string& with) {
     return text.compare(0, with.size(), with) == 0;
 }
 
+constexpr char kRos1Head[] = "#ROSBAG V", kSqliteHead[] = "SQLite format 3", kMcapHead[] = "\x89MCAP";
+
 std::unique_ptr<MessageStore> openFile(const std::string& path) {
     std::error_code fault;
     const fs::file_status status = fs::status(path, fault);
     if (status.type() == fs::file_type::not_found) throw std::runtime_error(path + ": no such file");
     if (fault) throw std::runtime_error("cannot read " + path + ": " + fault.message());
+    if (fs::is_directory(status)) return openBagFolder(path);
     requireRegularInput(path);
     if (!std::ifstream(path)) throw std::runtime_error(path + ": cannot be read (no permission?)");
     const std::string head = firstBytes(path);
-    if (beginsWith(head, "#ROSBAG V")) return openRos1Bag(path);
-    throw std::runtime_error(path + " is not a ROS bag (it does not begin with #ROSBAG)");
+    if (beginsWith(head, kRos1Head)) return openRos1Bag(path);
+    if (beginsWith(head, kSqliteHead)) return openSqliteBag(path);
+    if (beginsWith(head, kMcapHead)) return openMcap(path);
+    throw std::runtime_error(path + " is not a ROS bag (it begins neither with #ROSBAG, as those of ROS 1, " +
+                             "nor as SQLite or MCAP, as those of ROS 2)");
 }
 
 }  // namespace
@@ -68,10 +74,12 @@ bool isReadType(const std::string& type) {
 }
 
 bool isBag(const std::string& path) {
-    static const std::set<std::string> kEndings = {".bag"};
+    static const std::set<std::string> kEndings = {".bag", ".db3", ".mcap"};
     std::error_code unseen;
-    if (fs::is_directory(path, unseen)) return false;
-    return kEndings.count(fs::path(path).extension().string()) > 0 || beginsWith(firstBytes(path), "#ROSBAG");
+    if (fs::is_directory(path, unseen)) return isBagFolder(path);
+    const std::string head = firstBytes(path);
+    return kEndings.count(fs::path(path).extension().string()) > 0 || beginsWith(head, kRos1Head) ||
+           beginsWith(head, kSqliteHead) || beginsWith(head, kMcapHead);
 }
 
 std::unique_ptr<MessageStore> openMessageStore(const std::string& path) {

@@ -13,6 +13,7 @@ namespace roevo {
 /// Where a message is. What the numbers mean is the store's own.
 struct StoredMessage {
     std::uint64_t piece = 0, offset = 0, size = 0;
+    std::uint32_t part = 0;       ///< of several files
     std::array<char, 12> head{};  ///< its first bytes: enough for parseStamp()
 };
 
@@ -59,5 +60,8 @@ bool isBag(const std::string& path);
 std::unique_ptr<MessageStore> openRos1Bag(const std::string& path);
 std::unique_ptr<MessageStore> openMcap(const std::string& path);
 std::unique_ptr<MessageStore> openSqliteBag(const std::string& path);
+std::unique_ptr<MessageStore> openBagFolder(const std::string& folder);
+
+bool isBagFolder(const std::string& folder);
 
 }  // namespace roevo

@@ -164,7 +164,8 @@ class Ros1Bag : public MessageStore {
             if (op == kMessage) {
                 Connection& connection = connections_[fields.number<std::uint32_t>("conn")];
                 connection.count++;
-                StoredMessage message{piece, record.data, record.size, {}};
+                StoredMessage message;
+                message.piece = piece, message.offset = record.data, message.size = record.size;
                 const std::uint64_t head = std::min<std::uint64_t>(message.head.size(), record.size);
                 const std::string_view first = bytes.read(record.data, head);
                 std::copy(first.begin(), first.end(), message.head.begin());
