@@ -39,13 +39,13 @@ struct Format {
 
 /// The more particular layouts come first.
 const Format kFormats[] = {
-    {"bag", &isBag, &loadBag,
-     "a .bag of ROS 1; of ROS 2 .db3 or .mcap, or the folder of metadata.yaml with them"},
     {"7scenes", &isSevenScenesFolder, &loadSevenScenes, "frame-000000.color.png, .depth.png, .pose.txt"},
     {"eth3d", &isEth3dFolder, &loadEth3d, "calibration.txt and associated.txt, or rgb.txt and depth.txt"},
     {"icl", &isIclFolder, &loadIcl, "associations.txt with whole numbers for times, files named alike"},
     {"tum", &isTumFolder, &loadTum, "rgb.txt and depth.txt, or associations.txt"},
     {"plain", &isPlainFolder, &loadPlain, "camera.txt, rgb/ or color/, and depth/ with the same file names"},
+    {"bag", &isBag, &loadBag,
+     "a .bag of ROS 1; of ROS 2 .db3 or .mcap, or the folder of metadata.yaml with them"},
 };
 
 /// With the rights that opening a file has (access() looks at the real user's).

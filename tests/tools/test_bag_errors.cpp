@@ -53,16 +53,16 @@ TEST_F(Bag2RawlogErrors, NoBag) {
     expectRefusal({"recording.bag", "not a ROS bag"});
 }
 
-TEST_F(Bag2RawlogErrors, Ros2Recordings) {
+TEST_F(Bag2RawlogErrors, RecordingsOfRos2ThatAreNone) {
     writeFile(bagPath(), std::string("SQLite format 3\0 and so on", 26));
-    expectRefusal({"recording.bag"});
+    expectRefusal({"recording.bag", "SQLite", "ros2 bag reindex"});
     writeFile(bagPath(), "\x89MCAP0\r\n");
-    expectRefusal({"recording.bag"});
+    expectRefusal({"recording.bag", "MCAP", "mcap recover"});
     std::filesystem::remove(bagPath());
     std::filesystem::create_directory(bagPath());
-    expectRefusal({"recording.bag", "is a folder"});
+    expectRefusal({"recording.bag", "neither .db3 nor .mcap files"});
     writeFile(bagPath() + "/metadata.yaml", "rosbag2_bagfile_information:\n");
-    expectRefusal({"recording.bag"});
+    expectRefusal({"recording.bag", "neither .db3 nor .mcap files"});
 }
 
 TEST_F(Bag2RawlogErrors, TruncatedAnywhere) {

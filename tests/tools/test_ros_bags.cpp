@@ -1,7 +1,10 @@
 // Bags of every kind as input: the frames are those of the folder that they were made of.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <cstdio>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <regex>
 
 #include "mrpt/test_helpers.h"
 #include "recordings/bags/message_store.h"
@@ -10,6 +13,7 @@
 namespace roevo {
 namespace {
 
+namespace fs = std::filesystem;
 using namespace test;
 
 /// A simulated recording, made once for all tests.
@@ -127,6 +131,102 @@ TEST(RosBags, TopicsAreForBagsOnly) {
     };
     refused("roevo-odometry", simulatedFolder());
     refused("rgbd2rawlog", simulatedFolder());
+}
+
+/// A recording with other messages in it than those of recordingOf().
+using Change = void (*)(RecordedMessage& message, const cv::Mat& colour, const cv::Mat& depth_u16,
+                        double stamp);
+
+std::string encoded(const std::string& ending, const cv::Mat& image) {
+    std::vector<std::uint8_t> bytes;
+    cv::imencode(ending, image, bytes);
+    return {bytes.begin(), bytes.end()};
+}
+
+cv::Mat millimetres(const cv::Mat& depth_u16) {
+    cv::Mat out;
+    depth_u16.convertTo(out, CV_16UC1, 0.2);
+    return out;
+}
+
+Recording changed(const DatasetReader& dataset, Change change) {
+    Recording recording = recordingOf(dataset, Encoding::kCdrLittle);
+    for (std::size_t i = 0; i < dataset.size(); i++)
+        for (std::size_t k = 1; k <= 2; k++)
+            change(recording.at(2 * i + k), dataset.readImage(i), dataset.readDepth(i),
+                   dataset.entry(i).timestamp);
+    return recording;
+}
+
+void asJpeg(RecordedMessage& message, const cv::Mat& colour, const cv::Mat&, double stamp) {
+    if (message.topic == kColour)
+        message = {kColour + "/compressed", "sensor_msgs/CompressedImage",
+                   compressedMessage(Encoding::kCdrLittle, stamp, "rgb", "bgr8; jpeg compressed bgr8",
+                                     encoded(".jpg", colour))};
+}
+void asPng(RecordedMessage& message, const cv::Mat& colour, const cv::Mat&, double stamp) {
+    if (message.topic == kColour)
+        message = {kColour + "/compressed", "sensor_msgs/CompressedImage",
+                   compressedMessage(Encoding::kCdrLittle, stamp, "rgb", "bgr8; png compressed bgr8",
+                                     encoded(".png", colour))};
+}
+void asMillimetres(RecordedMessage& message, const cv::Mat&, const cv::Mat& depth, double stamp) {
+    if (message.topic == kDepth)
+        message.bytes = imageMessage(Encoding::kCdrLittle, stamp, "rgb", millimetres(depth), "16UC1");
+}
+void asCompressedMillimetres(RecordedMessage& message, const cv::Mat&, const cv::Mat& depth, double stamp) {
+    if (message.topic == kDepth)
+        message = {kDepth + "/compressedDepth", "sensor_msgs/CompressedImage",
+                   compressedMessage(Encoding::kCdrLittle, stamp, "rgb", "16UC1; compressedDepth png",
+                                     std::string(12, '\0') + encoded(".png", millimetres(depth)))};
+}
+void asCompressedMetres(RecordedMessage& message, const cv::Mat&, const cv::Mat& depth, double stamp) {
+    if (message.topic != kDepth) return;
+    const float a = 100 * 101, b = 1 - a / 10;  // image_transport's defaults: up to 10 m, quantisation 100
+    cv::Mat values(depth.size(), CV_16UC1, cv::Scalar(0));
+    for (int v = 0; v < depth.rows; v++)
+        for (int u = 0; u < depth.cols; u++)
+            if (const float metres = depth.at<std::uint16_t>(v, u) / 5000.f; metres > 0 && metres < 10)
+                values.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(a / metres + b);
+    FieldWriter head(Encoding::kRos1);
+    message = {kDepth + "/compressedDepth", "sensor_msgs/CompressedImage",
+               compressedMessage(Encoding::kCdrLittle, stamp, "rgb", "32FC1; compressedDepth",
+                                 head.put(std::int32_t{1}).put(a).put(b).bytes() + encoded(".png", values))};
+}
+
+/// The table of docs/inputs.md: `--gtest_also_run_disabled_tests --gtest_filter=*Table*`.
+TEST(RosBags, DISABLED_TableOfInputs) {
+    const TemporaryFolder folder;
+    const std::string walk = folder / "walk";
+    ASSERT_EQ(runProgram("rawlog-simulate", {"--scene", "shadows", "--frames", "90", "--noise", "kinect",
+                                             "--size", "320x240", "--layout", "tum", "--output", walk})
+                  .exit_code,
+              0);
+    const std::string truth = walk + "/groundtruth.txt";
+    std::string original;
+    const auto row = [&](const std::string& what, const std::string& input) {
+        const auto run = runProgram("roevo-odometry",
+                                    {"--input", input, "--output", folder / "out", "--ground-truth", truth});
+        const std::string trajectory = readFile(folder / "out/trajectory.txt");
+        if (original.empty()) original = trajectory;
+        std::smatch ate;
+        std::regex_search(run.out, ate, std::regex("ATE +([0-9.]+ cm)"));
+        std::printf("| %s | %s | %s |\n", what.c_str(), ate.str(1).c_str(),
+                    trajectory == original ? "the same bytes" : "another");
+    };
+    const DatasetReader dataset = openDataset(walk);
+    row("folder", walk);
+    for (const BagKind& kind : kBagKinds)
+        row(kind.name,
+            kind.write(folder / (kind.name + std::string(kind.ending)), recordingOf(dataset, kind.encoding)));
+    const std::vector<std::pair<const char*, Change>> changes{
+        {"png", &asPng},
+        {"jpeg", &asJpeg},
+        {"millimetres", &asMillimetres},
+        {"compressedDepth of 16UC1", &asCompressedMillimetres},
+        {"compressedDepth of 32FC1", &asCompressedMetres}};
+    for (const auto& [name, change] : changes)
+        row(name, writeMcap<'n'>(folder / "changed.mcap", changed(dataset, change)));
 }
 
 }  // namespace
