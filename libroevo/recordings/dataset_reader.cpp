@@ -225,19 +225,20 @@ DatasetReader openDataset(const std::string& folder, const DatasetOptions& optio
         throw std::runtime_error("dataset folder not found: " + folder);
     }
     if (options.topics.any() && !is_bag) throw UsageError("topics are for bags, and " + folder + " is none");
-    if (!fs::is_directory(folder) && !is_bag) throw std::runtime_error("not a folder: " + folder);
-    if (fs::is_directory(folder) && !isPermitted(folder, R_OK | X_OK))
+    const bool is_folder = fs::is_directory(folder, fault);
+    if (!is_folder && !is_bag) throw std::runtime_error("not a folder: " + folder);
+    if (is_folder && !isPermitted(folder, R_OK | X_OK))
         throw std::runtime_error("cannot read folder " + folder + ": " + std::strerror(errno));
+    const std::string wanted = is_folder || options.format != "auto" ? options.format : "bag";
     std::string names, needs;
     for (const Format& format : kFormats) {
         names += std::string(names.empty() ? "" : ", ") + format.name;
         needs += std::string(needs.empty() ? "" : "; ") + format.name + ": " + format.needs;
-        if (options.format == format.name || (options.format == "auto" && format.recognises(folder)))
+        if (wanted == format.name || (wanted == "auto" && format.recognises(folder)))
             return DatasetReader(format.load(folder, options), options.tolerate_missing);
     }
-    if (options.format != "auto")
-        throw std::runtime_error("unknown dataset format '" + options.format + "' (known: auto, " + names +
-                                 ")");
+    if (wanted != "auto")
+        throw std::runtime_error("unknown dataset format '" + wanted + "' (known: auto, " + names + ")");
     const std::string better = betterFolder(folder);
     throw std::runtime_error("no dataset recognised in " + folder + " (known layouts and what each needs: " +
                              needs + ")" + (better.empty() ? "" : "; did you mean " + better + "?"));
