@@ -30,7 +30,7 @@ int run(int argc, char** argv) {
         "Turns colour, depth and camera_info of a ROS bag into an MRPT rawlog: depth lossless inside, colour "
         "as PNG beside it. The other programs read bags as they are.",
         kName);
-    app.add_option("--input", settings.input, "Bag to read (.bag)")->required();
+    app.add_option("--input", settings.input, "Bag to read: .bag, .db3, .mcap, or the folder of a ROS 2 recording")->required();
     app.add_option("--output", settings.output, "Rawlog to write; images go to <stem>_Images beside it");
     app.add_flag("--list", list,
                  "List the topics with number of messages, type, encoding and frame, and end");

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "mrpt/test_helpers.h"
+#include "recordings/bags/inverse_lens.h"
 #include "recordings/bags/messages.h"
 #include "tools/ros_recording.h"
 #include "tools/small_dataset.h"
@@ -274,6 +275,32 @@ TEST_F(RosFrames, ThatMoveAgainstOneAnotherDoNotCount) {
     const std::string error = errorOf([&] { open(); });
     EXPECT_CONTAINS(error, "'ir' and 'rgb'");
     EXPECT_CONTAINS(error, "record /tf_static");
+}
+
+// Of a D455's colour camera, about. Rays by the definition of the inverse model; our lens must lead them
+// back.
+TEST(InverseLens, LeadsEveryRayBackToItsPixel) {
+    PinholeCamera camera;
+    camera.width = 1280, camera.height = 720;
+    camera.fx = 640, camera.fy = 639, camera.cx = 645, camera.cy = 362;
+    const double k1 = -0.056, k2 = 0.067, p1 = -7e-4, p2 = 4e-4, k3 = -0.021;
+    const PinholeCamera ideal = camera;
+    camera.distortion = distortionOfInverse(ideal, {k1, k2, p1, p2, k3});
+    double largest = 0;
+    for (int v = 0; v < 720; v += 17)
+        for (int u = 0; u < 1280; u += 17) {
+            const double x = (u - ideal.cx) / ideal.fx, y = (v - ideal.cy) / ideal.fy, r2 = x * x + y * y;
+            const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+            const Eigen::Vector2d ray(x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+                                      y * radial + 2 * p2 * x * y + p1 * (r2 + 2 * y * y));
+            const Eigen::Vector2d undistorted(ideal.fx * ray.x() + ideal.cx, ideal.fy * ray.y() + ideal.cy);
+            largest = std::max(largest, (camera.distortPixel(undistorted) - Eigen::Vector2d(u, v)).norm());
+        }
+    EXPECT_LT(largest, 0.1 * std::sqrt(2));
+    EXPECT_GT((ideal.distortPixel({0, 0}) - camera.distortPixel({0, 0})).norm(), 1)
+        << "there is something to fit";
+    EXPECT_CONTAINS(errorOf([&] { distortionOfInverse(ideal, {9, -9, 0, 0, 9}); }), "pixels off");
+    EXPECT_CONTAINS(errorOf([&] { distortionOfInverse(ideal, {NAN, 0, 0, 0, 0}); }), "pixels off");
 }
 
 }  // namespace

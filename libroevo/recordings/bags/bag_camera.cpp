@@ -4,17 +4,20 @@
 #include <stdexcept>
 
 #include "input/excerpt.h"
+#include "recordings/bags/inverse_lens.h"
 #include "recordings/bags/topic_choice.h"
 
 namespace roevo {
 namespace {
 
 /// The five terms of our lens model. A rational model with zeros in the rest of its terms is one, too.
-std::array<double, 5> distortionOf(const CameraInfoMessage& message) {
+/// @param ideal  the camera without it
+std::array<double, 5> distortionOf(const CameraInfoMessage& message, const PinholeCamera& ideal) {
     const auto& d = message.D;
     const auto zero = [](double x) { return x == 0; };
     if (std::all_of(d.begin(), d.end(), zero)) return {};
     const std::string& model = message.distortion_model;
+    if (model == "Inverse Brown Conrady") return distortionOfInverse(ideal, d);
     const bool plumb_bob = model == "plumb_bob" || model == "Brown Conrady";  // RealSense's name for it
     const bool known = plumb_bob || (model == "rational_polynomial" && d.size() >= 5 &&
                                      std::all_of(d.begin() + 5, d.end(), zero));
@@ -41,7 +44,7 @@ PinholeCamera cameraOf(const CameraInfoMessage& message, bool rectified) {
     } else {
         const auto& K = message.K;
         camera.fx = K[0], camera.cx = K[2], camera.fy = K[4], camera.cy = K[5];
-        camera.distortion = distortionOf(message);
+        if (camera.check().empty()) camera.distortion = distortionOf(message, camera);
     }
     if (camera.fx == 0 || camera.fy == 0)
         throw std::runtime_error(std::string("the camera is not calibrated: ") + (rectified ? "P" : "K") +

@@ -8,7 +8,8 @@ namespace roevo {
 
 /// The camera of a CameraInfo message.
 /// @param rectified  the images are undistorted: P counts, and there is no distortion; else K and D
-/// @throws std::runtime_error in one line: not calibrated, or a lens model other than none or plumb_bob.
+/// @throws std::runtime_error in one line: not calibrated, or a lens model other than none, plumb_bob or its
+/// inverse.
 PinholeCamera cameraOf(const CameraInfoMessage& message, bool rectified);
 
 struct BagCamera {
