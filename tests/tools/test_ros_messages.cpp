@@ -7,6 +7,7 @@
 #include "mrpt/test_helpers.h"
 #include "recordings/bags/inverse_lens.h"
 #include "recordings/bags/messages.h"
+#include "roevo_mrpt/image_conversions.h"
 #include "tools/ros_recording.h"
 #include "tools/small_dataset.h"
 
@@ -198,6 +199,20 @@ TEST_F(RosImages, CompressedDepthOfMetresIsAsGoodAsItsSteps) {
             else  // one step of the inverse depth, and half of one of the 16 bits
                 ASSERT_NEAR(read.at<float>(v, u), metres, 1.1 * metres * metres / a + 1.1e-4);
         }
+}
+
+// The head of a PNG with its right checksum claims gigabytes: they are not asked for.
+TEST_F(RosImages, APngThatCannotHoldItsPixelsIsNotBelieved) {
+    std::string png = encoded(".png", tinyDepth(0));
+    for (const std::size_t side : {16, 20}) png.replace(side, 4, std::string("\0\0\x75\x30", 4));  // 30000
+    const auto sum = crc32(0, reinterpret_cast<const Bytef*>(png.data()) + 12, 17);
+    for (std::size_t i = 0; i < 4; i++) png[29 + i] = static_cast<char>(sum >> (24 - 8 * i) & 0xFF);
+    image(tinyColour(0), "bgr8", kColour);
+    compressed(png, "16UC1; png compressed ", kDepth + "/compressed");
+    EXPECT_CONTAINS(errorOf([&] { open(); }), "30000x30000 pixels are not in");
+    cv::Mat black(2000, 3000, CV_16UC1, cv::Scalar(0));  // as small as it gets
+    const std::string small = encoded(".png", black);
+    EXPECT_EQ(decodeDepth(small, "black").size(), black.size()) << small.size() << " bytes";
 }
 
 TEST_F(RosImages, CompressedDepthByRvlIsNamed) {
