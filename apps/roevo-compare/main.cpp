@@ -30,7 +30,8 @@ constexpr char kFooter[] =
 
 struct Arguments {
     std::vector<std::string> inputs, methods, sets;
-    std::string benchmark, data, ground_truth, output, config, sensor_label;
+    std::string benchmark, data, ground_truth, output, config;
+    InputChoice choice;
     std::size_t first = 0, skip = 0, jobs = 1;
     double timeout = kTimeout;
     bool resume = false, list_methods = false, quiet = false;
@@ -38,7 +39,7 @@ struct Arguments {
 };
 
 void addOptions(CLI::App& app, Arguments& a) {
-    app.add_option("--input", a.inputs, "Rawlogs or dataset folders, one or more");
+    app.add_option("--input", a.inputs, "Rawlogs, ROS bags or dataset folders, one or more");
     app.add_option("--ground-truth", a.ground_truth,
                    "TUM trajectory to compare with, for a single --input (default: what lies beside each)");
     app.add_option("--benchmark", a.benchmark,
@@ -55,7 +56,7 @@ void addOptions(CLI::App& app, Arguments& a) {
         ->check(CLI::NonNegativeNumber);
     app.add_option("--skip", a.skip, "Leave out this many frames at the start of each recording")
         ->check(CLI::NonNegativeNumber);
-    app.add_option("--sensor-label", a.sensor_label, "Rawlogs with several cameras: which one");
+    addInputOptions(app, a.choice);
     app.add_option("--timeout", a.timeout, "Seconds after which a run is ended as a failure")
         ->capture_default_str();
     app.add_flag("--resume", a.resume,
@@ -149,7 +150,7 @@ void restrictFrames(std::vector<SequenceInput>& sequences, const Arguments& a) {
         sequence.skip += a.skip;
         if (a.first > 0) sequence.first = sequence.first > 0 ? std::min(sequence.first, a.first) : a.first;
         if (a.first > 0 || a.skip > 0) sequence.paper_ate_cm.reset();  // it is of all frames
-        sequence.sensor_label = a.sensor_label;
+        sequence.choice = a.choice;
     }
 }
 
@@ -191,7 +192,7 @@ int runAsChild(const Arguments& a) {
     child.method = a.run_method;
     child.folder = a.run_folder;
     child.input = a.inputs.front();
-    child.sensor_label = a.sensor_label;
+    child.choice = a.choice;
     child.skip = a.skip;
     child.first = a.first;
     child.options = collectOptions(a.config, a.sets, "");

@@ -21,7 +21,7 @@ MethodInfo infoOf(const std::string& name) {
 
 MethodRun makeRun(const ChildSettings& settings, const RunProgress& progress) {
     cv::setNumThreads(1);
-    const auto source = openSource(settings.input, settings.sensor_label);
+    const auto source = openSource(settings.input, settings.choice);
     const auto method = makeMethod(settings.method, source->camera(), settings.options);
     skipFrames(*source, settings.skip, settings.input);
     return runMethod(*method, infoOf(settings.method), *source, settings.first, settings.folder, progress);

@@ -2,13 +2,15 @@
 #include <cstddef>
 #include <string>
 
+#include "recordings/input_choice.h"
 #include "roevo/options.h"
 
 namespace roevo {
 
 /// One method's run over one recording, in the process that was started for it.
 struct ChildSettings {
-    std::string method, folder, input, sensor_label;
+    std::string method, folder, input;
+    InputChoice choice;
     std::size_t skip = 0, first = 0;
     OdometryOptions options;
 };

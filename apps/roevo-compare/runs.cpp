@@ -18,12 +18,13 @@ std::map<std::string, std::string> runSettings(const CompareSettings& settings, 
                                                const std::string& program) {
     OdometryOptions options = settings.options;
     options.mode = OdometryOptions().mode;  // each method has its own
-    std::string values, versions;
+    std::string values, chosen, versions;
     for (const OptionField& field : optionFields(options))
         values += field.name() + "=" + field.toText() + "; ";
+    for (const auto& [option, value] : chosenOptions(sequence.choice)) chosen += option + " " + value + "; ";
     for (const auto& [name, version] : softwareVersions()) versions += name + " " + version + "; ";
     std::map<std::string, std::string> all{{"recording", recordingState(sequence.input, settings.output)},
-                                           {"sensor_label", sequence.sensor_label},
+                                           {"choice", chosen},
                                            {"skip", std::to_string(sequence.skip)},
                                            {"first", std::to_string(sequence.first)},
                                            {"options", values},
@@ -40,12 +41,12 @@ std::vector<std::string> childCommand(const RunTask& task, const std::string& fo
     std::vector<std::string> command{"/proc/self/exe", "--run-method", task.method.name,
                                      "--run-folder",   folder,         "--input",
                                      sequence.input,   "--config",     config};
-    const auto add = [&](const char* option, const std::string& value) {
+    const auto add = [&](const std::string& option, const std::string& value) {
         command.insert(command.end(), {option, value});
     };
     if (sequence.skip > 0) add("--skip", std::to_string(sequence.skip));
     if (sequence.first > 0) add("--first", std::to_string(sequence.first));
-    if (!sequence.sensor_label.empty()) add("--sensor-label", sequence.sensor_label);
+    for (const auto& [option, value] : chosenOptions(sequence.choice)) add(option, value);
     return command;
 }
 

@@ -124,7 +124,7 @@ SequenceComparison openSequence(const SequenceInput& sequence) {
     // Before all else: a file that was asked for must be good even if the recording is not
     if (!sequence.ground_truth.empty()) readTumTrajectory(sequence.ground_truth);
     try {
-        const auto source = openSource(sequence.input, sequence.sensor_label);
+        const auto source = openSource(sequence.input, sequence.choice);
         out.part = partOf(sequence, source->size());
         for (const std::string& note : source->notes())  // ground truth may be another one: told by itself
             if (note.rfind("ground truth:", 0) != 0) out.notes.push_back(note);

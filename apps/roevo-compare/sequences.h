@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "recordings/input_choice.h"
 #include "report/comparison.h"
 
 namespace roevo {
@@ -11,8 +12,8 @@ namespace roevo {
 /// A recording, or a part of one, that is to become a column of the tables.
 struct SequenceInput {
     std::string name;                    ///< unique, and fit for the name of a folder
-    std::string input;                   ///< rawlog or dataset folder, as given
-    std::string sensor_label;            ///< of rawlogs; may be empty
+    std::string input;                   ///< rawlog, bag or dataset folder, as given
+    InputChoice choice;                  ///< of its frames
     std::string ground_truth;            ///< file to be taken; empty: what lies beside the recording
     std::string expected_ground_truth;   ///< what a list says of it, for the message when there is none
     std::size_t skip = 0, first = 0;     ///< at most `first` frames (0: all) after leaving out `skip`

@@ -1,5 +1,5 @@
-// roevo-odometry: a rawlog or an RGB-D dataset folder in; a trajectory, a map and a report on every frame
-// out.
+// roevo-odometry: a rawlog, a bag or an RGB-D dataset folder in; a trajectory, a map and a report on every
+// frame out.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <opencv2/core/utility.hpp>
@@ -38,7 +38,8 @@ int run(int argc, char** argv) {
     std::string config_file, mode, default_config;
     std::vector<std::string> sets;
     CLI::App app("RGB-D visual odometry from organized edges.", kName);
-    app.add_option("--input", settings.input, "A .rawlog file or a dataset folder (layout detected)");
+    app.add_option("--input", settings.input,
+                   "A .rawlog file, a ROS bag or a dataset folder (layout detected)");
     app.add_option("--output", settings.output_dir, "Folder for the results; created when missing");
     app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");
     app.add_option("--set", sets, "section.key=value: one option on top of the config; may be repeated")
@@ -47,8 +48,8 @@ int run(int argc, char** argv) {
                    "ct: coarse tracking only; tr: coarse and fine; ba: with local mapping (default)");
     app.add_option(
         "--ground-truth", settings.ground_truth,
-        "TUM trajectory to compare with (default: <stem>_groundtruth.txt beside a rawlog, groundtruth.txt "
-        "in a folder)");
+        "TUM trajectory to compare with (default: <stem>_groundtruth.txt beside a rawlog or a bag, "
+        "groundtruth.txt in a folder)");
     app.add_option("--covariances", settings.covariances,
                    "Write the 6x6 covariance of every pose to this file, too")
         ->type_name("FILE");
@@ -56,7 +57,7 @@ int run(int argc, char** argv) {
         ->check(CLI::NonNegativeNumber);
     app.add_option("--skip", settings.skip, "Leave out this many frames at the start")
         ->check(CLI::NonNegativeNumber);
-    app.add_option("--sensor-label", settings.sensor_label, "Rawlogs with several cameras: which one");
+    addInputOptions(app, settings.choice);
     app.add_option(
         "--map-in", settings.map_in,
         "Begin with this map of an earlier recording (--map-out): poses are in its world from where "

@@ -224,7 +224,7 @@ void printInput(const RunReport& report, const FrameSource& source) {
 RunReport runOdometry(const RunSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
     checkNames(settings);
-    auto source = prefetch(openSource(settings.input, settings.sensor_label));
+    auto source = prefetch(openSource(settings.input, settings.choice));
     RunReport report = reportOn(*source, settings);
     Odometry odometry(source->camera(), settings.options);
     if (!settings.map_in.empty()) loadMap(settings, odometry, report);

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <string>
 
+#include "recordings/input_choice.h"
 #include "roevo/options.h"
 #include "run_report.h"
 
@@ -9,10 +10,11 @@ namespace roevo {
 
 /// What to run, from the command line.
 struct RunSettings {
-    std::string input, output_dir, ground_truth, sensor_label;
+    std::string input, output_dir, ground_truth;
+    InputChoice choice;
     std::string map_in, map_out;  ///< files; empty: none
     bool localise_only = false;   ///< the map stays as it is
-    std::string covariances;  ///< file for the poses' covariances; empty: none
+    std::string covariances;      ///< file for the poses' covariances; empty: none
     OdometryOptions options;
     std::size_t first = 0, skip = 0;  ///< process at most `first` frames (0: all) after leaving out `skip`
     bool realtime = false;            ///< frames arrive by the clock; those that come too early are dropped

@@ -12,7 +12,7 @@ namespace roevo {
 namespace {
 
 std::unique_ptr<FrameSource> openFrames(const std::string& path, const InputSettings& settings) {
-    auto source = openSource(path, settings.sensor_label);
+    auto source = openSource(path, settings.choice);
     skipFrames(*source, settings.skip, path);
     if (settings.first == 0) return source;
     return firstFrames(std::move(source), settings.first);

@@ -2,16 +2,17 @@
 #include <string>
 #include <vector>
 
+#include "recordings/input_choice.h"
 #include "study.h"
 
 namespace roevo {
 
 /// What the command line says of the recordings.
 struct InputSettings {
-    std::vector<std::string> paths;    ///< rawlogs or dataset folders
+    std::vector<std::string> paths;    ///< rawlogs, bags or dataset folders
     std::string ground_truth;          ///< for a single recording; empty: what is found beside each
     bool ignore_ground_truth = false;  ///< even where some is beside a recording
-    std::string sensor_label;          ///< rawlogs with several cameras
+    InputChoice choice;                ///< of all recordings
     std::size_t first = 0, skip = 0;   ///< first 0: all frames
     OdometryOptions options;
     std::vector<Mode> modes{Mode::kBundleAdjustment, Mode::kTracking};  ///< see StudyInput

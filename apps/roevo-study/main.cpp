@@ -144,7 +144,8 @@ int run(int argc, char** argv) {
                    "distribution; one or more, see below")
         ->required()
         ->check(faultOfName, "");
-    app.add_option("--input", settings.paths, "Recordings: .rawlog files or dataset folders")->required();
+    app.add_option("--input", settings.paths, "Recordings: .rawlog files, ROS bags or dataset folders")
+        ->required();
     app.add_option("--output", output, "Folder for the results; created when missing")->required();
     app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");
     app.add_option("--set", sets, "section.key=value: one option on top of the config; may be repeated")
@@ -168,7 +169,7 @@ int run(int argc, char** argv) {
         ->check(CLI::NonNegativeNumber);
     app.add_option("--skip", settings.skip, "Leave out this many frames at the start of each")
         ->check(CLI::NonNegativeNumber);
-    app.add_option("--sensor-label", settings.sensor_label, "Rawlogs with several cameras: which one");
+    addInputOptions(app, settings.choice);
     app.footer(kFooter);
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -10,6 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "programs/program.h"
+#include "recordings/bags/bag_dataset.h"
 #include "recordings/depth_scale.h"
 #include "recordings/eth3d.h"
 #include "recordings/icl.h"
@@ -41,6 +44,8 @@ const Format kFormats[] = {
     {"icl", &isIclFolder, &loadIcl, "associations.txt with whole numbers for times, files named alike"},
     {"tum", &isTumFolder, &loadTum, "rgb.txt and depth.txt, or associations.txt"},
     {"plain", &isPlainFolder, &loadPlain, "camera.txt, rgb/ or color/, and depth/ with the same file names"},
+    {"bag", &isBag, &loadBag,
+     "a .bag of ROS 1; of ROS 2 .db3 or .mcap, or the folder of metadata.yaml with them"},
 };
 
 /// With the rights that opening a file has (access() looks at the real user's).
@@ -81,6 +86,7 @@ float DatasetReader::depthUnit() const {
 }
 
 void DatasetReader::checkFiles(bool tolerate_missing) {
+    if (description_.images) return;
     std::size_t missing = 0;
     std::string first_missing;
     for (const DatasetEntry& frame : description_.frames)
@@ -107,7 +113,7 @@ void DatasetReader::checkDepthScale() {
     for (std::size_t i = 0; i < size() && empty < kMostEmpty; i++) {
         cv::Mat depth;
         try {
-            depth = readDepthFile(entry(i).depth);
+            depth = readStoredDepth(i);
         } catch (const std::runtime_error&) {
             if (i + 1 < size()) continue;
             throw;
@@ -119,17 +125,33 @@ void DatasetReader::checkDepthScale() {
             continue;
         }
         const double median = median_units / depthScale();
-        if (isPlausibleMedianDepth(median)) return;
+        if (isPlausibleMedianDepth(median)) {
+            noteFacts(median);
+            return;
+        }
         char text[160];
         std::snprintf(text, sizeof text, "median depth %.3g m with depth_scale %g makes no sense", median,
                       depthScale());
         const std::string likely = likelyDepthScales(median_units);
         throw std::runtime_error(entry(i).depth + ": " + text + (likely.empty() ? "" : "; " + likely) +
-                                 ": put the sensor's own into camera.txt");
+                                 (description_.images ? ": is it depth? (--depth-topic)"
+                                                      : ": put the sensor's own into camera.txt"));
     }
     if (empty > 0)
         description_.notes.push_back("warning: the first " + std::to_string(empty) +
                                      " depth images hold no depth at all");
+}
+
+/// What makes a wrong scale or wrong stamps seen although all can be read.
+void DatasetReader::noteFacts(double median_depth) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < size(); i++) steps.push_back(entry(i).timestamp - entry(i - 1).timestamp);
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    char text[160];
+    std::snprintf(text, sizeof text, "%.1f Hz, %s, median depth %.3g m", steps.empty() ? 0 : 1 / *middle,
+                  camera().isDistorted() ? "lens distortion" : "no lens distortion", median_depth);
+    description_.notes.emplace_back(text);
 }
 
 void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,
@@ -140,8 +162,12 @@ void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,
                              std::to_string(camera.height));
 }
 
+cv::Mat DatasetReader::readStoredDepth(std::size_t i) const {
+    return description_.images ? description_.images->depth(i) : readDepthFile(entry(i).depth);
+}
+
 cv::Mat DatasetReader::readDepth(std::size_t i) const {
-    cv::Mat depth = readDepthFile(entry(i).depth);
+    cv::Mat depth = readStoredDepth(i);
     checkSize(depth, depthCamera(), entry(i).depth);
     if (description_.invalid_depth != 0) depth.setTo(0, depth == description_.invalid_depth);
     return depth;
@@ -154,7 +180,7 @@ cv::Mat DatasetReader::toFrameDepth(const cv::Mat& depth_u16) const {
 }
 
 cv::Mat DatasetReader::readImage(std::size_t i) const {
-    cv::Mat image = readColourFile(entry(i).image);
+    cv::Mat image = description_.images ? description_.images->colour(i) : readColourFile(entry(i).image);
     checkSize(image, camera(), entry(i).image);
     return image;
 }
@@ -191,25 +217,28 @@ std::vector<std::string> DatasetReader::notes() const {
 }
 
 DatasetReader openDataset(const std::string& folder, const DatasetOptions& options) {
+    const bool is_bag = options.format == "bag" || isBag(folder);
     std::error_code fault;
-    if (!fs::exists(folder, fault)) {
+    if (!is_bag && !fs::exists(folder, fault)) {
         if (fault && fault != std::errc::no_such_file_or_directory)
             throw std::runtime_error("cannot read folder " + folder + ": " + fault.message());
         throw std::runtime_error("dataset folder not found: " + folder);
     }
-    if (!fs::is_directory(folder)) throw std::runtime_error("not a folder: " + folder);
-    if (!isPermitted(folder, R_OK | X_OK))
+    if (options.topics.any() && !is_bag) throw UsageError("topics are for bags, and " + folder + " is none");
+    const bool is_folder = fs::is_directory(folder, fault);
+    if (!is_folder && !is_bag) throw std::runtime_error("not a folder: " + folder);
+    if (is_folder && !isPermitted(folder, R_OK | X_OK))
         throw std::runtime_error("cannot read folder " + folder + ": " + std::strerror(errno));
+    const std::string wanted = is_folder || options.format != "auto" ? options.format : "bag";
     std::string names, needs;
     for (const Format& format : kFormats) {
         names += std::string(names.empty() ? "" : ", ") + format.name;
         needs += std::string(needs.empty() ? "" : "; ") + format.name + ": " + format.needs;
-        if (options.format == format.name || (options.format == "auto" && format.recognises(folder)))
+        if (wanted == format.name || (wanted == "auto" && format.recognises(folder)))
             return DatasetReader(format.load(folder, options), options.tolerate_missing);
     }
-    if (options.format != "auto")
-        throw std::runtime_error("unknown dataset format '" + options.format + "' (known: auto, " + names +
-                                 ")");
+    if (wanted != "auto")
+        throw std::runtime_error("unknown dataset format '" + wanted + "' (known: auto, " + names + ")");
     const std::string better = betterFolder(folder);
     throw std::runtime_error("no dataset recognised in " + folder + " (known layouts and what each needs: " +
                              needs + ")" + (better.empty() ? "" : "; did you mean " + better + "?"));

@@ -1,11 +1,13 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "recordings/association_report.h"
+#include "recordings/bags/topic_names.h"
 #include "recordings/sensor_data.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/camera/rgbd_frame.h"
@@ -16,7 +18,7 @@ namespace roevo {
 struct DatasetEntry {
     double timestamp = 0;        ///< s, of the colour image, to the microsecond
     double depth_timestamp = 0;  ///< s
-    std::string image, depth;    ///< paths that can be opened
+    std::string image, depth;    ///< paths that can be opened; names for people where an ImageStore is
 };
 
 /// Depth that was taken by a camera of its own, as the images hold it.
@@ -25,10 +27,24 @@ struct DepthRegistration {
     Pose T_colour_depth = Pose::Identity();
 };
 
-/// What a format's loader finds out about a folder.
+/// Where the images are that are no files of their own: the frames of a dataset, by number. Not for two
+/// threads at a time.
+class ImageStore {
+  public:
+    virtual ~ImageStore() = default;
+    /// CV_8UC3 (BGR) or CV_8UC1. @throws std::runtime_error naming the image
+    virtual cv::Mat colour(std::size_t i) = 0;
+    /// CV_16UC1. @throws std::runtime_error naming the image
+    virtual cv::Mat depth(std::size_t i) = 0;
+    /// Once read: what was lost; one line or empty.
+    virtual std::string warning() const = 0;
+};
+
+/// What a format's loader finds out about a recording.
 struct DatasetDescription {
-    std::string folder;
-    std::string format;  ///< "tum", "icl", "eth3d", "7scenes" or "plain"
+    std::string folder;        ///< or the bag
+    std::string format;        ///< "tum", "icl", "eth3d", "7scenes", "plain" or "bag"
+    std::string sensor_label;  ///< the camera's name where the recording has one
     PinholeCamera camera;
     std::string camera_source;        ///< in words: where the intrinsics come from
     double depth_scale = 0;           ///< PNG units per metre
@@ -36,6 +52,7 @@ struct DatasetDescription {
     std::optional<DepthRegistration> registration;  ///< empty: depth and colour pixels are the same
     std::vector<std::string> notes;                 ///< what was assumed or converted, a line each
     std::vector<DatasetEntry> frames;
+    std::shared_ptr<ImageStore> images;  ///< none: images are files
     AssociationReport association;
     GroundTruth ground_truth;    ///< of the colour camera, optical axes; empty when there is none
     std::vector<ImuSample> imu;  ///< ascending in time; empty when the dataset has none
@@ -47,9 +64,10 @@ struct DatasetOptions {
     double max_time_difference = 0.02;  ///< s, between a colour and its depth image
     /// Listed images that are not there: go on, the frame cannot be read then; else openDataset() throws.
     bool tolerate_missing = false;
+    BagTopicNames topics{};  ///< of bags
 };
 
-/// An RGB-D dataset in a folder, read frame by frame.
+/// An RGB-D dataset in a folder or a bag, read frame by frame.
 class DatasetReader {
   public:
     /// Checks that the files are there and that the first readable depth image makes sense.
@@ -96,15 +114,17 @@ class DatasetReader {
     std::vector<std::string> notes() const;
 
   private:
+    cv::Mat readStoredDepth(std::size_t i) const;
     void checkSize(const cv::Mat& image, const PinholeCamera& camera, const std::string& file) const;
     void checkFiles(bool tolerate_missing);
     void checkDepthScale();
+    void noteFacts(double median_depth);
 
     DatasetDescription description_;
     Pose T_colour_depth_ = Pose::Identity();  ///< of the registration
 };
 
-/// Opens a dataset folder. @param options.format  "auto" or one of datasetFormats()
+/// Opens a dataset folder or a bag. @param options.format  "auto" or one of datasetFormats()
 /// @throws std::runtime_error with one line that says what is wrong and what to do.
 DatasetReader openDataset(const std::string& folder, const DatasetOptions& options = {});
 

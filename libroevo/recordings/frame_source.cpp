@@ -10,6 +10,7 @@
 #include "evaluation/trajectory_io.h"
 #include "input/excerpt.h"
 #include "programs/program.h"
+#include "recordings/bags/message_store.h"
 #include "recordings/dataset_reader.h"
 #include "recordings/depth_scale.h"
 #include "recordings/sensor_files.h"
@@ -38,9 +39,9 @@ void decodeInto(SourceFrame& frame, const Decode& decode) {
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-class FolderSource : public FrameSource {
+class DatasetSource : public FrameSource {
   public:
-    explicit FolderSource(const std::string& folder) : reader_(open(folder)) {}
+    DatasetSource(const std::string& path, const BagTopicNames& topics) : reader_(open(path, topics)) {}
 
     bool next(SourceFrame& frame) override {
         if (index_ >= reader_.size()) return false;
@@ -62,13 +63,17 @@ class FolderSource : public FrameSource {
         return notes;
     }
     std::size_t size() const override { return reader_.size(); }
-    std::string warning() const override { return {}; }
+    std::string warning() const override {
+        const auto& images = reader_.description().images;
+        return images ? images->warning() : std::string();
+    }
 
   private:
-    static DatasetReader open(const std::string& folder) {
+    static DatasetReader open(const std::string& path, const BagTopicNames& topics) {
         DatasetOptions options;
         options.tolerate_missing = true;  // such frames are rejected with the reason, the others tracked
-        return openDataset(folder, options);
+        options.topics = topics;
+        return openDataset(path, options);
     }
 
     DatasetReader reader_;
@@ -132,16 +137,19 @@ class RawlogSource : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> openSource(const std::string& input, const std::string& sensor_label) {
+std::unique_ptr<FrameSource> openSource(const std::string& input, const InputChoice& choice) {
     std::error_code fault;
     const fs::file_status status = fs::status(input, fault);
     if (status.type() == fs::file_type::not_found)
         throw std::runtime_error("cannot read " + input + ": there is no such file or folder");
     if (fault) throw std::runtime_error("cannot read " + input + ": " + fault.message());
-    if (!fs::is_directory(status)) return std::make_unique<RawlogSource>(input, sensor_label);
-    if (!sensor_label.empty())
-        throw UsageError("--sensor-label is for rawlogs, and " + input + " is a folder");
-    return std::make_unique<FolderSource>(input);
+    const bool is_dataset = fs::is_directory(status) || isBag(input);
+    if (is_dataset && !choice.sensor_label.empty())
+        throw UsageError("--sensor-label is for rawlogs, and " + input + " is a " +
+                         (isBag(input) ? "bag" : "folder"));
+    if (is_dataset) return std::make_unique<DatasetSource>(input, choice.topics);
+    if (choice.topics.any()) throw UsageError("topics are for bags, and " + input + " is none");
+    return std::make_unique<RawlogSource>(input, choice.sensor_label);
 }
 
 void skipFrames(FrameSource& source, std::size_t count, const std::string& input) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "recordings/input_choice.h"
 #include "recordings/sensor_data.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/camera/rgbd_frame.h"
@@ -23,7 +24,7 @@ struct SourceFrame {
     bool mounted = false;                 ///< the sensor sits elsewhere than on the robot's origin
 };
 
-/// Frames of a rawlog or of a dataset folder, one after the other.
+/// Frames of a rawlog, of a bag or of a dataset folder, one after the other.
 class FrameSource {
   public:
     virtual ~FrameSource() = default;
@@ -43,10 +44,9 @@ class FrameSource {
     virtual std::string warning() const = 0;  ///< once read: damage, things left out; one line or empty
 };
 
-/// Opens a rawlog (file) or a dataset (folder).
-/// @param sensor_label  rawlogs: read only this sensor; empty: the first with range images
-/// @throws std::runtime_error in one line
-std::unique_ptr<FrameSource> openSource(const std::string& input, const std::string& sensor_label);
+/// Opens a rawlog, a bag or a dataset (folder).
+/// @throws std::runtime_error in one line; UsageError for a choice that is not for such an input
+std::unique_ptr<FrameSource> openSource(const std::string& input, const InputChoice& choice = {});
 
 /// Decodes ahead in a thread of its own (programs/ahead.h), in order.
 std::unique_ptr<FrameSource> prefetch(std::unique_ptr<FrameSource> source);

@@ -49,6 +49,8 @@ class ImuTrack {
 
 RawlogWriterOptions writerOptions(const DatasetReader& dataset, const ConvertOptions& options) {
     RawlogWriterOptions out;
+    if (const std::string& label = dataset.description().sensor_label; !label.empty())
+        out.sensor_label = label;
     out.range_units = dataset.depthUnit();
     out.externalize_depth = options.externalize_depth;
     out.jpeg_quality = options.jpeg_quality;
@@ -115,7 +117,7 @@ ConvertResult convertToRawlog(const DatasetReader& dataset, const std::string& r
         }
         const DatasetEntry& entry = dataset.entry(frame->index);
         imu.writeUntil(entry.timestamp, writer);
-        if (options.jpeg_quality > 0)
+        if (options.jpeg_quality > 0 || dataset.description().images)
             writer.add(entry.timestamp, frame->depth, frame->image);
         else
             writer.addFile(entry.timestamp, frame->depth, entry.image);
@@ -124,7 +126,9 @@ ConvertResult convertToRawlog(const DatasetReader& dataset, const std::string& r
         progress.update(done);
     }
     if (result.written.empty())
-        throw std::runtime_error("no usable frame in " + dataset.description().folder);
+        throw std::runtime_error("no usable frame in " + dataset.description().folder + "; the first of " +
+                                 std::to_string(result.left_out.size()) +
+                                 " faults: " + result.left_out.front());
     imu.writeUntil(std::numeric_limits<double>::infinity(), writer);
     writer.close();
     result.seconds = secondsSince(start);

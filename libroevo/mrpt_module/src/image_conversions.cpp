@@ -18,8 +18,9 @@ namespace {
 // For the first image OpenCV starts all its decoders, of which GDAL ends the program when it finds no room.
 constexpr std::size_t kRoomToDecode = std::size_t{64} << 20;  // bytes
 
-cv::Mat decode(const std::string& file, int flags) {
-    const std::vector<std::uint8_t> bytes = readImageFile(file);
+using Bytes = std::vector<std::uint8_t>;
+
+cv::Mat decode(const Bytes& bytes, const std::string& file, int flags) {
     if (const std::string damage = imageDamage(bytes); !damage.empty())
         throw std::runtime_error("cannot decode image (" + damage + "): " + file);
     requireRoom(kRoomToDecode);
@@ -34,19 +35,35 @@ cv::Mat decode(const std::string& file, int flags) {
     return image;
 }
 
-}  // namespace
-
-cv::Mat readColourFile(const std::string& file) {
-    return decode(file, cv::IMREAD_ANYCOLOR);
-}
-
-cv::Mat readDepthFile(const std::string& file) {
-    cv::Mat depth = decode(file, cv::IMREAD_UNCHANGED);
+cv::Mat asDepth(const Bytes& bytes, const std::string& file) {
+    cv::Mat depth = decode(bytes, file, cv::IMREAD_UNCHANGED);
     if (depth.type() != CV_16UC1)
         throw std::runtime_error("depth image must be 16-bit with one channel, but has " +
                                  std::to_string(8 * depth.elemSize1()) + " bits and " +
                                  std::to_string(depth.channels()) + " channel(s): " + file);
     return depth;
+}
+
+cv::Mat asColour(const Bytes& bytes, const std::string& file) {
+    return decode(bytes, file, cv::IMREAD_ANYCOLOR);
+}
+
+}  // namespace
+
+cv::Mat readColourFile(const std::string& file) {
+    return asColour(readImageFile(file), file);
+}
+
+cv::Mat readDepthFile(const std::string& file) {
+    return asDepth(readImageFile(file), file);
+}
+
+cv::Mat decodeColour(std::string_view bytes, const std::string& name) {
+    return asColour(Bytes(bytes.begin(), bytes.end()), name);
+}
+
+cv::Mat decodeDepth(std::string_view bytes, const std::string& name) {
+    return asDepth(Bytes(bytes.begin(), bytes.end()), name);
 }
 
 void writeImageFile(const std::string& file, const cv::Mat& image, const std::vector<int>& parameters) {

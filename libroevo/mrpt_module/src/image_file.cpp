@@ -33,6 +33,19 @@ std::string truncated(const Bytes& bytes) {
     return "truncated after " + std::to_string(bytes.size()) + " bytes";
 }
 
+/// Pixels that the head claims and so few bytes cannot hold, of which the decoder would ask memory first;
+/// else "".
+/// @param head  IHDR's data: width, height, bits, kind of colour
+std::string pngBomb(const std::uint8_t* head, std::size_t bytes) {
+    constexpr std::uint64_t kDeflateAtBest = 1032;                             // bytes out of one
+    constexpr std::array<std::uint64_t, 7> kChannels = {1, 4, 3, 1, 2, 4, 4};  // by the kind of colour
+    const std::uint64_t width = bigEndian(head), height = bigEndian(head + 4);
+    const std::uint64_t row = 1 + (width * head[8] * kChannels[std::min<std::size_t>(head[9], 6)] + 7) / 8;
+    if (height <= kDeflateAtBest * bytes / row + 1) return "";
+    return "damaged: " + std::to_string(width) + "x" + std::to_string(height) + " pixels are not in " +
+           std::to_string(bytes) + " bytes";
+}
+
 /// Chunks of length (4 bytes), type (4), data and the checksum of type and data (4), up to IEND.
 std::string pngDamage(const Bytes& bytes) {
     for (std::size_t at = kPngHead.size(); at + 12 <= bytes.size();) {
@@ -44,6 +57,8 @@ std::string pngDamage(const Bytes& bytes) {
             return "damaged: wrong checksum of what begins at byte " + std::to_string(at) + " of " +
                    std::to_string(bytes.size());
         if (std::memcmp(type, "IEND", 4) == 0) return "";
+        if (std::memcmp(type, "IHDR", 4) == 0 && length >= 13)
+            if (std::string bomb = pngBomb(type + 4, bytes.size()); !bomb.empty()) return bomb;
         at += length + 12;
     }
     return truncated(bytes);

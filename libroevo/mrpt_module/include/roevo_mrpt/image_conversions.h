@@ -4,6 +4,7 @@
 
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace roevo {
@@ -16,6 +17,10 @@ cv::Mat readColourFile(const std::string& file);
 /// @throws std::runtime_error naming the file when it is missing, cannot be decoded or is not 16-bit with one
 /// channel.
 cv::Mat readDepthFile(const std::string& file);
+
+/// The same for an image file's bytes that are elsewhere, with a name for errors.
+cv::Mat decodeColour(std::string_view bytes, const std::string& name);
+cv::Mat decodeDepth(std::string_view bytes, const std::string& name);
 
 /// Writes an image in the format of the file's ending. @param parameters  as cv::imwrite() has them
 /// @throws std::runtime_error naming the file when not all of it could be written: cv::imwrite() does not

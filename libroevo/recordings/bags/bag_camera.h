@@ -1,17 +1,16 @@
 #pragma once
-#include <sensor_msgs/CameraInfo.h>
-
 #include <string>
 
-#include "bag2rawlog/bag_file.h"
+#include "recordings/bags/bag_file.h"
 #include "roevo/camera/pinhole_camera.h"
 
 namespace roevo {
 
 /// The camera of a CameraInfo message.
 /// @param rectified  the images are undistorted: P counts, and there is no distortion; else K and D
-/// @throws std::runtime_error in one line: not calibrated, or a lens model other than none or plumb_bob.
-PinholeCamera cameraOf(const sensor_msgs::CameraInfo& message, bool rectified);
+/// @throws std::runtime_error in one line: not calibrated, or a lens model other than none, plumb_bob or its
+/// inverse.
+PinholeCamera cameraOf(const CameraInfoMessage& message, bool rectified);
 
 struct BagCamera {
     PinholeCamera camera;
@@ -21,6 +20,6 @@ struct BagCamera {
 
 /// The camera that took `images`, by the first message of `info_topic`.
 /// @throws std::runtime_error naming the topic.
-BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const std::string& images);
+BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const BagTopic& images);
 
 }  // namespace roevo

@@ -1,11 +1,11 @@
-#include "bag2rawlog/topic_choice.h"
+#include "recordings/bags/topic_choice.h"
 
 #include <algorithm>
 #include <functional>
 #include <stdexcept>
 
-#include "bag2rawlog/ros_image.h"
 #include "input/excerpt.h"
+#include "recordings/bags/realsense.h"
 
 namespace roevo {
 namespace {
@@ -28,11 +28,10 @@ const BagTopic& named(const BagFile& bag, const std::string& name, const char* t
     const BagTopic* topic = bag.find(name);
     if (topic == nullptr)
         throw std::runtime_error(bag.path() + " has no topic " + name + "; it has " + toText(bag.topics()));
-    if (topic->type == "sensor_msgs/CompressedImage")
-        throw std::runtime_error(
-            name + " is compressed: write it as raw images first (rosrun image_transport republish)");
-    if (topic->type != type)
-        throw std::runtime_error(name + " is a " + topic->type + ", wanted is a " + type);
+    const bool images = contains(type, "Image");
+    if (images ? !topic->isImage() : topic->type != type)
+        throw std::runtime_error(bag.path() + ": " + name + " is a " + excerpt(topic->type) +
+                                 ", wanted is a " + type);
     if (topic->messages == 0) throw std::runtime_error(bag.path() + ": topic " + name + " has no messages");
     return *topic;
 }
@@ -43,45 +42,46 @@ std::string only(const BagFile& bag, const Topics& candidates, const std::string
     if (!candidates.empty())
         throw std::runtime_error(bag.path() + " has several topics with " + what + ", choose one by " +
                                  option + ": " + toText(candidates));
-    const Topics images = select(bag.topics(), [](const BagTopic& t) { return contains(t.type, "Image"); });
-    const bool all_compressed =
-        !images.empty() &&
-        std::all_of(images.begin(), images.end(), [](const BagTopic& t) { return !t.isImage(); });
-    throw std::runtime_error(
-        bag.path() + " has no topic with " + what +
-        (all_compressed
-             ? "; its images are compressed: write them as raw images first (rosrun image_transport "
-               "republish); it has "
-             : "; it has ") +
-        toText(bag.topics()));
+    throw std::runtime_error(bag.path() + " has no topic with " + what + "; it has " + toText(bag.topics()));
 }
 
-void checkEncoding(const BagTopic& topic, bool usable, const char* what) {
+void checkKind(const BagFile& bag, const BagTopic& topic, bool usable, const char* what) {
     if (!usable)
-        throw std::runtime_error(topic.name + " has encoding " + excerpt(topic.encoding) + ", which is no " +
-                                 what);
+        throw std::runtime_error(bag.path() + ": " + topic.name + " has encoding " + excerpt(topic.encoding) +
+                                 ", which is no " + what);
+}
+
+/// Topics of a kind; of one that was recorded both raw and compressed the raw one.
+Topics imagesOf(const BagFile& bag, ImageKind kind) {
+    return select(bag.topics(), [&](const BagTopic& topic) {
+        const std::string base = imageTopicBase(topic.name);
+        const BagTopic* raw = base == topic.name ? nullptr : bag.find(base);
+        return topic.kind == kind && (raw == nullptr || !raw->isRaw() || raw->kind != kind);
+    });
 }
 
 std::string chooseColour(const BagFile& bag) {
-    const Topics in_colour =
-        select(bag.topics(), [](const BagTopic& t) { return t.isImage() && isColourEncoding(t.encoding); });
+    const Topics in_colour = imagesOf(bag, ImageKind::kColour);
     if (!in_colour.empty()) return only(bag, in_colour, "colour images", "--colour-topic");
-    const Topics grey =
-        select(bag.topics(), [](const BagTopic& t) { return t.isImage() && isGreyEncoding(t.encoding); });
-    return only(bag, grey, "colour images (rgb8, bgr8) or grey ones (mono8)", "--colour-topic");
+    return only(bag, imagesOf(bag, ImageKind::kGrey), "colour images (rgb8, bgr8, JPEG) or grey ones (mono8)",
+                "--colour-topic");
 }
 
 std::string chooseDepth(const BagFile& bag, const BagTopic& colour) {
-    const Topics depth =
-        select(bag.topics(), [](const BagTopic& t) { return t.isImage() && isDepthEncoding(t.encoding); });
+    const Topics depth = imagesOf(bag, ImageKind::kDepth);
     const Topics aligned = select(depth, [&](const BagTopic& t) { return t.frame_id == colour.frame_id; });
-    return only(bag, aligned.size() == 1 ? aligned : depth, "depth images (16UC1, 32FC1)", "--depth-topic");
+    return only(bag, aligned.size() == 1 ? aligned : depth, "depth images (16UC1, 32FC1, compressedDepth)",
+                "--depth-topic");
 }
 
 /// The camera_info that belongs to images: beside them by name, or else the only one in their frame.
 std::string infoOf(const BagFile& bag, const BagTopic& images) {
-    const BagTopic* beside = bag.find(images.name.substr(0, images.name.rfind('/') + 1) + "camera_info");
-    if (beside != nullptr && beside->isCameraInfo() && beside->messages > 0) return beside->name;
+    const std::string base = imageTopicBase(images.name);
+    for (const std::string& name :
+         {base.substr(0, base.rfind('/') + 1) + "camera_info", realsense::infoTopic(images.name)}) {
+        const BagTopic* beside = bag.find(name);
+        if (beside != nullptr && beside->isCameraInfo() && beside->messages > 0) return name;
+    }
     const Topics same_frame = select(bag.topics(), [&](const BagTopic& t) {
         return t.isCameraInfo() && !t.frame_id.empty() && t.frame_id == images.frame_id;
     });
@@ -90,17 +90,24 @@ std::string infoOf(const BagFile& bag, const BagTopic& images) {
 
 }  // namespace
 
+std::string imageTopicBase(const std::string& topic) {
+    const std::size_t slash = topic.rfind('/');
+    if (slash == std::string::npos || slash == 0) return topic;
+    const std::string last = topic.substr(slash + 1);
+    return last == "compressed" || last == "compressedDepth" ? topic.substr(0, slash) : topic;
+}
+
 BagTopicNames chooseTopics(const BagFile& bag, BagTopicNames names) {
     if (names.colour.empty()) names.colour = chooseColour(bag);
     const BagTopic& colour = named(bag, names.colour, "sensor_msgs/Image");
-    checkEncoding(colour, isColourEncoding(colour.encoding) || isGreyEncoding(colour.encoding),
-                  "8-bit colour or grey image (rgb8, bgr8, rgba8, bgra8, mono8): convert it first");
+    checkKind(bag, colour, colour.kind == ImageKind::kColour || colour.kind == ImageKind::kGrey,
+              "8-bit colour or grey image (rgb8, bgr8, rgba8, bgra8, mono8, JPEG, PNG): convert it first");
 
     if (names.depth.empty()) names.depth = chooseDepth(bag, colour);
     const BagTopic& depth = named(bag, names.depth, "sensor_msgs/Image");
     // Some older drivers call their millimetres mono16; that it is depth must be said by name
-    checkEncoding(depth, isDepthEncoding(depth.encoding) || depth.encoding == "mono16",
-                  "depth image (16UC1 in millimetres or 32FC1 in metres)");
+    checkKind(bag, depth, depth.kind == ImageKind::kDepth || depth.encoding == "mono16",
+              "depth image (16UC1 in millimetres or 32FC1 in metres)");
 
     if (names.colour_info.empty()) names.colour_info = infoOf(bag, colour);
     if (names.colour_info.empty())

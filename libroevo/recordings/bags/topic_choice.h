@@ -2,20 +2,18 @@
 #include <string>
 #include <vector>
 
-#include "bag2rawlog/bag_file.h"
+#include "recordings/bags/bag_file.h"
+#include "recordings/bags/topic_names.h"
 
 namespace roevo {
-
-/// Topics to read; an empty name means: find it.
-struct BagTopicNames {
-    std::string colour, depth, colour_info;
-    std::string depth_info;  ///< stays empty where the bag has none
-};
 
 /// Fills in the names that are empty, where the bag leaves no doubt: of several depth topics the one in the
 /// colour camera's frame, of several image topics the only one in colour.
 /// @throws std::runtime_error with one line that names the topics in question and the option to choose by; as
-/// well when a named topic is missing, compressed or of an unusable encoding.
+/// well when a named topic is missing or of an unusable encoding.
 BagTopicNames chooseTopics(const BagFile& bag, BagTopicNames names);
+
+/// The topic of the images without what image_transport adds to it: "/compressed", "/compressedDepth".
+std::string imageTopicBase(const std::string& topic);
 
 }  // namespace roevo

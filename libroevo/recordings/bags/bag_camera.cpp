@@ -1,0 +1,93 @@
+#include "recordings/bags/bag_camera.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "input/excerpt.h"
+#include "recordings/bags/inverse_lens.h"
+#include "recordings/bags/topic_choice.h"
+
+namespace roevo {
+namespace {
+
+/// The five terms of our lens model. A rational model with zeros in the rest of its terms is one, too.
+/// @param ideal  the camera without it
+std::array<double, 5> distortionOf(const CameraInfoMessage& message, const PinholeCamera& ideal) {
+    const auto& d = message.D;
+    const auto zero = [](double x) { return x == 0; };
+    if (std::all_of(d.begin(), d.end(), zero)) return {};
+    const std::string& model = message.distortion_model;
+    if (model == "Inverse Brown Conrady") return distortionOfInverse(ideal, d);
+    const bool plumb_bob = model == "plumb_bob" || model == "Brown Conrady";  // RealSense's name for it
+    const bool known = plumb_bob || (model == "rational_polynomial" && d.size() >= 5 &&
+                                     std::all_of(d.begin() + 5, d.end(), zero));
+    if (!known || d.size() > (plumb_bob ? 5u : d.size()))
+        throw std::runtime_error(
+            "lens model '" + excerpt(model) + "' with " + std::to_string(d.size()) +
+            " coefficients is not supported, only plumb_bob with up to five: undistort the "
+            "images first (image_proc), or record the rectified topic");
+    std::array<double, 5> out{};
+    std::copy(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, d.size())),
+              out.begin());
+    return out;
+}
+
+}  // namespace
+
+PinholeCamera cameraOf(const CameraInfoMessage& message, bool rectified) {
+    PinholeCamera camera;
+    camera.width = static_cast<int>(message.width);
+    camera.height = static_cast<int>(message.height);
+    if (rectified) {
+        const auto& P = message.P;
+        camera.fx = P[0], camera.cx = P[2], camera.fy = P[5], camera.cy = P[6];
+    } else {
+        const auto& K = message.K;
+        camera.fx = K[0], camera.cx = K[2], camera.fy = K[4], camera.cy = K[5];
+        if (camera.check().empty()) camera.distortion = distortionOf(message, camera);
+    }
+    if (camera.fx == 0 || camera.fy == 0)
+        throw std::runtime_error(std::string("the camera is not calibrated: ") + (rectified ? "P" : "K") +
+                                 " is zero");
+    if (const std::string fault = camera.check(); !fault.empty()) throw std::runtime_error(fault);
+    return camera;
+}
+
+BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const BagTopic& images) {
+    const std::string base = imageTopicBase(images.name);
+    const bool rectified = base.substr(base.rfind('/') + 1).find("rect") != std::string::npos;
+    BagCamera out;
+    std::size_t others = 0;
+    const std::size_t all = bag.count(info_topic);
+    try {
+        for (std::size_t i = 0; i < all; i++) {
+            const CameraInfoMessage info = parseCameraInfo(bag.message(info_topic, i));
+            if (i == 0) {
+                out.camera = cameraOf(info, rectified);
+                continue;
+            }
+            try {
+                if (cameraOf(info, rectified) != out.camera) others++;
+            } catch (const std::runtime_error&) {
+                others++;
+            }
+        }
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(bag.path() + ": " + info_topic + ": " + error.what());
+    }
+    const PinholeCamera& camera = out.camera;
+    if (images.width > 0 &&
+        (static_cast<int>(images.width) != camera.width || static_cast<int>(images.height) != camera.height))
+        throw std::runtime_error(bag.path() + ": " + images.name + " has images of " +
+                                 std::to_string(images.width) + "x" + std::to_string(images.height) +
+                                 ", but its camera_info " + info_topic + " is for " +
+                                 std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+                                 ": choose another one (--info-topic, --depth-info-topic)");
+    out.source = info_topic + (rectified ? " (P, rectified images)" : "");
+    if (others > 0)
+        out.warning = info_topic + ": " + std::to_string(others) + " of " + std::to_string(all) +
+                      " messages differ from the first, which is used";
+    return out;
+}
+
+}  // namespace roevo

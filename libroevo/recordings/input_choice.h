@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "recordings/bags/topic_names.h"
+
+namespace CLI {
+class App;
+}
+
+namespace roevo {
+
+/// Which frames of an input to read, where it has several cameras.
+struct InputChoice {
+    std::string sensor_label;  ///< rawlogs: only this sensor; empty: the first with range images
+    BagTopicNames topics;      ///< bags: those that are not to be found by themselves
+};
+
+/// The options --sensor-label and those of addTopicOptions().
+void addInputOptions(CLI::App& app, InputChoice& choice);
+
+/// The options by which the topics of bags are chosen: --colour-topic, --depth-topic, --info-topic,
+/// --depth-info-topic.
+void addTopicOptions(CLI::App& app, BagTopicNames& topics);
+
+/// What was chosen as a command line has it: options and their values.
+std::vector<std::pair<std::string, std::string>> chosenOptions(const InputChoice& choice);
+
+}  // namespace roevo

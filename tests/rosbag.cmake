@@ -1,0 +1,36 @@
+# ROS's own library for ROS 1 bags, with Debian's packages: tests write bags with it for our reader. Without them
+# these tests are left out.
+set(missing "")
+set(includes "")
+# Debian puts the headers of pluginlib, on which rosbag's own lean, into a folder per package.
+foreach(header rosbag/bag.h sensor_msgs/Image.h tf2_msgs/TFMessage.h console_bridge/console.h
+               pluginlib/class_loader.hpp class_loader/multi_library_class_loader.hpp rcpputils/shared_library.hpp
+               rcutils/shared_library.h ament_index_cpp/get_package_prefix.hpp)
+  get_filename_component(package ${header} DIRECTORY)
+  find_path(INCLUDE_DIR_${package} ${header} PATH_SUFFIXES ${package})
+  mark_as_advanced(INCLUDE_DIR_${package})
+  if(INCLUDE_DIR_${package})
+    list(APPEND includes ${INCLUDE_DIR_${package}})
+  else()
+    string(APPEND missing " ${header}")
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES includes)
+set(libraries "")
+foreach(library rosbag_storage roscpp_serialization rostime cpp_common console_bridge)
+  find_library(LIBRARY_${library} ${library})
+  mark_as_advanced(LIBRARY_${library})
+  if(LIBRARY_${library})
+    list(APPEND libraries ${LIBRARY_${library}})
+  else()
+    string(APPEND missing " lib${library}")
+  endif()
+endforeach()
+if(missing)
+  message(STATUS "test_bag is not built, for want of:${missing} (Debian: librosbag-storage-dev libsensor-msgs-dev libtf2-msgs-dev)")
+  return()
+endif()
+
+add_library(roevo_rosbag INTERFACE)
+target_include_directories(roevo_rosbag SYSTEM INTERFACE ${includes})
+target_link_libraries(roevo_rosbag INTERFACE ${libraries})
