@@ -28,9 +28,10 @@ foreach(suite Trajectory KeyframeChanges FineTracking OdometryAccuracy OdometryS
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()
 add_executable(test_core_mapped_runs core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp
-               core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp core/test_relocalisation.cpp core/test_loop_closing.cpp)
+               core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp core/test_relocalisation.cpp core/test_loop_closing.cpp
+               core/test_kidnapping.cpp)
 target_link_libraries(test_core_mapped_runs PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout Relocalisation LoopClosing)
+foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout Relocalisation LoopClosing Kidnapping)
   add_test(NAME ${suite} COMMAND test_core_mapped_runs --gtest_filter=*${suite}.*)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
 endforeach()

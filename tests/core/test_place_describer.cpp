@@ -188,5 +188,51 @@ TEST(PlaceDescriber, SimulatedFramesMatchWhereTheyShould) {
     EXPECT_GE(right, static_cast<int>(matches.size() * 2 / 5));
 }
 
+// What a frame shows of a place: boxes on a wall 1.5 m away.
+class PlaceLikeness : public ::testing::Test {
+  protected:
+    PlaceLikeness() : place_(viewOf(images_)->points) {}
+    Likeness compare(const RgbdFrame& frame, const Pose& T_frame_place = Pose()) {
+        return PlaceDescriber(squareCamera(400)).compare(place_, T_frame_place, frame.grey, frame.depth);
+    }
+    RgbdFrame images_ = boxes(400, 1.5);
+    PlacePoints place_;
+};
+
+TEST_F(PlaceLikeness, AllOfAPlaceLooksLikeItselfAndLittleWithEveryPointElsewhere) {
+    const Likeness own = compare(images_);
+    EXPECT_GT(own.visible, 50);
+    EXPECT_EQ(own.alike, own.visible);
+    Pose aside;
+    aside.translation() = {0.15, 0.1, 0};
+    EXPECT_GT(compare(images_, aside).visible, 50);
+    EXPECT_LT(compare(images_, aside).share(), 0.3);
+}
+
+TEST_F(PlaceLikeness, BlurCostsLittleAndWhatIsGoneCountsAgainstThePlace) {
+    RgbdFrame blurred = images_;
+    cv::GaussianBlur(images_.grey, blurred.grey, cv::Size(0, 0), 4);
+    EXPECT_GT(compare(blurred).share(), 0.9);
+    RgbdFrame half_bare = images_;
+    half_bare.grey = images_.grey.clone();
+    half_bare.grey(cv::Rect(0, 0, 200, 400)).setTo(128);
+    EXPECT_EQ(compare(half_bare).visible, compare(images_).visible);
+    EXPECT_LT(compare(half_bare).share(), 0.7);
+    EXPECT_GT(compare(half_bare).share(), 0.3);
+}
+
+TEST_F(PlaceLikeness, WhatIsHiddenSaysNothing) {
+    RgbdFrame hidden = images_;
+    hidden.grey = images_.grey.clone();
+    hidden.depth = images_.depth.clone();
+    hidden.grey(cv::Rect(0, 0, 120, 400)).setTo(128);
+    hidden.depth(cv::Rect(0, 0, 160, 400)).setTo(0.7);
+    EXPECT_LT(compare(hidden).visible, 0.8 * compare(images_).visible);
+    EXPECT_GT(compare(hidden).share(), 0.9);
+    Pose turned;
+    turned.setRotation(Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitY())));
+    EXPECT_EQ(compare(images_, turned).visible, 0) << "behind the camera";
+}
+
 }  // namespace
 }  // namespace roevo

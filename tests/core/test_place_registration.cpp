@@ -6,7 +6,7 @@
 #include "core/support/place_views.h"
 #include "core/support/random_pose.h"
 #include "core/support/simulated.h"
-#include "place/edge_registration.h"
+#include "place/place_evidence.h"
 
 namespace roevo {
 namespace {
@@ -101,6 +101,31 @@ TEST_F(PlaceRegistration, ConfidenceIsTheMeanShareAndNothingWhereEdgesContradict
     EXPECT_NEAR(placeConfidence(points, edges), 0.6, 1e-12);
     points.inliers = 10;
     EXPECT_EQ(placeConfidence(points, edges), 0);
+}
+
+TEST_F(PlaceRegistration, EvidenceNeedsEdgesAndSurroundingsOrASecondLook) {
+    Verification points;
+    points.matches = 40;
+    points.inliers = 30;
+    EdgeRegistration edges;
+    edges.determined = edges.plausible = edges.accepted = true;
+    edges.keyframe_matched = 0.7;
+    edges.frame_matched = 0.7;  // confidence 0.72
+    const Likeness same{100, 95}, twin{100, 90}, little{40, 40};
+    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kConclusive);
+    EXPECT_EQ(evidenceOf(points, edges, twin), Evidence::kPlausible) << "another door of the same kind";
+    EXPECT_EQ(evidenceOf(points, edges, little), Evidence::kPlausible);
+    edges.keyframe_matched = edges.frame_matched = 0.8;
+    EXPECT_EQ(evidenceOf(points, edges, twin), Evidence::kStrong) << "seen from elsewhere";
+    edges.keyframe_matched = edges.frame_matched = 0.2;  // blurred
+    edges.plausible = edges.accepted = false;
+    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kStrong);
+    EXPECT_EQ(evidenceOf(points, edges, twin), Evidence::kNone);
+    points.inliers = 14;
+    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kNone);
+    points.inliers = 30;
+    edges.determined = false;
+    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kNone);
 }
 
 }  // namespace

@@ -16,6 +16,16 @@ constexpr std::size_t kPoints = 200;    ///< kept of a keyframe, the most distin
 // Poses that are further apart are different places
 constexpr double kSamePlace = 0.3;               ///< m
 constexpr double kSameDirection = 15 * kDegree;  ///< rad
+// A place that is merely plausible is believed within so short a reach (what a hand goes in 2 s), where most
+// of it looks as it did: doors 4 m apart repeat
+constexpr double kShortReach = 3.5;    ///< m
+constexpr double kMostlyAlike = 0.6;  ///< share of its points in view
+
+template <class Alike>
+void mostAgreeingFirst(std::vector<Alike>& alike) {
+    std::stable_sort(alike.begin(), alike.end(),
+                     [](const Alike& a, const Alike& b) { return a.first.inliers > b.first.inliers; });
+}
 
 }  // namespace
 
@@ -38,7 +48,8 @@ const std::vector<KnownPlace>& Relocaliser::places() {
     return places_;
 }
 
-void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, int end) {
+void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, int begin,
+                      int end) {
     collect();
     Keyframe copy;  // of what is remembered
     copy.id = keyframe.id;
@@ -52,13 +63,13 @@ void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<
     }
     seen->pyramid.build(frame.pyramid.level(0).clone(), 1);
     at_work_ = std::async(std::launch::async, [this, copy = std::move(copy), seen = std::move(seen),
-                                               colours = std::move(colours), end]() mutable {
-        return describe(std::move(copy), std::move(seen), colours, end);
+                                               colours = std::move(colours), begin, end]() mutable {
+        return describe(std::move(copy), std::move(seen), colours, begin, end);
     });
 }
 
 Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<Frame> frame,
-                                             const std::vector<Rgb>& colours, int end) {
+                                             const std::vector<Rgb>& colours, int begin, int end) {
     Described out;
     KnownPlace& place = out.place;
     const cv::Mat& grey = frame->pyramid.level(0);
@@ -68,8 +79,9 @@ Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<
     place.edges = PackedKeyframe(toMapKeyframe(keyframe, colours, ideal_, options_.mapping.max_points));
     place.median_depth = keyframe.median_depth;
     place.row_motion = keyframe.row_motion;
-    out.alike = lookUp(place.points, keyframe.id, end);
-    if (out.alike.empty()) return out;
+    out.elsewhere = lookUp(place.points, keyframe.id, 0, begin);
+    out.alike = lookUp(place.points, keyframe.id, begin, end);
+    if (out.alike.empty() && out.elsewhere.empty()) return out;
     frame->grid.build(frame->edges, grey.cols, grey.rows);
     out.frame = std::move(frame);
     out.edges = std::move(keyframe.edges);
@@ -117,14 +129,25 @@ std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& 
     return found.T_frame_keyframe.inverse();
 }
 
-std::optional<RelativePose> Relocaliser::resembled(const Trajectory& trajectory,
-                                                   const Whereabouts& whereabouts) {
+/// After its own track has begun, others may have, too.
+void Relocaliser::splitByTrack(const Trajectory& trajectory) {
     collect();
     const int track = trajectory.beginOfTrack(static_cast<int>(places_.size()) - 1);
+    auto& own = newest_.alike;
+    const auto others = std::stable_partition(own.begin(), own.end(), [&](const Alike& alike) {
+        return trajectory.beginOfTrack(alike.second) == track;
+    });
+    newest_.elsewhere.insert(newest_.elsewhere.end(), others, own.end());
+    own.erase(others, own.end());
+    mostAgreeingFirst(newest_.elsewhere);
+}
+
+std::optional<RelativePose> Relocaliser::resembled(const Trajectory& trajectory,
+                                                   const Whereabouts& whereabouts) {
+    splitByTrack(trajectory);
     const auto isTwin = [&](const Alike& alike) {
         const Pose there = trajectory.worldPose({alike.second, alike.first.T_candidate_query, {}});
-        return trajectory.beginOfTrack(alike.second) == track &&
-               (there.translation() - whereabouts.centre).norm() > whereabouts.radius;
+        return (there.translation() - whereabouts.centre).norm() > whereabouts.radius;
     };
     newest_.alike.erase(std::remove_if(newest_.alike.begin(), newest_.alike.end(), isTwin),
                         newest_.alike.end());
@@ -134,10 +157,23 @@ std::optional<RelativePose> Relocaliser::resembled(const Trajectory& trajectory,
     return RelativePose{id, points.T_candidate_query, {}};
 }
 
-std::optional<RelativePose> Relocaliser::recognised(const Trajectory& trajectory,
-                                                    const Whereabouts& whereabouts) {
-    return surest(registered(newest_.alike, *newest_.frame, newest_.edges, places_.back().row_motion),
-                  trajectory, whereabouts);
+std::optional<RecognisedPlace> Relocaliser::recognised(const Trajectory& trajectory,
+                                                       const Whereabouts& whereabouts) {
+    return newestAmong(newest_.alike, trajectory, whereabouts);
+}
+
+std::optional<RecognisedPlace> Relocaliser::recognisedElsewhere(const Trajectory& trajectory,
+                                                                const Whereabouts& whereabouts) {
+    splitByTrack(trajectory);
+    return newestAmong(newest_.elsewhere, trajectory, whereabouts);
+}
+
+std::optional<RecognisedPlace> Relocaliser::newestAmong(const std::vector<Alike>& alike,
+                                                        const Trajectory& trajectory,
+                                                        const Whereabouts& whereabouts) {
+    if (alike.empty() || alike.front().first.inliers < kLeastAgreeingPoints) return std::nullopt;
+    return surest(registered(alike, *newest_.frame, newest_.edges, places_.back().row_motion), trajectory,
+                  whereabouts);
 }
 
 std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajectory& trajectory,
@@ -148,14 +184,20 @@ std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajecto
     describer_.describe(edges, frame.pyramid.level(0), points_);
     if (points_.size() > kPoints) points_.resize(kPoints);
     const int all = static_cast<int>(places_.size());
-    return surest(registered(lookUp(points_, -1, all), frame, edges, RowMotion()), trajectory, whereabouts);
+    const auto found =
+        surest(registered(lookUp(points_, -1, 0, all), frame, edges, RowMotion()), trajectory, whereabouts);
+    if (!found || !found->sure) return std::nullopt;
+    return found->pose;
 }
 
-/// Keyframes before `end` whose points look alike, those with the most agreeing points first.
-std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, int query_id, int end) {
+/// Keyframes from `begin` until before `end` whose points look alike, those with the most agreeing points
+/// first.
+std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, int query_id, int begin,
+                                                    int end) {
     std::vector<Alike> alike;
-    if (end <= 0) return alike;
+    if (end <= begin) return alike;
     std::vector<int> excluded;
+    for (int id = 0; id < begin; ++id) excluded.push_back(id);
     for (int id = end; id < static_cast<int>(places_.size()); ++id) excluded.push_back(id);
     std::vector<PlaceCandidate> candidates;
     index_.query(points, kCandidates, excluded, candidates);
@@ -164,8 +206,7 @@ std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, i
         const auto found = verifier_.verify(points, query_id, place.points, candidate.id);
         if (found) alike.emplace_back(*found, candidate.id);
     }
-    std::stable_sort(alike.begin(), alike.end(),
-                     [](const Alike& a, const Alike& b) { return a.first.inliers > b.first.inliers; });
+    mostAgreeingFirst(alike);
     return alike;
 }
 
@@ -178,32 +219,48 @@ std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<
         const auto& [of_points, id] = alike[k];
         const EdgeRegistration found =
             registrar_.registerEdges(unpacked(id), frame, edges, of_points.T_candidate_query.inverse(), rows);
-        const double confidence = placeConfidence(of_points, found);
-        if (confidence <= 0) continue;
+        if (!found.determined) continue;
+        const Likeness likeness =
+            describer_.compare(places_[static_cast<std::size_t>(id)].points, found.T_frame_keyframe,
+                               frame.pyramid.level(0), frame.images.depth);
+        const Evidence evidence = evidenceOf(of_points, found, likeness);
+        if (evidence == Evidence::kNone) continue;
         const RelativePose pose{id, found.T_frame_keyframe.inverse(), {found.covariance, {}}};
-        recognised.push_back({pose, confidence, found.accepted});
+        recognised.push_back({pose, evidence, placeConfidence(of_points, found), likeness.share()});
     }
     return recognised;
 }
 
-std::optional<RelativePose> Relocaliser::surest(const std::vector<Recognition>& recognised,
-                                                const Trajectory& trajectory,
-                                                const Whereabouts& whereabouts) {
-    const auto best = std::max_element(
-        recognised.begin(), recognised.end(),
-        [](const Recognition& a, const Recognition& b) { return a.confidence < b.confidence; });
-    if (best == recognised.end()) return std::nullopt;
-    if (best->accepted && best->confidence >= kUnambiguousConfidence) return best->pose;
-    const Pose there = trajectory.worldPose(best->pose);
-    const auto isRival = [&](const Recognition& other) {
+std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<Recognition>& recognised,
+                                                   const Trajectory& trajectory,
+                                                   const Whereabouts& whereabouts) {
+    if (recognised.empty()) return std::nullopt;
+    const auto best = [&](auto&& rank) {
+        return *std::max_element(
+            recognised.begin(), recognised.end(),
+            [&](const Recognition& a, const Recognition& b) { return rank(a) < rank(b); });
+    };
+    const Recognition likeliest =
+        best([](const Recognition& r) { return std::pair(r.evidence, r.confidence); });
+    if (likeliest.evidence == Evidence::kConclusive)
+        return RecognisedPlace{likeliest.pose, likeliest.likeness, true, true};
+    const Recognition fittest =
+        best([](const Recognition& r) { return std::pair(r.confidence, r.likeness); });
+    const Pose there = trajectory.worldPose(fittest.pose);
+    const bool has_rival = std::any_of(recognised.begin(), recognised.end(), [&](const Recognition& other) {
         const Pose apart = there.inverse() * trajectory.worldPose(other.pose);
         return apart.translation().norm() > kSamePlace || rotationAngle(apart) > kSameDirection;
-    };
+    });
     const double distance = (there.translation() - whereabouts.centre).norm();
-    if (best->pose.keyframe < whereabouts.unrelated || distance > whereabouts.radius ||
-        std::any_of(recognised.begin(), recognised.end(), isRival))
-        return std::nullopt;
-    return best->pose;
+    if (has_rival) return std::nullopt;
+    const bool tells = fittest.evidence > Evidence::kPlausible ||
+                       (whereabouts.radius <= kShortReach && fittest.likeness >= kMostlyAlike);
+    if (tells && fittest.pose.keyframe >= whereabouts.unrelated && distance <= whereabouts.radius)
+        return RecognisedPlace{fittest.pose, fittest.likeness, true, fittest.confidence > 0};
+    const Recognition strongest =
+        best([](const Recognition& r) { return std::pair(r.evidence, r.likeness); });
+    if (strongest.evidence != Evidence::kStrong) return std::nullopt;
+    return RecognisedPlace{strongest.pose, strongest.likeness, false, strongest.confidence > 0};
 }
 
 }  // namespace roevo

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "mapping/packed_keyframe.h"
-#include "place/edge_registration.h"
 #include "place/place_describer.h"
+#include "place/place_evidence.h"
 #include "place/place_index.h"
 #include "tracking/relative_pose.h"
 #include "trajectory.h"
@@ -29,6 +29,14 @@ struct KnownPlace {
     RowMotion row_motion;
 };
 
+/// The place that a frame shows, as far as one look tells.
+struct RecognisedPlace {
+    RelativePose pose;
+    double likeness = 0;  ///< share of the place's points in view that look as they did
+    bool sure = false;    ///< else a second look must agree
+    bool fits = false;    ///< the edges do, so that the pose is as good as it says
+};
+
 /// Remembers what keyframes look like, and finds which of them a frame shows. Places that look alike are not
 /// taken for each other: either points and edges tell the place from all others, or no other within reach of
 /// the camera looks like it.
@@ -49,19 +57,24 @@ class Relocaliser {
     /// In a thread of its own.
     /// @param frame    that the keyframe was made of
     /// @param colours  of the keyframe's points
-    /// @param end      keyframes before this one are looked for in it, see resembled()
-    void add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, int end);
+    /// @param begin    of the keyframe's track
+    /// @param end      keyframes before this one are looked for in it; those before `begin` apart from the
+    ///                 others, which look more like it
+    void add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, int begin, int end);
 
-    /// The older keyframe that the newest one looks most like, and its pose relative to that by points alone:
-    /// about right, with no covariance. Waits for the thread.
+    /// The older keyframe of its own track that the newest one looks most like, and its pose relative to that
+    /// by points alone: about right, with no covariance. Waits for the thread.
     /// @param whereabouts  of the newest: places of its own track that are out of reach are twins
     [[nodiscard]] std::optional<RelativePose> resembled(const Trajectory& trajectory,
                                                         const Whereabouts& whereabouts);
-    /// The one of them that the newest keyframe shows, and its pose relative to that; after resembled().
-    [[nodiscard]] std::optional<RelativePose> recognised(const Trajectory& trajectory,
-                                                         const Whereabouts& whereabouts);
+    /// The place of its own track that the newest keyframe shows; after resembled().
+    [[nodiscard]] std::optional<RecognisedPlace> recognised(const Trajectory& trajectory,
+                                                            const Whereabouts& whereabouts);
+    /// The place of another track that it shows. Waits for the thread.
+    [[nodiscard]] std::optional<RecognisedPlace> recognisedElsewhere(const Trajectory& trajectory,
+                                                                     const Whereabouts& whereabouts);
 
-    /// The keyframe that the frame shows, and its pose relative to that.
+    /// The keyframe that the frame shows for sure, and its pose relative to that.
     /// @param trajectory  with the keyframes
     [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, const Trajectory& trajectory,
                                                    const Whereabouts& whereabouts);
@@ -74,23 +87,27 @@ class Relocaliser {
   private:
     struct Recognition {
         RelativePose pose;
-        double confidence = 0;
-        bool accepted = false;
+        Evidence evidence = Evidence::kNone;
+        double confidence = 0, likeness = 0;
     };
     using Alike = std::pair<Verification, int>;  ///< and the keyframe
     struct Described {
         KnownPlace place;
         std::unique_ptr<Frame> frame;  ///< what is registered to older keyframes
         EdgePoints3D edges;
-        std::vector<Alike> alike;
+        std::vector<Alike> alike, elsewhere;  ///< in its own track and in others
     };
-    static std::optional<RelativePose> surest(const std::vector<Recognition>& recognised,
-                                              const Trajectory& trajectory, const Whereabouts& whereabouts);
+    static std::optional<RecognisedPlace> surest(const std::vector<Recognition>& recognised,
+                                                 const Trajectory& trajectory,
+                                                 const Whereabouts& whereabouts);
     Described describe(Keyframe keyframe, std::unique_ptr<Frame> frame, const std::vector<Rgb>& colours,
-                       int end);
-    std::vector<Alike> lookUp(const PlacePoints& points, int query_id, int end);
+                       int begin, int end);
+    std::vector<Alike> lookUp(const PlacePoints& points, int query_id, int begin, int end);
     std::vector<Recognition> registered(const std::vector<Alike>& alike, const Frame& frame,
                                         const EdgePoints3D& edges, const RowMotion& rows);
+    std::optional<RecognisedPlace> newestAmong(const std::vector<Alike>& alike, const Trajectory& trajectory,
+                                               const Whereabouts& whereabouts);
+    void splitByTrack(const Trajectory& trajectory);
     void collect();
     Keyframe unpacked(int id) const;
     EdgePoints3D lifted(const Frame& frame) const;

@@ -14,10 +14,13 @@ namespace {
 constexpr double kReach = 0.3;     // m
 constexpr double kTopSpeed = 1.5;  // m/s
 
-// Two keyframes in a row that were recognised agree on the loop
+// Two keyframes in a row that were recognised agree on where their track belongs
 constexpr int kInARow = 3;                // keyframes
-constexpr double kAgreedDistance = 0.05;  // m
+constexpr double kAgreedDistance = 0.05;  // m, on a loop
 constexpr double kAgreedTurn = 1 * kDegree;
+/// Times as much on a join: blurred images put places so far off, twins are much further apart, and where the
+/// map sees the place again it puts the rest right.
+constexpr double kJoinTolerance = 3;
 constexpr int kStillInView = 10;     // newest keyframes
 constexpr double kDriftSigmas = 10;  // that the camera can be from where it is thought to be
 
@@ -149,7 +152,7 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
     EdgeMap edges = ownEdges(*fresh, of.images, camera_);
     if (remembersPlaces()) {
         const int begin = trajectory_.beginOfTrack(fresh->id);
-        relocaliser_.add(*fresh, of, coloursOf(edges),
+        relocaliser_.add(*fresh, of, coloursOf(edges), begin,
                          closes ? std::max(begin, fresh->id - kStillInView) : begin);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
@@ -176,22 +179,15 @@ void World::recognise() {
     const double drift = kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
     const Whereabouts near{trajectory_.worldPose(newest).translation(),
                            kReach + kTopSpeed * lost_for_ + drift, unrelated()};
+    if (options_.loss.recognise && joinElsewhere(near)) return;
     const auto alike = relocaliser_.resembled(trajectory_, near);
     if (!alike) return;
-    if (isOfThisTrack(*alike) && isWithinReach(*alike)) {
+    if (isWithinReach(*alike)) {
         trajectory_.relate(alike->keyframe, newest.keyframe);
         return;
     }
-    const auto pose = relocaliser_.recognised(trajectory_, near);
-    if (!pose) return;
-    if (!isOfThisTrack(*pose) && options_.loss.recognise)
-        join(*pose);
-    else if (isOfThisTrack(*pose) && !isWithinReach(*pose))
-        closeLoop(*pose);
-}
-
-bool World::isOfThisTrack(const RelativePose& pose) const {
-    return trajectory_.beginOfTrack(pose.keyframe) == trajectory_.beginOfTrack(reference_->id);
+    const auto place = relocaliser_.recognised(trajectory_, near);
+    if (place && place->fits && !isWithinReach(place->pose)) closeLoop({newest.keyframe, *place});
 }
 
 /// Whether the map can relate the edges of the place by itself, where the newest keyframe is thought to be.
@@ -201,35 +197,56 @@ bool World::isWithinReach(const RelativePose& pose) const {
                        reference_->typicalDepth()) <= options_.fine.search_radius;
 }
 
-/// A track that was begun after a loss is moved to where one of its keyframes is recognised.
-void World::join(const RelativePose& pose) {
+/// A track that was begun after a loss is moved to where its newest keyframe is recognised.
+bool World::joinElsewhere(const Whereabouts& near) {
+    const auto place = relocaliser_.recognisedElsewhere(trajectory_, near);
+    if (!place) return false;
+    const Look newest{reference_->id, *place};
+    const auto before = agreeingLook(newest, kJoinTolerance);
+    if (!place->sure && !before) return false;
+    const bool earlier = !place->sure && before->place.likeness > place->likeness;
+    join(earlier ? *before : newest);
+    return true;
+}
+
+void World::join(const Look& look) {
     const Pose before = trajectory_.lastPose();
-    mapper_->correct(trajectory_.join(reference_->id, pose));
+    mapper_->correct(trajectory_.join(look.keyframe, look.place.pose));
     noteMotion(before);
-    change_.joined_at = pose.keyframe;
+    change_.joined_at = look.place.pose.keyframe;
     lost_for_ = 0;
+    look_.reset();
     noteTrack();
 }
 
-/// Where the map cannot relate the edges of a place that is seen again, since the camera has drifted too far.
-void World::closeLoop(const RelativePose& pose) {
-    const auto motionOf = [&](int keyframe, const RelativePose& recognised) {
-        return trajectory_.worldPose(recognised) * trajectory_.keyframePose(keyframe).inverse();
+/// The look before that this one agrees with on where the track belongs, if it does. From now on this one is
+/// the look before.
+std::optional<World::Look> World::agreeingLook(const Look& newest, double tolerance) {
+    const auto before = std::exchange(look_, newest);
+    if (!before || newest.keyframe - before->keyframe > kInARow) return std::nullopt;
+    const auto motionOf = [&](const Look& look) {
+        return trajectory_.worldPose(look.place.pose) * trajectory_.keyframePose(look.keyframe).inverse();
     };
-    const int newest = reference_->id;
-    const Pose& T_world_newest = trajectory_.keyframePose(newest);
-    const auto first = std::exchange(loop_, std::pair(newest, pose));
-    if (!first || newest - first->first > kInARow) return;
-    const Pose apart = (motionOf(first->first, first->second) * T_world_newest).inverse() *
-                       motionOf(newest, pose) * T_world_newest;
-    if (apart.translation().norm() > kAgreedDistance || rotationAngle(apart) > kAgreedTurn) return;
+    const Pose& T_world_newest = trajectory_.keyframePose(newest.keyframe);
+    const Pose apart = (motionOf(*before) * T_world_newest).inverse() * motionOf(newest) * T_world_newest;
+    if (apart.translation().norm() > tolerance * kAgreedDistance ||
+        rotationAngle(apart) > tolerance * kAgreedTurn)
+        return std::nullopt;
+    return before;
+}
+
+/// Where the map cannot relate the edges of a place that is seen again, since the camera has drifted too far.
+void World::closeLoop(const Look& newest) {
+    const auto first = agreeingLook(newest, 1);
+    if (!first) return;
     const Pose before = trajectory_.lastPose();
-    const Correction correction = trajectory_.closeLoop({*first, *loop_});
+    const Correction correction =
+        trajectory_.closeLoop({{first->keyframe, first->place.pose}, {newest.keyframe, newest.place.pose}});
     if (correction.keyframes.empty()) return;
     mapper_->correct(correction);
     noteMotion(before);
-    change_.closed_at = pose.keyframe;
-    loop_.reset();
+    change_.closed_at = newest.place.pose.keyframe;
+    look_.reset();
 }
 
 std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& last, double since_measured) {

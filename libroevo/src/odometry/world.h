@@ -84,9 +84,14 @@ class World {
   private:
     void adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked);
     void recognise();
-    void join(const RelativePose& pose);
-    void closeLoop(const RelativePose& pose);
-    bool isOfThisTrack(const RelativePose& pose) const;
+    struct Look {
+        int keyframe = -1;
+        RecognisedPlace place;
+    };
+    std::optional<Look> agreeingLook(const Look& newest, double tolerance);
+    bool joinElsewhere(const Whereabouts& near);
+    void join(const Look& look);
+    void closeLoop(const Look& newest);
     bool isWithinReach(const RelativePose& pose) const;
     void takeUpdate(const MapUpdate& update);
     void noteMotion(const Pose& before);
@@ -111,7 +116,7 @@ class World {
     double lost_for_ = 0;
     double recognised_at_ = 0;  // s; when the place of the newest keyframe is to be known
     bool recognising_ = false;  // it is not known yet
-    std::optional<std::pair<int, RelativePose>> loop_;  // keyframe and pose that a second one must agree with
+    std::optional<Look> look_;  // that a second one must agree with
     WorldChange change_;
 };
 

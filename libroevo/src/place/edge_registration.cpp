@@ -82,10 +82,11 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     out.keyframe_matched = term_.matches().matchedRatio();
     lookBack(keyframe, frame_edges, out);
     const double matched = std::min(out.keyframe_matched, out.frame_matched);
-    out.plausible = out.inliers >= kLeastInliers && matched >= kLeastPlausible &&
-                    out.visible >= kLeastVisible && out.depth_agreement >= kLeastDepthAgreement &&
-                    out.sigma_translation <= kMostSigmaTranslation &&
-                    out.sigma_rotation <= kMostSigmaRotation;
+    out.determined = out.inliers >= kLeastInliers && out.visible >= kLeastVisible &&
+                     out.depth_agreement >= kLeastDepthAgreement &&
+                     out.sigma_translation <= kMostSigmaTranslation &&
+                     out.sigma_rotation <= kMostSigmaRotation;
+    out.plausible = out.determined && matched >= kLeastPlausible;
     out.accepted = out.plausible && matched >= kLeastMatched;
     return out;
 }

@@ -17,8 +17,9 @@ struct EdgeRegistration {
     double depth_agreement = 0;    ///< share of the associated points whose depths agree
     double sigma_translation = 0;  ///< m, in the worst direction
     double sigma_rotation = 0;     ///< rad, about the worst axis
-    bool plausible = false;        ///< the edges do not contradict what points that look alike say
-    bool accepted = false;         ///< the edges agree; those of a place that looks alike do, too
+    bool determined = false;       ///< edges and depths of both hold the pose in every direction
+    bool plausible = false;        ///< and the edges do not contradict what points that look alike say
+    bool accepted = false;         ///< and they agree; those of a place that looks alike do, too
 };
 
 /// How sure it is that this is the place, 0 to 1: the mean of the shares of similar points that agree and of

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "place/sampling_pattern.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -16,6 +17,10 @@ constexpr int kCornerWindow = 3;  ///< px to each side, that the second moments 
 constexpr int kCornerStep = 2;    ///< points of an edge from one that is looked at to the next
 constexpr int kApart = 1;         ///< steps to each side that a chosen point is the most distinct of
 constexpr double kCellSize = 40;  ///< px, of the grid over the image
+// Whether a point of a place is seen again
+constexpr double kLeastInside = 0.5;  ///< radii of its patch, from the image's border
+constexpr double kHidden = 0.9;       ///< of its depth; what is nearer hides it
+constexpr int kAlikeBits = 64;        ///< that may differ
 
 int roundToInt(double value) {
     return static_cast<int>(std::lround(value));
@@ -49,7 +54,6 @@ void PlaceDescriber::describe(const EdgePoints3D& edges, const cv::Mat& grey, Pl
     findCorners(edges.image, grey);
     chooseCorners(edges.image);
     cv::integral(grey, integral_, CV_32S);
-    const double scale = camera_.pixelScale();
     out.reserve(corners_.size());
     for (const Corner& corner : corners_) {
         const auto i = static_cast<std::size_t>(corner.point);
@@ -61,11 +65,41 @@ void PlaceDescriber::describe(const EdgePoints3D& edges, const cv::Mat& grey, Pl
         point.v = edges.image.y[i];
         const Eigen::Vector2d normal(edges.image.normal_x[i], edges.image.normal_y[i]);
         point.normal_angle = static_cast<float>(std::atan2(normal.y(), normal.x()));
-        const double radius = std::clamp(camera_.fx * kPatchRadius / static_cast<double>(point.z),
-                                         kLeastRadius * scale, kMostRadius * scale);
-        point.descriptor = describePatch({point.u, point.v}, normal, radius);
+        point.descriptor =
+            describePatch({point.u, point.v}, normal, patchRadius(static_cast<double>(point.z)));
         out.push_back(point);
     }
+}
+
+double PlaceDescriber::patchRadius(double depth) const {
+    const double scale = camera_.pixelScale();
+    return std::clamp(camera_.fx * kPatchRadius / depth, kLeastRadius * scale, kMostRadius * scale);
+}
+
+Likeness PlaceDescriber::compare(const PlacePoints& place, const Pose& T_frame_place, const cv::Mat& grey,
+                                 const cv::Mat& depth) {
+    cv::integral(grey, integral_, CV_32S);
+    const double roll = rollOf(T_frame_place);
+    Likeness out;
+    for (const PlacePoint& point : place) {
+        const Eigen::Vector3d p = T_frame_place * Eigen::Vector3d(point.x, point.y, point.z);
+        if (p.z() <= 0) continue;
+        const Eigen::Vector2d pixel = camera_.project(p);
+        const double radius = patchRadius(p.z()), inside = kLeastInside * radius;
+        if (!(pixel.minCoeff() >= inside && pixel.x() < camera_.width - inside &&
+              pixel.y() < camera_.height - inside))
+            continue;
+        const Eigen::Vector2d seen = lens_.distortPixel(pixel);
+        const int u = std::clamp(roundToInt(seen.x()), 0, depth.cols - 1),
+                  v = std::clamp(roundToInt(seen.y()), 0, depth.rows - 1);
+        const auto there = static_cast<double>(depth.at<float>(v, u));
+        if (there > 0 && there < kHidden * p.z()) continue;
+        ++out.visible;
+        const double angle = static_cast<double>(point.normal_angle) + roll;
+        const Descriptor found = describePatch(pixel, {std::cos(angle), std::sin(angle)}, radius);
+        if (hammingDistance(found, point.descriptor) <= kAlikeBits) ++out.alike;
+    }
+    return out;
 }
 
 void PlaceDescriber::findCorners(const OrganizedEdges& edges, const cv::Mat& grey) {

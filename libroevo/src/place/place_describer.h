@@ -6,9 +6,18 @@
 
 #include "place/place_points.h"
 #include "roevo/camera/pinhole_camera.h"
+#include "roevo/types.h"
 #include "tracking/edge_points.h"
 
 namespace roevo {
+
+/// How much of a place a frame shows at the pose where the place should be.
+struct Likeness {
+    int visible = 0;  ///< points of the place that are in the image, and that nothing hides
+    int alike = 0;    ///< of them, those whose surroundings look as they did
+
+    double share() const { return visible > 0 ? static_cast<double>(alike) / visible : 0; }
+};
 
 /// Chooses the points that a keyframe is recognised by, and describes them. They are those where the image
 /// tells where along its edge a point is (ends, junctions, bends, change of what is beside the edge), spread
@@ -17,12 +26,19 @@ namespace roevo {
 class PlaceDescriber {
   public:
     /// @param camera  with its lens or not: edges and images are those of the ideal one
-    explicit PlaceDescriber(const PinholeCamera& camera) : camera_(camera.undistorted()) {}
+    explicit PlaceDescriber(const PinholeCamera& camera) : lens_(camera), camera_(camera.undistorted()) {}
 
     /// @param edges  of the keyframe
     /// @param grey   that they were found in: CV_8UC1, height x width, without the lens's distortion
     /// @param out    at most kMaxPlacePoints, the most distinct ones of every part of the image first
     void describe(const EdgePoints3D& edges, const cv::Mat& grey, PlacePoints& out);
+
+    /// Looks in an image for what surrounds the points of a place. No edges need to be found there, so that
+    /// blur costs little, and what is missing tells as much as what is there.
+    /// @param grey   as for describe()
+    /// @param depth  m, of the same frame, as seen through the lens
+    Likeness compare(const PlacePoints& place, const Pose& T_frame_place, const cv::Mat& grey,
+                     const cv::Mat& depth);
 
   private:
     struct Corner {
@@ -36,8 +52,9 @@ class PlaceDescriber {
     float boxMean(const Eigen::Vector2d& centre, double half_width) const;
     Descriptor describePatch(const Eigen::Vector2d& centre, const Eigen::Vector2d& normal,
                              double radius) const;
+    double patchRadius(double depth) const;
 
-    PinholeCamera camera_;
+    PinholeCamera lens_, camera_;
     std::vector<float> strength_;  ///< of points of one edge
     std::vector<Corner> corners_;
     std::vector<std::int32_t> corners_of_cell_;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "tracking/se3.h"
+
 namespace roevo {
 namespace {
 
@@ -22,12 +24,6 @@ constexpr double kLeastExtent = 0.05;  ///< m
 
 double angleBetween(double a, double b) {
     return std::abs(std::remainder(a - b, 2 * kPi));
-}
-
-/// Rotation about the optical axis, rad.
-double rollOf(const Pose& pose) {
-    const Eigen::Matrix3d& R = pose.linear();
-    return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
 }
 
 /// Orthonormal axes of a triangle; its corners are not on a line.

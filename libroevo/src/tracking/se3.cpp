@@ -17,6 +17,11 @@ double rotationAngle(const Pose& pose) {
     return Eigen::AngleAxisd(pose.linear()).angle();
 }
 
+double rollOf(const Pose& pose) {
+    const Eigen::Matrix3d& R = pose.linear();
+    return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+}
+
 double imageMotion(const Pose& a, const Pose& b, double focal_length, double depth) {
     const Pose between = a.inverse() * b;
     return focal_length * (rotationAngle(between) + between.translation().norm() / depth);

@@ -11,6 +11,9 @@ Pose poseIncrement(const Vector6d& xi);
 /// Rotation angle of a pose, radians.
 double rotationAngle(const Pose& pose);
 
+/// Rotation about the optical axis, rad.
+double rollOf(const Pose& pose);
+
 /// How far a point at `depth` (m) moves in the image between two poses of a camera, px, as an order of
 /// magnitude.
 double imageMotion(const Pose& a, const Pose& b, double focal_length, double depth);
