@@ -219,6 +219,24 @@ void printInput(const RunReport& report, const FrameSource& source) {
     std::fflush(stdout);
 }
 
+/// What becomes of keyframes and map when the recording ends.
+SceneContent finishMap(Odometry& odometry, RunReport& report) {
+    const auto tracked = std::chrono::steady_clock::now();
+    report.final_refusals = odometry.refineAll();
+    report.final_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - tracked).count();
+    report.trajectory = odometry.trajectory();
+    report.keyframes = odometry.keyframes();
+    if (report.map_in)  // those of this recording
+        report.keyframes.erase(report.keyframes.begin(), report.keyframes.begin() + report.map_in->keyframes);
+    SceneContent content;
+    content.map = odometry.map();
+    content.semi_dense = odometry.semiDense();
+    report.semi_dense_points = content.semi_dense.size();
+    report.map_edges = content.map.size();
+    for (const MapEdge& edge : content.map) report.map_points += edge.points.size();
+    return content;
+}
+
 }  // namespace
 
 RunReport runOdometry(const RunSettings& settings) {
@@ -243,21 +261,9 @@ RunReport runOdometry(const RunSettings& settings) {
     report.warning = source->warning();
     source.reset();
 
-    const auto tracked = std::chrono::steady_clock::now();
-    odometry.refineAll();
-    report.final_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - tracked).count();
-    report.trajectory = odometry.trajectory();
-    report.keyframes = odometry.keyframes();
-    if (report.map_in)  // those of this recording
-        report.keyframes.erase(report.keyframes.begin(), report.keyframes.begin() + report.map_in->keyframes);
+    SceneContent content = finishMap(odometry, report);
     report.readout_time = odometry.readoutTime();
     report.readout_learned = odometry.options().sensor.estimate_readout;
-    SceneContent content;
-    content.map = odometry.map();
-    content.semi_dense = odometry.semiDense();
-    report.semi_dense_points = content.semi_dense.size();
-    report.map_edges = content.map.size();
-    for (const MapEdge& edge : content.map) report.map_points += edge.points.size();
 
     const InterruptGuard guard;  // a signal does not leave half of the results
     const std::string failure = report.failure();

@@ -50,9 +50,10 @@ struct RunReport {
     SavedMap map_out;
     std::size_t map_edges = 0, map_points = 0, semi_dense_points = 0;
     std::vector<StampedPose> camera_on_robot;  ///< T_robot_camera of the frames with a pose
-    bool mounted = false;     ///< some frame's sensor sat elsewhere than on the robot's origin
-    std::size_t dropped = 0;  ///< frames that came while tracking was busy (--realtime)
-    double final_seconds = 0;  ///< of refining all keyframes together at the end
+    bool mounted = false;                    ///< some frame's sensor sat elsewhere than on the robot's origin
+    std::size_t dropped = 0;                 ///< frames that came while tracking was busy (--realtime)
+    std::vector<MapRefusal> final_refusals;  ///< of what was refined together at the end
+    double final_seconds = 0;                ///< of refining all keyframes together at the end
     double wall_seconds = 0;
     std::string ground_truth;              ///< file or folder, empty when there is none
     std::optional<Evaluation> evaluation;  ///< against the ground truth

@@ -104,15 +104,19 @@ Json mappingJson(const RunReport& report) {
     const auto times = mappingTimes(report);
     double longest_wait = 0, largest_correction = 0, largest_turn = 0;
     Json reasons = Json::object();
+    const auto count = [&](const std::vector<MapRefusal>& refusals) {
+        for (const MapRefusal& refusal : refusals) {
+            const char* kind = toString(refusal.kind);
+            reasons[kind] = reasons.value(kind, 0) + 1;
+        }
+    };
     for (const FrameRecord& f : report.frames) {
         longest_wait = std::max(longest_wait, f.result.ms.waiting);
         largest_correction = std::max(largest_correction, f.result.map_correction);
         largest_turn = std::max(largest_turn, f.result.map_turn);
-        for (const MapRefusal& refusal : f.result.map_refusals) {
-            const char* kind = toString(refusal.kind);
-            reasons[kind] = reasons.value(kind, 0) + 1;
-        }
+        count(f.result.map_refusals);
     }
+    count(report.final_refusals);
     return {{"keyframes", times.size()},
             {"mean_ms", times.empty() ? 0 : sumOf(times) / static_cast<double>(times.size())},
             {"max_ms", percentile(times, 1)},

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "input/excerpt.h"
 #include "programs/program.h"
 #include "recordings/bags/bag_file.h"
 #include "recordings/input_choice.h"
@@ -16,9 +17,10 @@ constexpr char kName[] = "bag2rawlog";
 
 void printTopics(const BagFile& bag) {
     for (const BagTopic& topic : bag.topics())
-        std::printf("%-48s %8zu  %s%s%s%s%s\n", topic.name.c_str(), topic.messages, topic.type.c_str(),
-                    topic.encoding.empty() ? "" : ", ", topic.encoding.c_str(),
-                    topic.frame_id.empty() ? "" : ", frame ", topic.frame_id.c_str());
+        std::printf("%-48s %8zu  %s%s%s%s%s\n", excerpt(topic.name).c_str(), topic.messages,
+                    excerpt(topic.type).c_str(), topic.encoding.empty() ? "" : ", ",
+                    excerpt(topic.encoding).c_str(), topic.frame_id.empty() ? "" : ", frame ",
+                    excerpt(topic.frame_id).c_str());
     for (const std::string& damage : bag.damage()) std::printf("left out: %s\n", damage.c_str());
 }
 
@@ -30,7 +32,9 @@ int run(int argc, char** argv) {
         "Turns colour, depth and camera_info of a ROS bag into an MRPT rawlog: depth lossless inside, colour "
         "as PNG beside it. The other programs read bags as they are.",
         kName);
-    app.add_option("--input", settings.input, "Bag to read: .bag, .db3, .mcap, or the folder of a ROS 2 recording")->required();
+    app.add_option("--input", settings.input,
+                   "Bag to read: .bag, .db3, .mcap, or the folder of a ROS 2 recording")
+        ->required();
     app.add_option("--output", settings.output, "Rawlog to write; images go to <stem>_Images beside it");
     app.add_flag("--list", list,
                  "List the topics with number of messages, type, encoding and frame, and end");

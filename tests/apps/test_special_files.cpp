@@ -66,6 +66,10 @@ TEST_F(SpecialFiles, BesideAGoodInput) {
         fs::remove(input + "/" + file);
         fs::rename(folder_ / "kept", input + "/" + file);
     }
+    // What an input that is no bag need not have is not waited for
+    ASSERT_EQ(mkfifo((input + "/metadata.yaml").c_str(), 0600), 0);
+    EXPECT_EQ(test::runForSeconds(kPatience, "roevo-odometry", {"--input", input, "--output", out}).exit_code,
+              0);
 }
 
 TEST_F(SpecialFiles, AsOutput) {

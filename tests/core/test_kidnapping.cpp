@@ -118,7 +118,7 @@ TEST(Kidnapping, OtherRoomsStayApart) {
 }
 
 TEST(Kidnapping, IsTheSameWithAnyNumberOfThreads) {
-    const int before = cv::getNumThreads();
+    const testing::ThreadsRestored restored;
     for (const int threads : {1, 2, 4}) {
         cv::setNumThreads(threads);
         const TracksRun again = run(sameRoom(), sameRoom().frames.size());
@@ -130,7 +130,6 @@ TEST(Kidnapping, IsTheSameWithAnyNumberOfThreads) {
             ASSERT_EQ(again.results[i].covariance, sameRoomRun().results[i].covariance);
         }
     }
-    cv::setNumThreads(before);
 }
 
 }  // namespace

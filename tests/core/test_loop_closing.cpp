@@ -121,7 +121,7 @@ TEST(LoopClosing, TheMapMovesWithTheKeyframes) {
 }
 
 TEST(LoopClosing, IsTheSameWithAnyNumberOfThreads) {
-    const int before = cv::getNumThreads();
+    const testing::ThreadsRestored restored;
     for (const int threads : {1, 2, 4}) {
         cv::setNumThreads(threads);
         const LoopedRun again = run(OdometryOptions());
@@ -133,7 +133,6 @@ TEST(LoopClosing, IsTheSameWithAnyNumberOfThreads) {
             ASSERT_EQ(again.live[i].T_world_camera.matrix(), withLoops().live[i].T_world_camera.matrix());
         }
     }
-    cv::setNumThreads(before);
 }
 
 }  // namespace

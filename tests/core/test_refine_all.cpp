@@ -92,6 +92,49 @@ TEST_F(RefineAll, EachTrackKeepsItsFirstKeyframe) {
     EXPECT_EQ(mapper_->keyframes().at(5).T_world_camera.matrix(), begin.matrix());
 }
 
+TEST_F(RefineAll, WhatWasRecognisedHoldsAJoinedTrack) {
+    map(5);
+    for (int id = 5; id < 10; ++id) {
+        MapKeyframe keyframe = keyframeAt(id, Pose::Identity());
+        if (id == 5) {
+            keyframe.parent = -1;
+            keyframe.track = 5;
+        }
+        mapper_->insert(std::move(keyframe));
+    }
+    // The younger track is moved to where its last keyframe was recognised, which is 3 cm off
+    Correction join;
+    join.recognised = 4;
+    const Pose motion(Eigen::Quaterniond::Identity(), {0.03, 0, 0});
+    for (int id = 5; id < 10; ++id) {
+        join.keyframes.push_back(id);
+        join.motions.push_back(motion);
+    }
+    const Pose T_4_9 = mapper_->keyframes().at(4).T_world_camera.inverse() * motion *
+                       mapper_->keyframes().at(9).T_world_camera;
+    join.places.push_back({4, 9, T_4_9, 1e-8 * Matrix6d::Identity()});
+    mapper_->correct(join);
+    mapper_->refineAll();
+    const Pose now =
+        mapper_->keyframes().at(4).T_world_camera.inverse() * mapper_->keyframes().at(9).T_world_camera;
+    EXPECT_LT((now.translation() - T_4_9.translation()).norm(), 0.001);
+}
+
+TEST_F(RefineAll, ReportsWhereAllKeyframesAreEvenThoseThatWereLeft) {
+    map(4);
+    const std::vector<Curve> elsewhere{segment({-0.3, 0.32, 2.0}, {0.05, 0.45, 2.0})};
+    MapKeyframe stranger = makeKeyframe(4, placeOnPath(placeOf(4)), elsewhere, seeAll(elsewhere)).keyframe;
+    stranger.parent = 0;
+    stranger.T_parent_camera = placeOnPath(0).inverse() * placeOnPath(placeOf(4));
+    mapper_->insert(std::move(stranger));
+    const MapUpdate update = mapper_->refineAll();
+    ASSERT_EQ(update.refusals.size(), 1U);
+    EXPECT_EQ(update.refusals[0].keyframe, 4);
+    ASSERT_EQ(update.poses.size(), 4U);
+    for (const auto& [id, pose] : update.poses)
+        EXPECT_EQ(pose.matrix(), mapper_->keyframes().at(id).T_world_camera.matrix()) << id;
+}
+
 TEST_F(RefineAll, LongTracksAreRefinedInPartsThatOverlap) {
     options_.mapping.final_rounds = 1;
     map(230);

@@ -120,6 +120,31 @@ TEST_F(RosImages, OfAllEncodings) {
     }
 }
 
+TEST_F(RosImages, WhoseRowsEndWithinAValueAreRefusedByName) {
+    cv::Mat padded(32, 41, CV_16UC1, cv::Scalar(900));
+    std::string message = imageMessage(Encoding::kRos1, tinyStamp(0), "rgb", padded, "16UC1");
+    const auto put = [&](std::uint32_t from, std::uint32_t to) {  // the first such number
+        const std::string bytes(reinterpret_cast<const char*>(&from), 4);
+        const std::size_t at = message.find(bytes);
+        ASSERT_NE(at, std::string::npos);
+        message.replace(at, 4, reinterpret_cast<const char*>(&to), 4);
+    };
+    put(41, 40);
+    put(82, 81);
+    image(tinyColour(0), "bgr8", kColour);
+    recording_.push_back({kDepth, "sensor_msgs/Image", message});
+    EXPECT_CONTAINS(errorOf([&] { open().readDepth(0); }), "rows of 81 bytes");
+}
+
+TEST_F(RosImages, OfACameraOneOfWhoseMessagesIsDamaged) {
+    image(tinyColour(0), "bgr8", kColour);
+    image(tinyDepth(0), "16UC1", kDepth);
+    recording_.push_back({kColourInfo, "sensor_msgs/CameraInfo", "cut"});
+    const DatasetReader bag = open();  // a whole one follows
+    EXPECT_NEAR(bag.camera().fx, tinyCamera().fx, 1e-9);
+    EXPECT_TRUE(equal(bag.readDepth(0), tinyDepth(0)));
+}
+
 TEST_F(RosImages, OfEitherByteOrder) {
     cv::Mat metres;
     tinyDepth(0).convertTo(metres, CV_32FC1, 1e-3);

@@ -54,10 +54,12 @@ class Odometry {
     /// Tracks one frame. Never throws for bad frames: they come back kRejected with a reason.
     [[nodiscard]] FrameResult processFrame(const RgbdFrame& frame);
 
-    /// Brings everything into agreement, at the end of a recording or whenever there is time: the place that
-    /// the newest keyframe shows is looked for, what is still being mapped takes effect, and in mode ba all
-    /// keyframes are refined together (options().mapping.final_rounds). Frames may follow.
-    void refineAll();
+    /// Brings the map into agreement, at the end of a recording or whenever there is time: what is still
+    /// being mapped takes effect, and in mode ba all keyframes are refined together (mapping.final_rounds).
+    /// Frames may follow. Covariances stay as they were.
+    /// @return keyframes that were left as they were, and why
+    /// @throws what mapping threw in its thread, e.g. std::bad_alloc
+    std::vector<MapRefusal> refineAll();
 
     /// Final poses of all frames that have one, in time order, unique stamps.
     std::vector<StampedPose> trajectory() const;

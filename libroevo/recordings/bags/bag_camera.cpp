@@ -1,6 +1,7 @@
 #include "recordings/bags/bag_camera.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include "input/excerpt.h"
@@ -59,22 +60,19 @@ BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const Ba
     BagCamera out;
     std::size_t others = 0;
     const std::size_t all = bag.count(info_topic);
-    try {
-        for (std::size_t i = 0; i < all; i++) {
-            const CameraInfoMessage info = parseCameraInfo(bag.message(info_topic, i));
-            if (i == 0) {
-                out.camera = cameraOf(info, rectified);
-                continue;
-            }
-            try {
-                if (cameraOf(info, rectified) != out.camera) others++;
-            } catch (const std::runtime_error&) {
-                others++;
-            }
+    std::optional<PinholeCamera> first;
+    std::string fault = "it has no message";
+    for (std::size_t i = 0; i < all; i++) {
+        try {
+            const PinholeCamera camera = cameraOf(parseCameraInfo(bag.message(info_topic, i)), rectified);
+            if (!first) first = camera;
+            if (camera != *first) others++;
+        } catch (const std::runtime_error& error) {
+            if (others++ == 0) fault = error.what();
         }
-    } catch (const std::runtime_error& error) {
-        throw std::runtime_error(bag.path() + ": " + info_topic + ": " + error.what());
     }
+    if (!first) throw std::runtime_error(bag.path() + ": " + info_topic + ": " + fault);
+    out.camera = *first;
     const PinholeCamera& camera = out.camera;
     if (images.width > 0 &&
         (static_cast<int>(images.width) != camera.width || static_cast<int>(images.height) != camera.height))
@@ -86,7 +84,7 @@ BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const Ba
     out.source = info_topic + (rectified ? " (P, rectified images)" : "");
     if (others > 0)
         out.warning = info_topic + ": " + std::to_string(others) + " of " + std::to_string(all) +
-                      " messages differ from the first, which is used";
+                      " messages differ from the first that is whole, which is used";
     return out;
 }
 

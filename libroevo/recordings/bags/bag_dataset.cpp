@@ -28,7 +28,7 @@ struct Stamped {
 };
 
 std::string nameOf(const BagFile& bag, const std::string& topic, std::size_t message) {
-    return bag.path() + ": " + topic + ", message " + std::to_string(message + 1);
+    return bag.path() + ": " + excerpt(topic) + ", message " + std::to_string(message + 1);
 }
 
 /// Decodes the images of a bag.
@@ -44,15 +44,16 @@ class BagImages : public ImageStore {
 
     /// That all depth images must have: of the first that can be read. @throws std::runtime_error
     const std::string& depthEncoding() {
-        for (std::size_t i = 0; encoding_.empty(); i++) {
+        std::string fault = "it has no encoding";
+        for (std::size_t i = 0; i < pairs_.size() && encoding_.empty(); i++) {
             try {
-                encoding_ = read(depth_, pairs_.at(i).second).encoding();
+                encoding_ = read(depth_, pairs_[i].second).encoding();
             } catch (const std::runtime_error& error) {
-                if (i + 1 == pairs_.size())
-                    throw std::runtime_error(nameOf(*bag_, depth_.name, pairs_[i].second) + ": " +
-                                             error.what());
+                fault = error.what();
             }
         }
+        if (encoding_.empty())
+            throw std::runtime_error(nameOf(*bag_, depth_.name, pairs_.back().second) + ": " + fault);
         return encoding_;
     }
 

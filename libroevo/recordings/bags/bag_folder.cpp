@@ -4,6 +4,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "input/regular_file.h"
 #include "recordings/bags/message_store.h"
 
 namespace fs = std::filesystem;
@@ -23,6 +24,7 @@ std::string stripped(std::string text) {
 /// The list "relative_file_paths" of metadata.yaml. Older recordings name the folder, too.
 std::vector<std::string> listedFiles(const std::string& metadata) {
     std::vector<std::string> files;
+    if (!otherThanFile(metadata).empty()) return files;
     std::ifstream in(metadata);
     bool inside = false;
     for (std::string line; std::getline(in, line);) {

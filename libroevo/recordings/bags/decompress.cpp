@@ -14,7 +14,7 @@ namespace roevo {
 namespace {
 
 constexpr std::uint64_t kStep = std::uint64_t{1} << 20;     // bytes of room at a time
-constexpr std::uint64_t kLargest = std::uint64_t{1} << 30;  // bytes; recorders end a piece after some MB
+constexpr std::uint64_t kLargest = std::uint64_t{1} << 28;  // bytes; recorders end a piece after some MB
 
 /// Room for more at the end of `out`: one byte beyond `size`, so that the decoder always has some and what is
 /// longer is seen.

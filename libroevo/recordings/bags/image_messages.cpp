@@ -1,5 +1,6 @@
 #include "recordings/bags/image_messages.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -32,6 +33,10 @@ cv::Mat viewOf(const ImageMessage& message, int type) {
         throw std::runtime_error("image data of " + std::to_string(message.data.size()) +
                                  " bytes is too short for " + std::to_string(message.width) + "x" +
                                  std::to_string(message.height) + " " + excerpt(message.encoding));
+    if (message.step % static_cast<std::size_t>(CV_ELEM_SIZE1(type)) != 0)
+        throw std::runtime_error("rows of " + std::to_string(message.step) +
+                                 " bytes, which are no whole number of " + excerpt(message.encoding) +
+                                 " values");
     return {static_cast<int>(message.height), static_cast<int>(message.width), type,
             const_cast<char*>(message.data.data()), message.step};
 }

@@ -157,9 +157,7 @@ class Mcap : public MessageStore {
             FieldReader in(bytes.read(record.data, record.size));
             Channel& channel = channels_[in.get<std::uint16_t>()];
             const auto schema = schemas_.find(in.get<std::uint16_t>());
-            channel.type = schema == schemas_.end() ? "without type" : schema->second;
-            if (const std::size_t msg = channel.type.find("/msg/"); msg != std::string::npos)
-                channel.type.erase(msg, 4);
+            channel.type = schema == schemas_.end() ? "without type" : plainType(schema->second);
             channel.topic = in.text();
             channel.encoding = in.text();
         }

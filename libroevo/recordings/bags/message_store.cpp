@@ -5,6 +5,7 @@
 #include <fstream>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 #include "input/excerpt.h"
 #include "input/regular_file.h"
@@ -14,6 +15,7 @@ namespace fs = std::filesystem;
 namespace roevo {
 namespace {
 
+constexpr std::size_t kMostTopics = 10000;
 constexpr std::size_t kMostDamage = 10;  // lines
 
 std::string firstBytes(const std::string& path) {
@@ -51,19 +53,34 @@ std::unique_ptr<MessageStore> openFile(const std::string& path) {
 
 StoredTopic& MessageStore::topic(const std::string& name, const std::string& type,
                                  const std::string& encoding) {
-    std::string plain = type;
-    if (const std::size_t msg = plain.find("/msg/"); msg != std::string::npos) plain.erase(msg, 4);
+    const std::string plain = plainType(type);
     const auto found = std::find_if(topics_.begin(), topics_.end(), [&](const StoredTopic& t) {
         return t.name == name && t.type == plain && t.encoding == encoding;
     });
     if (found != topics_.end()) return *found;
+    if (topics_.size() == kMostTopics)
+        throw std::runtime_error("more than " + std::to_string(kMostTopics) + " topics");
     StoredTopic& added = topics_.emplace_back();
     added.name = name, added.type = plain, added.encoding = encoding;
     return added;
 }
 
+void MessageStore::sortMessages() {
+    const auto place = [](const StoredMessage& message) {  // piece 0 is the file itself
+        return std::tuple(message.part, message.piece > 0 ? message.piece : message.offset, message.offset);
+    };
+    for (StoredTopic& topic : topics_)
+        std::stable_sort(topic.messages.begin(), topic.messages.end(),
+                         [&](const StoredMessage& a, const StoredMessage& b) { return place(a) < place(b); });
+}
+
 void MessageStore::addDamage(const std::string& text) {
     if (damage_.size() < kMostDamage) damage_.push_back(text);
+}
+
+std::string plainType(std::string type) {
+    if (const std::size_t msg = type.find("/msg/"); msg != std::string::npos) type.erase(msg, 4);
+    return type;
 }
 
 bool isReadType(const std::string& type) {
@@ -85,6 +102,7 @@ bool isBag(const std::string& path) {
 std::unique_ptr<MessageStore> openMessageStore(const std::string& path) {
     auto store = openFile(path);
     if (store->topics().empty()) throw std::runtime_error(path + ": the bag is empty");
+    store->sortMessages();
     return store;
 }
 

@@ -37,6 +37,9 @@ class MessageStore {
     const std::vector<StoredTopic>& topics() const { return topics_; }
     const std::vector<std::string>& damage() const { return damage_; }  ///< pieces left out, a line each
 
+    /// Brings each topic's messages into the file's order, whichever connection they came by.
+    void sortMessages();
+
   protected:
     /// The topic of that name and type, made where there is none.
     StoredTopic& topic(const std::string& name, const std::string& type, const std::string& encoding);
@@ -48,6 +51,9 @@ class MessageStore {
 
 /// Whether messages of this type are read; others are only counted.
 bool isReadType(const std::string& type);
+
+/// As ROS 1 writes it: "sensor_msgs/Image" for "sensor_msgs/msg/Image".
+std::string plainType(std::string type);
 
 /// Opens a recording of ROS 1 (.bag) or ROS 2 (.db3, .mcap, or the folder of metadata.yaml with such files).
 /// @throws std::runtime_error with one line: no such file, no bag at all, truncated, damaged or empty

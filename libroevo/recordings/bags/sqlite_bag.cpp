@@ -91,7 +91,7 @@ class SqliteBag : public MessageStore {
         prepare("SELECT id, name, type, serialization_format FROM topics");
         while (step()) {
             const std::string encoding = text(3);
-            if (encoding != "cdr")
+            if (encoding != "cdr" && isReadType(plainType(text(2))))
                 throw std::runtime_error("topic " + excerpt(text(1)) + " is written as '" +
                                          excerpt(encoding) + "', not as cdr");
             StoredTopic& made = topic(text(1), text(2), encoding);
@@ -111,8 +111,14 @@ class SqliteBag : public MessageStore {
             if (!isReadType(topic.type)) continue;
             StoredMessage message;
             message.piece = static_cast<std::uint64_t>(row);
-            message.size = openBlob(row);
-            readBlob(message.head.data(), std::min<std::uint64_t>(message.head.size(), message.size));
+            try {
+                message.size = openBlob(row);
+                readBlob(message.head.data(), std::min<std::uint64_t>(message.head.size(), message.size));
+            } catch (const std::runtime_error& error) {
+                addDamage("row " + std::to_string(row) + ": " + error.what());
+                blob_.reset();
+                continue;
+            }
             topic.messages.push_back(message);
         }
     }

@@ -39,6 +39,14 @@ void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& win
 
 }  // namespace
 
+RelativePrior RelativePrior::between(const std::vector<WindowKeyframe>& window, int from, int to,
+                                     const Pose& T_from_to, const Matrix6d& information, double weight) {
+    Matrix6d to_world = Matrix6d::Zero();
+    to_world.topLeftCorner<3, 3>() = to_world.bottomRightCorner<3, 3>() =
+        window[static_cast<std::size_t>(to)].T_world_camera.linear();
+    return {from, to, T_from_to, weight * to_world * information * to_world.transpose(), weight};
+}
+
 Matrix6d RelativePrior::toCentre(const std::vector<WindowKeyframe>& window,
                                  const Eigen::Vector3d& origin) const {
     Matrix6d to_centre = Matrix6d::Identity();

@@ -17,6 +17,10 @@ struct RelativePrior {
     Matrix6d information = Matrix6d::Zero();  ///< of the perturbation (t, phi) of T_world_to, world axes
     double weight = 1;                        ///< by which the information is less than what is known
 
+    /// @param information  along the axes of `to`
+    static RelativePrior between(const std::vector<WindowKeyframe>& window, int from, int to,
+                                 const Pose& T_from_to, const Matrix6d& information, double weight);
+
     /// How the centre of T_world_to moves with a perturbation about `origin`: by t + phi x (centre - origin).
     Matrix6d toCentre(const std::vector<WindowKeyframe>& window, const Eigen::Vector3d& origin) const;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "map_edges.h"
 #include "tracking/se3.h"
@@ -10,16 +9,11 @@
 namespace roevo {
 namespace {
 
-constexpr int kRoughIterations = 3;   ///< before edges are judged
-constexpr double kReusedScale = 0.5;  ///< px of spread that drift may cause at first
+constexpr int kRoughIterations = 3;  ///< before edges are judged
 /// Keyframes that see about the same: camera centres nearer than this share of the depth, and turned by less.
 constexpr double kNearDistance = 0.4, kNearDegrees = 30, kAboutAsNear = 0.5;
 /// A keyframe that bundle adjustment moves by more (share of its depth; degrees) went astray.
 constexpr double kLargestJump = 0.1, kLargestTurn = 5;
-/// Keyframes of a long track that are refined together, because the equations are dense; and how many of them
-/// are those that were before.
-constexpr int kMostTogether = 200, kMostFixed = 100;
-constexpr double kSettled = 0.05;      ///< px of image motion; smaller steps end the last refinement
 constexpr double kSameReadout = 2e-4;  ///< s; smaller changes are not worth moving all points
 
 /// Whether tracking told how well it knows the motion from the parent.
@@ -155,23 +149,16 @@ std::optional<MapRefusal> LocalMapper::refusalOf(const WindowKeyframe& view, int
 
 void LocalMapper::addPriors() {
     priors_.clear();
-    if (options_.mapping.prior_weight <= 0) return;
+    const double weight = options_.mapping.prior_weight;
+    if (weight <= 0) return;
     for (std::size_t to = 0; to < window_.size(); ++to) {
         const MapKeyframe& keyframe = *window_[to].keyframe;
-        for (std::size_t from = 0; from < to; ++from) {
-            if (window_[from].keyframe->id != keyframe.parent || !hasInformation(keyframe)) continue;
-            RelativePrior prior;
-            prior.from = static_cast<int>(from);
-            prior.to = static_cast<int>(to);
-            prior.T_from_to = keyframe.T_parent_camera;
-            const Eigen::Matrix3d R = window_[to].T_world_camera.linear();
-            Matrix6d to_world = Matrix6d::Zero();
-            to_world.topLeftCorner<3, 3>() = to_world.bottomRightCorner<3, 3>() = R;
-            prior.information =
-                options_.mapping.prior_weight * to_world * keyframe.parent_information * to_world.transpose();
-            prior.weight = options_.mapping.prior_weight;
-            priors_.push_back(prior);
-        }
+        if (!hasInformation(keyframe)) continue;
+        for (std::size_t from = 0; from < to; ++from)
+            if (window_[from].keyframe->id == keyframe.parent)
+                priors_.push_back(RelativePrior::between(window_, static_cast<int>(from),
+                                                         static_cast<int>(to), keyframe.T_parent_camera,
+                                                         keyframe.parent_information, weight));
     }
 }
 
@@ -188,6 +175,7 @@ void LocalMapper::setRowMotion(int keyframe, const RowMotion& rows) {
 }
 
 void LocalMapper::correct(const Correction& correction) {
+    places_.insert(places_.end(), correction.places.begin(), correction.places.end());
     for (std::size_t i = 0; i < correction.keyframes.size(); ++i) {
         MapKeyframe& keyframe = keyframes_.at(correction.keyframes[i]);
         keyframe.T_world_camera = correction.motions[i] * keyframe.T_world_camera;
@@ -254,7 +242,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     fuser_.fuse(window_, graph_.clusters(members), fused_);
     const int rough = std::min(kRoughIterations, options_.mapping.max_iterations / 2);
     const RefinementResult first =
-        adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kReusedScale);
+        adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kDriftScale);
     judge_.judge(window_, fused_, first.scale);
     update.refinement = adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
     takePoses(update);
@@ -263,51 +251,6 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     keepVerdicts();
     update.verdicts = verdicts_.at(id);
     leaveWindow(keyframe);
-    return update;
-}
-
-/// Fuses anew at the poses of each round. @param fixed  members, the first ones
-void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& members, std::size_t fixed,
-                                 BundleAdjuster& adjuster, MapUpdate& update) {
-    prepare(members);
-    std::vector<std::pair<int, Pose>> before = std::move(update.poses);
-    for (int round = 0; round < options_.mapping.final_rounds; ++round) {
-        window_.clear();
-        for (const MapKeyframe* member : members)
-            window_.push_back(
-                {member, member->T_world_camera, window_.size() < fixed || member->id < loaded_});
-        addPriors();
-        fuser_.fuse(window_, graph_.clusters(members), fused_);
-        takeKeptVerdicts(verdicts_, window_, fused_);
-        update.refinement = adjuster.refine(window_, fused_, priors_, options_.mapping.max_iterations,
-                                            round == 0 ? kReusedScale : 0);
-        update.refusals.clear();
-        update.poses.clear();
-        takePoses(update);
-        if (update.refinement.last_step < kSettled) break;
-    }
-    update.poses.insert(update.poses.begin(), before.begin(), before.end());
-}
-
-MapUpdate LocalMapper::refineAll() {
-    MapUpdate update;
-    if (keyframes_.empty()) return update;
-    update.keyframe = keyframes_.rbegin()->first + 1;  // it knows of all that there are
-    std::map<int, std::vector<const MapKeyframe*>> tracks;
-    for (const auto& [id, keyframe] : keyframes_) tracks[keyframe.track].push_back(&keyframe);
-    // Here the step must be right in directions that few points hold
-    BundleAdjuster adjuster(options_.mapping, options_.sensor, camera_,
-                            std::numeric_limits<std::size_t>::max());
-    for (const auto& [track, members] : tracks) {
-        std::size_t fixed = 1;
-        for (auto begin = members.begin(); members.end() - begin > static_cast<int>(fixed);
-             begin += kMostTogether - kMostFixed, fixed = kMostFixed) {
-            const auto end = begin + std::min<std::ptrdiff_t>(members.end() - begin, kMostTogether);
-            refineTogether({begin, end}, fixed, adjuster, update);
-            if (end == members.end()) break;
-        }
-    }
-    leaveWindow(keyframes_.rbegin()->second);
     return update;
 }
 

@@ -9,6 +9,7 @@
 #include "mapping/covisibility.h"
 #include "mapping/edge_fusion.h"
 #include "mapping/packed_keyframe.h"
+#include "mapping/pose_graph.h"
 #include "mapping/pseudo_edges.h"
 #include "mapping/window_posterior.h"
 #include "roevo/frame_result.h"
@@ -29,9 +30,10 @@ struct MapUpdate {
 
 /// How keyframes move when a place is recognised: a whole track to where it belongs, or each as a loop wants.
 struct Correction {
-    std::vector<int> keyframes;  ///< in order
-    std::vector<Pose> motions;   ///< of each, of the world: T_world_camera <- motion * T_world_camera
-    int recognised = -1;         ///< keyframe; those that move belong to its track from now on
+    std::vector<int> keyframes;          ///< in order
+    std::vector<Pose> motions;           ///< of each, of the world: T_world_camera <- motion * T_world_camera
+    int recognised = -1;                 ///< keyframe; those that move belong to its track from now on
+    std::vector<PoseConstraint> places;  ///< what was recognised
 
     /// Null where the keyframe stays.
     const Pose* motionOf(int keyframe) const {
@@ -51,6 +53,8 @@ struct KeptKeyframe {
     std::vector<CovisibilityGraph::Links> links;
 };
 
+inline constexpr double kDriftScale = 0.5;  ///< px of spread that drift may cause at first
+
 /// Local mapping: keeps the keyframes, relates the edges of a new one to those of its neighbours, fuses them
 /// and refines the poses of the window. No threads, no clocks: the same keyframes give the same map.
 class LocalMapper {
@@ -67,8 +71,8 @@ class LocalMapper {
 
     void correct(const Correction& correction);
 
-    /// Refines all keyframes of each track together, but for the first one and those that were loaded. Which
-    /// edges are pseudo-edges stays as it was judged.
+    /// Refines all keyframes of each track together, but for the first one and those that were loaded. Edges
+    /// and places that were recognised hold them. Which edges are pseudo-edges stays as it was judged.
     MapUpdate refineAll();
 
     /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
@@ -98,10 +102,12 @@ class LocalMapper {
                                              const std::vector<const MapKeyframe*>& recent) const;
     void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
     void takePoses(MapUpdate& update);
-    void refineTogether(const std::vector<const MapKeyframe*>& members, std::size_t fixed,
+    void refineTogether(const std::vector<const MapKeyframe*>& part, std::size_t fixed,
                         BundleAdjuster& adjuster, MapUpdate& update);
     std::optional<MapRefusal> refusalOf(const WindowKeyframe& view, int inliers) const;
     void addPriors();
+    void addRecognisedPlaces();
+    std::vector<const MapKeyframe*> relatedBefore(const std::vector<const MapKeyframe*>& members) const;
     void keepVerdicts();
     std::vector<std::int32_t> trackedClusters() const;
 
@@ -117,6 +123,7 @@ class LocalMapper {
     std::map<int, std::vector<EdgeVerdict>> verdicts_;  ///< of each keyframe's edges
     std::vector<WindowKeyframe> window_;
     std::vector<RelativePrior> priors_;
+    std::vector<PoseConstraint> places_;  ///< that were recognised
     FusedEdges fused_;
     int loaded_ = 0;  ///< keyframes, the first ones
 };

@@ -187,7 +187,7 @@ std::vector<MapUpdate> RefiningMapper::refineAll() {
                                    std::make_move_iterator(taken_.end()));
     taken_.clear();
     due_.clear();
-    if (options_.final_rounds > 0) updates.push_back(mapper_.refineAll());
+    updates.push_back(mapper_.refineAll());
     return updates;
 }
 

@@ -363,8 +363,8 @@ FrameResult Odometry::processFrame(const RgbdFrame& images) {
     return result;
 }
 
-void Odometry::refineAll() {
-    impl_->world.refineAll();
+std::vector<MapRefusal> Odometry::refineAll() {
+    return impl_->world.refineAll();
 }
 std::vector<StampedPose> Odometry::trajectory() const {
     return impl_->world.finalTrajectory().frames();

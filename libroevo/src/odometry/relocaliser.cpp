@@ -18,8 +18,11 @@ constexpr double kSamePlace = 0.3;               ///< m
 constexpr double kSameDirection = 15 * kDegree;  ///< rad
 // A place that is merely plausible is believed within so short a reach (what a hand goes in 2 s), where most
 // of it looks as it did: doors 4 m apart repeat
-constexpr double kShortReach = 3.5;    ///< m
-constexpr double kMostlyAlike = 0.6;  ///< share of its points in view
+constexpr double kShortReach = 3.5;  ///< m
+// One sigma of poses whose edges do not fit
+constexpr double kUnfitPosition = 0.15;     ///< m
+constexpr double kUnfitTurn = 3 * kDegree;  ///< rad
+constexpr double kMostlyAlike = 0.6;        ///< share of its points in view
 
 template <class Alike>
 void mostAgreeingFirst(std::vector<Alike>& alike) {
@@ -231,6 +234,16 @@ std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<
     return recognised;
 }
 
+/// Where edges do not fit, the pose is not as well known as they say.
+RecognisedPlace Relocaliser::placeOf(const Recognition& recognition, bool sure) {
+    RecognisedPlace place{recognition.pose, recognition.likeness, sure, recognition.confidence > 0};
+    if (place.fits) return place;
+    auto variances = place.pose.uncertainty.independent.diagonal().array();
+    variances.head<3>() += kUnfitPosition * kUnfitPosition;
+    variances.tail<3>() += kUnfitTurn * kUnfitTurn;
+    return place;
+}
+
 std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<Recognition>& recognised,
                                                    const Trajectory& trajectory,
                                                    const Whereabouts& whereabouts) {
@@ -242,8 +255,7 @@ std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<Recognition
     };
     const Recognition likeliest =
         best([](const Recognition& r) { return std::pair(r.evidence, r.confidence); });
-    if (likeliest.evidence == Evidence::kConclusive)
-        return RecognisedPlace{likeliest.pose, likeliest.likeness, true, true};
+    if (likeliest.evidence == Evidence::kConclusive) return placeOf(likeliest, true);
     const Recognition fittest =
         best([](const Recognition& r) { return std::pair(r.confidence, r.likeness); });
     const Pose there = trajectory.worldPose(fittest.pose);
@@ -256,11 +268,11 @@ std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<Recognition
     const bool tells = fittest.evidence > Evidence::kPlausible ||
                        (whereabouts.radius <= kShortReach && fittest.likeness >= kMostlyAlike);
     if (tells && fittest.pose.keyframe >= whereabouts.unrelated && distance <= whereabouts.radius)
-        return RecognisedPlace{fittest.pose, fittest.likeness, true, fittest.confidence > 0};
+        return placeOf(fittest, true);
     const Recognition strongest =
         best([](const Recognition& r) { return std::pair(r.evidence, r.likeness); });
     if (strongest.evidence != Evidence::kStrong) return std::nullopt;
-    return RecognisedPlace{strongest.pose, strongest.likeness, false, strongest.confidence > 0};
+    return placeOf(strongest, false);
 }
 
 }  // namespace roevo

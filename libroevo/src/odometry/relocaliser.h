@@ -97,6 +97,7 @@ class Relocaliser {
         EdgePoints3D edges;
         std::vector<Alike> alike, elsewhere;  ///< in its own track and in others
     };
+    static RecognisedPlace placeOf(const Recognition& recognition, bool sure);
     static std::optional<RecognisedPlace> surest(const std::vector<Recognition>& recognised,
                                                  const Trajectory& trajectory,
                                                  const Whereabouts& whereabouts);

@@ -131,6 +131,7 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
         return join(pose.keyframe, changeReference({pose.keyframe, Pose(), {}}, pose, keyframe));
     Correction join;
     join.recognised = pose.keyframe;
+    join.places.push_back({pose.keyframe, keyframe, pose.T_keyframe_camera, pose.covariance()});
     const Pose motion = worldPose(pose) * keyframePose(keyframe).inverse();
     const std::vector<int> tracks = this->tracks();
     for (int id = begin; id < static_cast<int>(keyframes_.size()); ++id)
@@ -187,8 +188,10 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
     const std::vector<int> tracks = this->tracks();
     const int track = tracks[static_cast<std::size_t>(recognised.front().first)];
     std::vector<PoseConstraint> constraints = constraintsOf(tracks, track), loops = loops_;
+    Correction correction;
     for (const auto& [keyframe, pose] : recognised)
-        loops.push_back({pose.keyframe, keyframe, pose.T_keyframe_camera, pose.covariance()});
+        correction.places.push_back({pose.keyframe, keyframe, pose.T_keyframe_camera, pose.covariance()});
+    loops.insert(loops.end(), correction.places.begin(), correction.places.end());
     for (const PoseConstraint& loop : loops)
         if (tracks[static_cast<std::size_t>(loop.to)] == track) constraints.push_back(loop);
     std::vector<Pose> poses;
@@ -199,7 +202,6 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
         if (tracks[static_cast<std::size_t>(loop.to)] == track &&
             contradiction(poses, loop) > kMostContradiction)
             return {};
-    Correction correction;
     correction.recognised = recognised.front().second.keyframe;
     for (std::size_t id = 0; id < poses.size(); ++id) {
         if (tracks[id] != track || static_cast<int>(id) < held_) continue;

@@ -224,6 +224,12 @@ void World::join(const Look& look) {
 std::optional<World::Look> World::agreeingLook(const Look& newest, double tolerance) {
     const auto before = std::exchange(look_, newest);
     if (!before || newest.keyframe - before->keyframe > kInARow) return std::nullopt;
+    const auto areOfOneTrack = [&](int a, int b) {
+        return trajectory_.beginOfTrack(a) == trajectory_.beginOfTrack(b);
+    };
+    if (!areOfOneTrack(before->keyframe, newest.keyframe) ||
+        !areOfOneTrack(before->place.pose.keyframe, newest.place.pose.keyframe))
+        return std::nullopt;
     const auto motionOf = [&](const Look& look) {
         return trajectory_.worldPose(look.place.pose) * trajectory_.keyframePose(look.keyframe).inverse();
     };
@@ -256,10 +262,11 @@ std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& 
                              {pose.translation(), kReach + kTopSpeed * since_measured, unrelated()});
 }
 
-void World::refineAll() {
-    if (!reference_) return;
-    recognise();
+std::vector<MapRefusal> World::refineAll() {
+    if (!reference_) return {};
+    std::vector<MapRefusal> before = std::exchange(change_.refusals, {});
     for (const MapUpdate& update : mapper_->refineAll()) takeUpdate(update);
+    return std::exchange(change_.refusals, std::move(before));
 }
 
 Trajectory World::finalTrajectory() const {

@@ -70,7 +70,7 @@ class World {
     double lostFor() const { return lost_for_; }
 
     /// See Odometry::refineAll().
-    void refineAll();
+    std::vector<MapRefusal> refineAll();
 
     /// With what has not taken effect yet.
     Trajectory finalTrajectory() const;

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/utility.hpp>
 #include <vector>
 
 #include "evaluation/evaluate.h"
@@ -15,6 +16,12 @@ struct Sequence {
     std::vector<RgbdFrame> frames;
     std::vector<StampedPose> truth;
     Pose start() const { return truth.front().T_world_camera; }
+};
+
+/// Whoever changes OpenCV's number of threads leaves it as it was.
+struct ThreadsRestored {
+    int before = cv::getNumThreads();
+    ~ThreadsRestored() { cv::setNumThreads(before); }
 };
 
 /// The first `count` frames of a simulation, as the sensor measures them.

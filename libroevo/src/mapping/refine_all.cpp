@@ -1,0 +1,101 @@
+// All keyframes at once, when a recording ends or there is time.
+#include <Eigen/LU>
+#include <algorithm>
+#include <limits>
+
+#include "map_edges.h"
+#include "mapping/local_mapper.h"
+
+namespace roevo {
+namespace {
+
+/// Keyframes of a long track that are refined together, because the equations are dense; and how many of them
+/// are those that were before.
+constexpr int kMostTogether = 200, kMostFixed = 100;
+constexpr double kSettled = 0.05;  ///< px of image motion; smaller steps end the last refinement
+
+}  // namespace
+
+/// No edges relate what has only just been recognised, or a track that was joined.
+void LocalMapper::addRecognisedPlaces() {
+    const auto slotOf = [&](int id) {
+        const auto at = std::find_if(window_.begin(), window_.end(),
+                                     [id](const WindowKeyframe& view) { return view.keyframe->id == id; });
+        return at == window_.end() ? -1 : static_cast<int>(at - window_.begin());
+    };
+    for (const PoseConstraint& place : places_) {
+        const int from = slotOf(place.from), to = slotOf(place.to);
+        const Matrix6d information = place.covariance.inverse();
+        if (from < 0 || to < 0 || !information.allFinite()) continue;
+        priors_.push_back(RelativePrior::between(window_, from, to, place.T_from_to, information, 1));
+    }
+}
+
+/// Older keyframes of the same track that the edges of some of these are related to.
+std::vector<const MapKeyframe*> LocalMapper::relatedBefore(
+    const std::vector<const MapKeyframe*>& members) const {
+    std::map<int, const MapKeyframe*> related;
+    for (const MapKeyframe* member : members)
+        for (const CovisibilityGraph::Links& links : graph_.linksOf(member->id)) {
+            const MapKeyframe& other = keyframes_.at(links.other);
+            if (other.id < members.front()->id && other.track == member->track) related[other.id] = &other;
+        }
+    std::vector<const MapKeyframe*> out;
+    for (const auto& [id, keyframe] : related) out.push_back(keyframe);
+    return out;
+}
+
+/// Fuses anew at the poses of each round. @param fixed  members, the first ones
+void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, std::size_t fixed,
+                                 BundleAdjuster& adjuster, MapUpdate& update) {
+    std::vector<const MapKeyframe*> members = relatedBefore(part);
+    fixed += members.size();
+    members.insert(members.end(), part.begin(), part.end());
+    const auto isFixed = [&](std::size_t slot) { return slot < fixed || members[slot]->id < loaded_; };
+    if (isFixed(members.size() - 1)) return;
+    prepare(members);
+    MapUpdate last;
+    for (int round = 0; round < options_.mapping.final_rounds; ++round) {
+        window_.clear();
+        for (std::size_t slot = 0; slot < members.size(); ++slot)
+            window_.push_back({members[slot], members[slot]->T_world_camera, isFixed(slot)});
+        addPriors();
+        addRecognisedPlaces();
+        fuser_.fuse(window_, graph_.clusters(members), fused_);
+        takeKeptVerdicts(verdicts_, window_, fused_);
+        last = {};
+        last.refinement = adjuster.refine(window_, fused_, priors_, options_.mapping.max_iterations,
+                                          round == 0 ? kDriftScale : 0);
+        takePoses(last);
+        if (last.refinement.last_step < kSettled) break;
+    }
+    update.refusals.insert(update.refusals.end(), last.refusals.begin(), last.refusals.end());
+    // Where they are now: what a round left as it was may have moved in the one before
+    for (std::size_t slot = 0; slot < members.size(); ++slot)
+        if (!isFixed(slot)) update.poses.emplace_back(members[slot]->id, members[slot]->T_world_camera);
+}
+
+MapUpdate LocalMapper::refineAll() {
+    MapUpdate update;
+    if (keyframes_.empty()) return update;
+    update.keyframe = keyframes_.rbegin()->first + 1;  // it knows of all that there are
+    if (options_.mapping.final_rounds <= 0) return update;
+    std::map<int, std::vector<const MapKeyframe*>> tracks;
+    for (const auto& [id, keyframe] : keyframes_) tracks[keyframe.track].push_back(&keyframe);
+    // Here the step must be right in directions that few points hold
+    BundleAdjuster adjuster(options_.mapping, options_.sensor, camera_,
+                            std::numeric_limits<std::size_t>::max());
+    for (const auto& [track, members] : tracks) {
+        std::size_t fixed = 1;
+        for (auto begin = members.begin(); members.end() - begin > static_cast<int>(fixed);
+             begin += kMostTogether - kMostFixed, fixed = kMostFixed) {
+            const auto end = begin + std::min<std::ptrdiff_t>(members.end() - begin, kMostTogether);
+            refineTogether({begin, end}, fixed, adjuster, update);
+            leaveWindow(keyframes_.rbegin()->second);
+            if (end == members.end()) break;
+        }
+    }
+    return update;
+}
+
+}  // namespace roevo
