@@ -103,20 +103,20 @@ Json mappingJson(const RunReport& report) {
     if (report.mode != Mode::kBundleAdjustment) return nullptr;
     const auto times = mappingTimes(report);
     double longest_wait = 0, largest_correction = 0, largest_turn = 0;
-    Json reasons = Json::object();
-    const auto count = [&](const std::vector<MapRefusal>& refusals) {
+    Json reasons = Json::object(), final_reasons = Json::object();
+    const auto count = [](const std::vector<MapRefusal>& refusals, Json& kinds) {
         for (const MapRefusal& refusal : refusals) {
             const char* kind = toString(refusal.kind);
-            reasons[kind] = reasons.value(kind, 0) + 1;
+            kinds[kind] = kinds.value(kind, 0) + 1;
         }
     };
+    count(report.final_refusals, final_reasons);
     for (const FrameRecord& f : report.frames) {
         longest_wait = std::max(longest_wait, f.result.ms.waiting);
         largest_correction = std::max(largest_correction, f.result.map_correction);
         largest_turn = std::max(largest_turn, f.result.map_turn);
-        count(f.result.map_refusals);
+        count(f.result.map_refusals, reasons);
     }
-    count(report.final_refusals);
     return {{"keyframes", times.size()},
             {"mean_ms", times.empty() ? 0 : sumOf(times) / static_cast<double>(times.size())},
             {"max_ms", percentile(times, 1)},
@@ -124,7 +124,8 @@ Json mappingJson(const RunReport& report) {
             {"longest_wait_ms", longest_wait},
             {"largest_correction_m", largest_correction},
             {"largest_correction_deg", largest_turn / kDegree},
-            {"reasons", reasons}};
+            {"reasons", reasons},
+            {"final_reasons", final_reasons}};
 }
 
 // The map that the run began with, and where the camera was recognised in it first.

@@ -106,6 +106,7 @@ TEST_F(OdometryProgram, TheSummaryCountsKindsOfReasonsOfMapping) {
         counted += count.get<int>();
     }
     EXPECT_EQ(counted, given);
+    EXPECT_FALSE(summarised["mapping"]["final_reasons"].empty()) << "nor do they move when all are refined";
 }
 
 TEST_F(OdometryProgram, FirstAndSkipChooseFrames) {

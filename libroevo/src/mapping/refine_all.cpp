@@ -12,6 +12,9 @@ namespace {
 /// Keyframes of a long track that are refined together, because the equations are dense; and how many of them
 /// are those that were before.
 constexpr int kMostTogether = 200, kMostFixed = 100;
+/// Of recognised places, against all points: as that of tracked motions, because edges mostly relate them,
+/// too.
+constexpr double kPlaceWeight = 0.15;
 constexpr double kSettled = 0.05;  ///< px of image motion; smaller steps end the last refinement
 
 }  // namespace
@@ -27,7 +30,8 @@ void LocalMapper::addRecognisedPlaces() {
         const int from = slotOf(place.from), to = slotOf(place.to);
         const Matrix6d information = place.covariance.inverse();
         if (from < 0 || to < 0 || !information.allFinite()) continue;
-        priors_.push_back(RelativePrior::between(window_, from, to, place.T_from_to, information, 1));
+        priors_.push_back(
+            RelativePrior::between(window_, from, to, place.T_from_to, information, kPlaceWeight));
     }
 }
 
