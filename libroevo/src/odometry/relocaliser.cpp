@@ -18,11 +18,11 @@ constexpr double kSamePlace = 0.3;               ///< m
 constexpr double kSameDirection = 15 * kDegree;  ///< rad
 // A place that is merely plausible is believed within so short a reach (what a hand goes in 2 s), where most
 // of it looks as it did: doors 4 m apart repeat
-constexpr double kShortReach = 3.5;  ///< m
+constexpr double kShortReach = 3.5;   ///< m
+constexpr double kMostlyAlike = 0.6;  ///< share of its points in view
 // One sigma of poses whose edges do not fit
 constexpr double kUnfitPosition = 0.15;     ///< m
 constexpr double kUnfitTurn = 3 * kDegree;  ///< rad
-constexpr double kMostlyAlike = 0.6;        ///< share of its points in view
 
 template <class Alike>
 void mostAgreeingFirst(std::vector<Alike>& alike) {

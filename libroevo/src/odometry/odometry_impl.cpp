@@ -1,0 +1,271 @@
+#include "odometry_impl.h"
+
+#include "stopwatch.h"
+#include "tracking/se3.h"
+
+namespace roevo {
+
+/// The paper's pipeline figure.
+FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
+    if (const Fault fault = inputFault(images, camera, last_timestamp))
+        return rejected(images.timestamp, fault);
+    if (const Fault fault = world.empty() ? Fault() : leaps.check(images.timestamp, last_timestamp))
+        return rejected(images.timestamp, fault);
+    if (isFrozen(images)) return report(frozen(images.timestamp));
+    prepare(images);  // Sec. IV
+    if (world.empty()) return report(start());
+    const Prediction prediction = motion.predict(images.timestamp);
+    Tracking tracking = track(prediction);  // Sec. V
+    if (tracking.lost()) return report(findAgain(std::move(tracking), prediction.since_measured));
+
+    lost_frames = 0;
+    learn(tracking, prediction);
+    Outcome outcome;
+    outcome.tracking = std::move(tracking);
+    outcome.measured = outcome.tracking.pose.uncertainty;
+    if (keyframeIsDue(world.reference(), outcome.tracking, options.keyframe))
+        renewReference(outcome);  // Sec. VI
+    settle(outcome);
+    FrameResult result = report(outcome);
+    if (!outcome.is_keyframe) candidate = std::move(outcome.tracking);
+    return result;
+}
+
+void Odometry::Impl::expect(double timestamp) {
+    last_timestamp = timestamp;
+    motion.expect(timestamp);
+    world.advance(timestamp, motion.secondsPerRow());
+}
+
+void Odometry::Impl::prepare(const RgbdFrame& images) {
+    is_frozen = false;
+    expect(images.timestamp);
+    const Stopwatch watch;
+    std::swap(frame, frame_before);
+    front_end.process(images, *frame);
+    edges_ms = watch.milliseconds();
+}
+
+Tracking Odometry::Impl::track(const Prediction& prediction) {
+    Tracking tracking = tracker->track(world.reference(), *frame, prediction);
+    if (tracking.lost())
+        tracking = tracker->search(world.reference(), *frame, prediction, std::move(tracking));
+    if (tracking.tracked && (prediction.blind || tracking.searched) && options.loss.recognise)
+        tracking = confirmed(std::move(tracking), prediction);
+    return tracking;
+}
+
+/// Whether a camera that moves shows the same image once more. One at rest may, where nothing makes noise.
+bool Odometry::Impl::isFrozen(const RgbdFrame& images) {
+    constexpr double kAtRest = 0.5;  // px of image motion
+    if (!measured || !sameBytes(images.grey, frame->images.grey)) return false;
+    if (is_frozen) return true;
+    const Prediction prediction = motion.predict(images.timestamp);
+    return imageMotion(prediction.T_reference_camera.inverse(), prediction.T_reference_last.inverse(),
+                       camera.fx, world.reference().typicalDepth()) > kAtRest;
+}
+
+/// What the camera has seen before tells nothing of where it is now, and is not tracked: it would be taken
+/// for standing still.
+Outcome Odometry::Impl::frozen(double timestamp) {
+    is_frozen = true;
+    expect(timestamp);
+    edges_ms = 0;
+    const Prediction prediction = motion.predict(timestamp);
+    Outcome outcome;
+    outcome.status = FrameStatus::kPredicted;
+    outcome.tracking.fault.kind = Fault::Kind::kFrozen;
+    Vector6d sigma;
+    sigma << Eigen::Vector3d::Constant(prediction.prior.sigma_translation),
+        Eigen::Vector3d::Constant(prediction.prior.sigma_rotation);
+    outcome.tracking.pose = {
+        world.reference().id, prediction.T_reference_camera, {Matrix6d(sigma.cwiseAbs2().asDiagonal()), {}}};
+    return outcome;
+}
+
+Outcome Odometry::Impl::start() {
+    if (world.loaded() > 0) {
+        const auto pose = world.find(*frame, {}, 0);
+        if (auto found = pose ? anchorAt(*pose, {}) : std::nullopt) {
+            found->status = FrameStatus::kInitialised;
+            return *found;
+        }
+    }
+    Outcome outcome;
+    outcome.tracking.fault = beginTrack(T_world_start, Matrix6d::Zero());
+    if (outcome.tracking.fault) {
+        outcome.status = FrameStatus::kRejected;
+        return outcome;
+    }
+    outcome.status = FrameStatus::kInitialised;
+    outcome.tracking.pose.keyframe = world.reference().id;
+    outcome.new_keyframe = true;
+    return outcome;
+}
+
+/// After a gap in time, and to a search, any pose may look right: the edges must agree without what is
+/// likely.
+Tracking Odometry::Impl::confirmed(Tracking tracking, const Prediction& prediction) {
+    const int gap_ms = static_cast<int>(1e3 * prediction.since_measured);
+    const auto pose = world.confirm(*frame, tracking.pose.T_keyframe_camera);
+    if (!pose) {
+        tracking.reject({Fault::Kind::kUnconfirmed, {gap_ms}});
+        return tracking;
+    }
+    Tracking again = tracker->trackFrom(world.reference(), *frame, prediction, *pose);
+    again.searched = true;
+    again.ms_coarse += tracking.ms_coarse;
+    again.ms_fine += tracking.ms_fine;
+    if (again.tracked) again.fault = tracking.fault ? tracking.fault : Fault{Fault::Kind::kGap, {gap_ms}};
+    return again;
+}
+
+/// The frame becomes a keyframe where it was recognised, if it can be one.
+std::optional<Outcome> Odometry::Impl::anchorAt(const RelativePose& found, const Tracking& failed) {
+    Outcome outcome;
+    outcome.tracking = failed;
+    outcome.tracking.pose = found;
+    outcome.tracking.matches = {};  // with another keyframe
+    outcome.tracking.rows = motion.stillRows();
+    if (promote(*frame, outcome.tracking)) return std::nullopt;
+    motion.anchor(frame->timestamp(), Pose::Identity());
+    lost_frames = 0;
+    world.setLostFor(0);
+    outcome.tracking.inliers = 0;  // they were another keyframe's
+    outcome.tracking.pose = {world.reference().id, Pose::Identity(), {}};
+    outcome.found_at = found.keyframe;
+    outcome.is_keyframe = outcome.new_keyframe = true;
+    return outcome;
+}
+
+/// Where tracking lost the camera, a keyframe that it has seen before may tell where it is.
+Outcome Odometry::Impl::findAgain(Tracking failed, double since_measured) {
+    const auto pose = world.find(*frame, {world.reference().id, motion.lastPose(), {}}, since_measured);
+    if (auto found = pose ? anchorAt(*pose, failed) : std::nullopt) return *found;
+    return bridge(std::move(failed), since_measured);
+}
+
+Outcome Odometry::Impl::bridge(Tracking failed, double since_measured) {
+    Outcome outcome;
+    outcome.lost_frames = ++lost_frames;
+    candidate.reset();
+    if (lost_frames == 1) lost_since = frame->timestamp();
+    const bool bridging = kFrameRate * (frame->timestamp() - lost_since) < options.loss.max_predicted - 0.5;
+    if (bridging)
+        motion.assume(motion.predict(frame->timestamp()).T_reference_camera);
+    else
+        motion.forgetVelocity();
+    // A lost pose is worth little: say so, growing with every frame
+    RelativePose& pose = failed.pose;
+    pose = {world.reference().id, motion.lastPose(), {lost_frames * 1e-2 * Matrix6d::Identity(), {}}};
+    outcome.status = bridging ? FrameStatus::kPredicted : FrameStatus::kLost;
+    if (!bridging &&
+        !beginTrack(world.trajectory().worldPose(pose), world.trajectory().worldCovariance(pose))) {
+        outcome.status = FrameStatus::kInitialised;
+        outcome.new_keyframe = true;
+        world.setLostFor(world.lostFor() + since_measured);
+        lost_frames = 0;
+        pose = {world.reference().id, Pose::Identity(), {}};
+    }
+    outcome.tracking = std::move(failed);
+    return outcome;
+}
+
+/// @param outcome  with the frame's tracking, which is relative to the new reference in the end
+void Odometry::Impl::renewReference(Outcome& outcome) {
+    Tracking& tracking = outcome.tracking;
+    // A frame that suddenly sees less is often a blurred one, and a bad keyframe. The frame before it was
+    // still tracked well: it takes over, and this frame is tracked once more, from nearer by.
+    const bool sees_less = tracking.matchedRatio() < options.keyframe.min_overlap;
+    const bool takes_over = sees_less && candidate && candidate->matchedRatio() > tracking.matchedRatio();
+    const RelativePose promoted = takes_over ? candidate->pose : tracking.pose;
+    outcome.no_keyframe = takes_over ? promote(*frame_before, *candidate) : promote(*frame, tracking);
+    outcome.new_keyframe = !outcome.no_keyframe;
+    if (outcome.no_keyframe) return;
+    tracking.pose = changeReference(tracking.pose, promoted, world.reference().id);
+    outcome.is_keyframe = !takes_over;
+    if (outcome.is_keyframe) {
+        tracking.pose.uncertainty = {};
+        return;
+    }
+    const Prediction prediction = motion.predict(frame->timestamp());
+    Tracking again =
+        tracker->trackFrom(world.reference(), *frame, prediction, tracking.pose.T_keyframe_camera);
+    again.ms_coarse += tracking.ms_coarse;
+    again.ms_fine += tracking.ms_fine;
+    if (!again.tracked) {
+        // What is seen from afar should be seen from nearby
+        outcome.not_from_newest = again.fault;
+        tracking.doubt();
+        outcome.measured = tracking.pose.uncertainty;
+        tracking.matches = {};  // with another keyframe
+        tracking.inliers = 0;
+        return;
+    }
+    learn(again, prediction);
+    again.searched = tracking.searched;
+    again.fault = tracking.fault;
+    tracking = std::move(again);
+}
+
+/// What a tracked frame tells besides its pose.
+void Odometry::Impl::learn(const Tracking& tracking, const Prediction& prediction) {
+    motion.setBrightness(tracking.brightness);
+    auto& reference = world.reference();
+    reference.count(tracking.matches.visible, tracking.found);
+    if (!reference.row_motion.known())
+        reference.setRowMotion(
+            motion.firstRows(frame->timestamp() - reference.timestamp, tracking.pose.T_keyframe_camera));
+    else
+        tracker->learnReadout(reference, *frame, tracking, prediction.shutter, motion.readout());
+}
+
+/// A tracked pose is what the next one is predicted from.
+void Odometry::Impl::settle(const Outcome& outcome) {
+    const Pose& T_reference_camera = outcome.tracking.pose.T_keyframe_camera;
+    if (outcome.tracking.searched)
+        motion.anchor(frame->timestamp(), T_reference_camera);
+    else
+        motion.measure(frame->timestamp(), T_reference_camera, outcome.measured);
+}
+
+Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance) {
+    const Fault fault = world.beginTrack(*frame, motion.stillRows(), *tracker, T_world_camera, covariance);
+    if (fault) return fault;
+    motion.begin(frame->timestamp());
+    candidate.reset();
+    return {};
+}
+
+Fault Odometry::Impl::promote(const Frame& promoted, const Tracking& tracked) {
+    if (tracked.depth_fault && !tracked.doubtful) return tracked.depth_fault;
+    if (const Fault fault = world.addKeyframe(promoted, tracked, *tracker)) return fault;
+    motion.changeReference(tracked.pose.T_keyframe_camera.inverse());
+    candidate.reset();  // which `tracked` may be
+    return {};
+}
+
+FrameResult Odometry::Impl::report(const Outcome& outcome) {
+    const Tracking& tracking = outcome.tracking;
+    const auto change = world.changes();
+    FrameResult result;
+    result.timestamp = last_timestamp;
+    result.status = outcome.status;
+    result.num_edges = frame->edges.numEdges();
+    result.num_points = static_cast<int>(frame->edges.size());
+    result.ms.edges = edges_ms;
+    if (outcome.status == FrameStatus::kRejected) {
+        result.reason = "cannot start here: " + describe(tracking.fault);
+        return result;
+    }
+    const bool is_measured = outcome.hasMeasuredPose();
+    // A frozen frame leaves the one before it as the last that was looked at
+    if (outcome.tracking.fault.kind != Fault::Kind::kFrozen) measured = is_measured;
+    world.addFrame(result.timestamp, tracking.pose, is_measured);
+    result.T_world_camera = world.trajectory().worldPose(tracking.pose);
+    result.covariance = world.trajectory().worldCovariance(tracking.pose);
+    fill(result, outcome, change);
+    return result;
+}
+
+}  // namespace roevo
