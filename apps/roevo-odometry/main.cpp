@@ -69,6 +69,8 @@ int run(int argc, char** argv) {
     app.add_flag("--realtime", settings.realtime,
                  "Frames arrive by the clock and are dropped when tracking is behind; the tracker takes what "
                  "mapping has ready (results differ from run to run)");
+    bool profile = false;
+    app.add_flag("--profile", profile, "Print what each stage of a frame takes, and beside decoding it");
     app.add_flag("--quiet", settings.quiet, "Print errors and warnings only");
     app.add_option("--write-default-config", default_config,
                    "Write all options with their defaults to this file ('-': print) and end");
@@ -95,6 +97,7 @@ int run(int argc, char** argv) {
     for (const std::string& warning : {report.warning, report.scale_warning, report.mapWarning()})
         if (!warning.empty()) printWarning(kName, warning);
     if (!settings.quiet) printSummary(report, settings.output_dir);
+    if (profile) printProfile(report);
     if (!report.evaluation && !settings.ground_truth.empty())
         throw std::runtime_error(settings.ground_truth + ": " + report.evaluation_fault);
     return 0;

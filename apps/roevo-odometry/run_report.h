@@ -88,5 +88,7 @@ std::string summaryJson(const RunReport& report);
 
 /// A few lines for the terminal.
 void printSummary(const RunReport& report, const std::string& output_dir);
+/// Prints what each stage takes, ms, and its median over that of decoding the same frames.
+void printProfile(const RunReport& report);
 
 }  // namespace roevo

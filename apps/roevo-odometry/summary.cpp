@@ -33,14 +33,25 @@ constexpr Stage kStages[] = {
     {"fine", [](const FrameRecord& f) { return f.result.ms.fine; }},
     {"total", [](const FrameRecord& f) { return f.result.ms.total; }},
 };
+const Stage& kDecode = kStages[0];
 const Stage& kTotal = kStages[4];
+// What --profile shows besides.
+constexpr Stage kWaiting = {"waiting", [](const FrameRecord& f) { return f.result.ms.waiting; }};
+constexpr Stage kRest = {"the rest", [](const FrameRecord& f) {
+                             const StageTimes& ms = f.result.ms;
+                             return ms.total - ms.edges - ms.coarse - ms.fine - ms.waiting;
+                         }};
 
-// Times of one stage over the frames that went through the odometry, ms.
-std::vector<double> stageTimes(const RunReport& report, const Stage& stage) {
+// Times of one stage over the frames that went through the odometry and are such frames, ms.
+template <class IsSuch>
+std::vector<double> stageTimes(const RunReport& report, const Stage& stage, IsSuch&& is_such) {
     std::vector<double> times;
     for (const FrameRecord& f : report.frames)
-        if (f.result.hasPose()) times.push_back(stage.time(f));
+        if (f.result.hasPose() && is_such(f)) times.push_back(stage.time(f));
     return times;
+}
+std::vector<double> stageTimes(const RunReport& report, const Stage& stage) {
+    return stageTimes(report, stage, [](const FrameRecord&) { return true; });
 }
 
 // Times of mapping over the frames with which a keyframe's map took effect, ms.
@@ -262,6 +273,25 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
         std::printf("errors      %s\n",
                     report.ground_truth.empty() ? "no ground truth" : report.evaluation_fault.c_str());
     std::printf("files       %s\n", (std::filesystem::path(output_dir) / "").c_str());
+}
+
+void printProfile(const RunReport& report) {
+    const double decode = percentile(stageTimes(report, kDecode), 0.5);
+    const auto print = [&](const std::string& name, const std::vector<double>& times) {
+        if (times.empty()) return;
+        const double median = percentile(times, 0.5);
+        std::printf("  %-22s %8.2f %8.2f %8.2f", name.c_str(), median, percentile(times, 0.95),
+                    sumOf(times) / static_cast<double>(times.size()));
+        std::printf(decode > 0 ? " %10.2f\n" : "          -\n", median / decode);
+    };
+    std::printf("profile     ms per frame       median     95 %%     mean  by decode\n");
+    for (const Stage* stage :
+         {&kStages[0], &kStages[1], &kStages[2], &kStages[3], &kRest, &kWaiting, &kTotal})
+        print(stage->name, stageTimes(report, *stage));
+    const auto isNew = [](const FrameRecord& f) { return f.result.new_keyframe; };
+    print("  with a new keyframe", stageTimes(report, kTotal, isNew));
+    print("  without", stageTimes(report, kTotal, [&](const FrameRecord& f) { return !isNew(f); }));
+    print("mapping, a keyframe", mappingTimes(report));
 }
 
 }  // namespace roevo

@@ -1,6 +1,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
@@ -183,6 +184,24 @@ TEST_F(OdometryProgram, QuietSaysNothing) {
     const auto result = runFrames(slidingRecording(4), {"--quiet"});
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST_F(OdometryProgram, TheProfileShowsTheTimesOfTheSummary) {
+    const auto result = runFrames(slidingRecording(12), {"--profile", "--quiet"});
+    ASSERT_EQ(result.exit_code, 0);
+    std::map<std::string, double> medians;
+    std::istringstream lines(result.out);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line.substr(std::min<std::size_t>(24, line.size())));
+        if (double median; words >> median)
+            medians[line.substr(2, line.find_last_not_of(' ', 23) - 1)] = median;
+    }
+    for (const char* stage : {"decode", "edges", "coarse", "fine", "total"}) {
+        ASSERT_EQ(medians.count(stage), 1U) << stage << '\n' << result.out;
+        EXPECT_NEAR(medians[stage], summary()["timings_ms"][stage]["median"], 0.006) << stage;
+    }
+    for (const char* row : {"the rest", "waiting", "with a new keyframe", "without"})
+        EXPECT_EQ(medians.count(row), 1U) << row << '\n' << result.out;
 }
 
 TEST_F(OdometryProgram, SameInputGivesSameBytes) {

@@ -133,6 +133,26 @@ TEST(RowMotion, ExchangedForAnotherMotionAPointIsWhereThatWouldHavePutIt) {
     EXPECT_GT(furthest, 0.03) << "else nothing was moved";
 }
 
+TEST(RowMotion, ManyPointsAreExchangedAsEachOfThem) {
+    std::mt19937 random(93);
+    const RowMotion one = randomMotion(random), other = randomMotion(random).at(-2e-5);
+    Points3 points;
+    std::vector<float> rows;
+    for (int i = 0; i < 200; ++i) {
+        points.add(Eigen::Vector3d(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, 1, 4)));
+        rows.push_back(static_cast<float>(uniform(random, 0, 479)));
+    }
+    Points3 all = points, some = points;
+    exchangeMotion(one, other, rows, points.size(), all);
+    exchangeMotion(one, other, rows, std::vector<std::int32_t>{3, 0, 199}, some);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Eigen::Vector3d expected = one.exchange(points.at(i), static_cast<double>(rows[i]), other);
+        EXPECT_LT((all.at(i) - expected).norm(), 2e-6) << i;
+        const bool named = i == 3 || i == 0 || i == 199;
+        EXPECT_EQ(some.at(i), named ? all.at(i) : points.at(i)) << i;
+    }
+}
+
 TEST(RowMotion, IsKnownOnceAnythingMoves) {
     RowMotion rows;
     rows.seconds_per_row = 1e-4;
@@ -151,7 +171,8 @@ TEST(RollingShutter, MotionIsTheCamerasVelocityInItsOwnFrame) {
         const Eigen::Vector3d velocity(0.3, -0.2, 0.5), turn(0.4, 0.2, -0.6);  // in the camera's frame
         const double dt = 0.04;
         Pose T_previous_current = Pose::Identity();
-        T_previous_current.setRotation(Eigen::AngleAxisd(turn.norm() * dt, turn.normalized()).toRotationMatrix());
+        T_previous_current.setRotation(
+            Eigen::AngleAxisd(turn.norm() * dt, turn.normalized()).toRotationMatrix());
         T_previous_current.translation() = T_previous_current.linear() * velocity * dt;
         const Pose T_world_current = T_world_previous * T_previous_current;
         RollingShutter shutter;

@@ -57,7 +57,7 @@ int EdgeGrid::nearest(float u, float v, float radius, Accept&& accept) const {
     }
     const int cu = nearestPixel(u), cv = nearestPixel(v);
     // Points are within half a pixel of their cell's centre, the query within half a pixel of its own
-    const int reach = std::min(static_cast<int>(std::ceil(radius)), kMaxRadius) + 1;
+    int reach = std::min(static_cast<int>(std::ceil(radius)), kMaxRadius) + 1;
     int best = -1;
     float best_squared = radius * radius;
     for (int step = 0; step <= 2 * reach; ++step) {  // rows 0, -1, +1, -2, +2 ...
@@ -66,14 +66,16 @@ int EdgeGrid::nearest(float u, float v, float radius, Accept&& accept) const {
         if (gap * gap >= best_squared) break;
         const int y = cv + dy;
         if (y < 0 || y >= height_) continue;
-        for (std::uint64_t row = occupancy(cu - reach, y, 2 * reach + 1); row != 0; row &= row - 1) {
-            const int x = cu - reach + __builtin_ctzll(row);
+        const int first = cu - reach;
+        for (std::uint64_t row = occupancy(first, y, 2 * reach + 1); row != 0; row &= row - 1) {
+            const int x = first + __builtin_ctzll(row);
             const auto i = static_cast<std::size_t>(cell_[static_cast<std::size_t>(y * width_ + x)]);
             const float dx = edges_->x[i] - u, dv = edges_->y[i] - v;
             const float squared = dx * dx + dv * dv;
             if (squared >= best_squared || !accept(i)) continue;
             best = static_cast<int>(i);
             best_squared = squared;
+            reach = static_cast<int>(std::sqrt(squared)) + 1;  // never more than before
         }
     }
     return best;

@@ -84,4 +84,23 @@ void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges&
     matches.current.resize(kept);
 }
 
+void EdgeAssociator::follow(const float* u, const float* v, const OrganizedEdges& current,
+                            EdgeMatches& matches) {
+    for (std::size_t k = 0; k < matches.size(); ++k) {
+        const auto i = static_cast<std::size_t>(matches.reference[k]);
+        auto p = static_cast<std::size_t>(matches.current[k]);
+        const IndexRange edge = current.pointsOf(current.edge_of[p]);
+        const auto squaredTo = [&](std::size_t point) {
+            const float du = current.x[point] - u[i], dv = current.y[point] - v[i];
+            return du * du + dv * dv;
+        };
+        const float here = squaredTo(p);
+        float nearest = here;
+        for (float next; p + 1 < edge.end && (next = squaredTo(p + 1)) < nearest; ++p) nearest = next;
+        if (nearest == here)
+            for (float next; p > edge.first && (next = squaredTo(p - 1)) < nearest; --p) nearest = next;
+        matches.current[k] = static_cast<std::int32_t>(p);
+    }
+}
+
 }  // namespace roevo

@@ -30,6 +30,9 @@ class EdgeAssociator {
   public:
     explicit EdgeAssociator(const FineOptions& options) : options_(options) {}
 
+    /// Of a reference at most so many points are looked up from now on; fine.max_points until then.
+    void limit(int max_points) { options_.max_points = max_points; }
+
     /// @param reference  reference edges (spans and gradients)
     /// @param u, v       their reprojected points, px; outside the image where not visible
     /// @param turn       cosine and sine of the rotation that carries reference gradients into the current
@@ -38,6 +41,9 @@ class EdgeAssociator {
     void associate(const OrganizedEdges& reference, const float* u, const float* v,
                    const Eigen::Vector2f& turn, int span, const OrganizedEdges& current, const EdgeGrid& grid,
                    int width, int height, double radius, EdgeMatches& out);
+
+    /// After a small motion: each match moves along its edge to the point that is nearest now.
+    static void follow(const float* u, const float* v, const OrganizedEdges& current, EdgeMatches& matches);
 
   private:
     void vote(const OrganizedEdges& reference, const OrganizedEdges& current, EdgeMatches& matches);

@@ -11,11 +11,14 @@
 namespace roevo {
 namespace {
 
-/// Once the search radius is the final one, points keep what they were associated with until the image has
-/// moved so far since, px: what they would be associated with instead lies on the same edge next to it.
-constexpr double kKeptMotion = 0.1;
-constexpr double kNarrowing = 4;  ///< iterations in which the radius narrows down
-constexpr float kUnknown = -1;    ///< depth or blur not looked up yet
+/// Once the search radius is the final one, points stay with the edges that they were associated with until
+/// the image has moved so far since, px: what is nearer then lies on the same edge.
+constexpr double kSameEdges = 1.5;
+constexpr double kNarrowing = 2;   ///< iterations in which the radius narrows down
+constexpr int kFirstPoints = 800;  ///< looked up as it does
+/// Neighbours along an edge look at much the same pixels of the depth image: every n-th speaks for all.
+constexpr std::size_t kDepthStride = 3;
+constexpr float kUnknown = -1;  ///< depth or blur not looked up yet
 
 }  // namespace
 
@@ -35,18 +38,17 @@ void EdgeTerm::look(const Keyframe& keyframe, const Frame& frame) {
     keyframe_blur_.assign(keyframe.edges.size(), kUnknown);
     frame_ = &frame;
     free_readout_ = has_associated_ = false;
+    associator_.limit(options_.max_points);
 }
 
 void EdgeTerm::start(const Keyframe& keyframe, const Frame& frame) {
     frame_ = nullptr;  // whatever was looked up is another frame's
     look(keyframe, frame);
-    narrowing_ = true;
 }
 
 void EdgeTerm::startReadout(const Keyframe& keyframe, const Frame& frame, const EdgeMatches& matches) {
     look(keyframe, frame);
-    narrowing_ = false;
-    free_readout_ = has_associated_ = true;
+    free_readout_ = true;
     matches_ = matches;
 }
 
@@ -55,18 +57,21 @@ int EdgeTerm::narrowed() const {
 }
 
 bool EdgeTerm::linearise(const Linearisation& at, PoseSystem& system) {
-    const double share = narrowing_ ? std::min(1.0, static_cast<double>(at.iteration) / narrowed()) : 1;
+    const double share = std::min(1.0, static_cast<double>(at.iteration) / narrowed());
     const double radius = options_.search_radius + share * (options_.final_radius - options_.search_radius);
     project(at.T_current_keyframe, at.rows);
     const auto moved = [&] {
         return imageMotion(T_associated_, at.T_current_keyframe, ideal_.fx, keyframe_->typicalDepth());
     };
-    if (!has_associated_ || (!free_readout_ && moved() > kKeptMotion)) {
-        associateProjected(at.T_current_keyframe, radius);
+    if (free_readout_ || (has_associated_ && moved() < kSameEdges)) {
+        EdgeAssociator::follow(projected_.u.data(), projected_.v.data(), frame_->edges, matches_);
+    } else {
         has_associated_ = share >= 1;
+        associator_.limit(
+            std::min(options_.max_points, has_associated_ ? options_.max_points : kFirstPoints));
+        associateProjected(at.T_current_keyframe, radius);
         T_associated_ = at.T_current_keyframe;
     }
-    if (free_readout_) has_associated_ = false;  // associations follow the read-out time that is assumed
     if (static_cast<int>(matches_.size()) < options_.min_inliers) return false;
     tangentResiduals(at.rows);
     weigh();
@@ -93,11 +98,11 @@ void EdgeTerm::assess(const Pose& T_current_keyframe, const RowMotion& rows) {
 
 void EdgeTerm::project(const Pose& pose, const RowMotion& rows) {
     const EdgePoints3D& edges = keyframe_->edges;
-    const bool moves = free_readout_ && rows.seconds_per_row != keyframe_->row_motion.seconds_per_row;
-    if (moves) {
+    const RowMotion& then = keyframe_->row_motion;
+    const bool moves = free_readout_ && rows.seconds_per_row != then.seconds_per_row;
+    if (moves) {  // those that count
         moved_ = edges.points;
-        exchangeMotion(keyframe_->row_motion, keyframe_->row_motion.at(rows.seconds_per_row), edges.image.y,
-                       edges.size(), moved_);
+        exchangeMotion(then, then.at(rows.seconds_per_row), edges.image.y, matches_.reference, moved_);
     }
     roevo::project(moves ? moved_ : edges.points, pose, ideal_, rows, projected_);
 }
@@ -139,7 +144,7 @@ double EdgeTerm::depthAgreement() {
     constexpr double kSigmas = 3, kFloor = 0.02;  // m: foregrounds are found differently from elsewhere
     int known = 0, agreed = 0;
     if (!use_depth_ || frame_->images.depth.empty()) return 1;
-    for (std::size_t k = 0; k < matches_.size(); ++k) {
+    for (std::size_t k = 0; k < matches_.size(); k += kDepthStride) {
         if (weight_[k] <= 0) continue;
         const double seen = static_cast<double>(currentDepth(static_cast<std::size_t>(matches_.current[k])));
         if (seen <= 0) continue;
@@ -169,7 +174,8 @@ void EdgeTerm::depthResiduals() {
     const auto chi2 = static_cast<float>(options_.depth_chi2);
     const auto floor2 = static_cast<float>(sensor_.depth_noise_floor * sensor_.depth_noise_floor);
     const auto noise2 = static_cast<float>(sensor_.depth_noise * sensor_.depth_noise);
-    for (std::size_t k = 0; k < matches_.size(); ++k) {
+    const auto weight = static_cast<float>(options_.depth_weight * kDepthStride);
+    for (std::size_t k = 0; k < matches_.size(); k += kDepthStride) {
         const auto i = static_cast<std::size_t>(matches_.reference[k]);
         const float measured = currentDepth(static_cast<std::size_t>(matches_.current[k]));
         if (measured <= 0) continue;
@@ -182,8 +188,7 @@ void EdgeTerm::depthResiduals() {
         depth_residual_[k] = residual;
         // Not by its sharpness: the depth of a surface does not blur as its edge moves (weighed by it,
         // fr1_rpy lost a fifth)
-        depth_weight_[k] =
-            studentWeight(static_cast<float>(options_.depth_weight) * edges.weight[i] / variance, squared);
+        depth_weight_[k] = studentWeight(weight * edges.weight[i] / variance, squared);
     }
 }
 

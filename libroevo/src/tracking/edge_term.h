@@ -20,11 +20,13 @@ class EdgeTerm : public ResidualTerm {
     /// What is to be registered; both must outlive the use of the term. The search radius narrows down over
     /// the first iterations.
     void start(const Keyframe& keyframe, const Frame& frame);
-    /// With the read-out time free, so that the keyframe's points move with it, and always the final radius.
+    /// With the read-out time free, so that the keyframe's points move with it. They stay with their edges.
     /// @param matches  at the pose that is linearised first
     void startReadout(const Keyframe& keyframe, const Frame& frame, const EdgeMatches& matches);
     /// For associate() and assess() alone.
     void look(const Keyframe& keyframe, const Frame& frame);
+    /// Of a keyframe at most so many points are looked up until the next look() or start().
+    void limit(int max_points) { associator_.limit(max_points); }
 
     bool linearise(const Linearisation& at, PoseSystem& system) override;
     void addTo(EdgeClusters& clusters) const override;
@@ -67,8 +69,8 @@ class EdgeTerm : public ResidualTerm {
     const Keyframe* keyframe_ = nullptr;
     const Frame* frame_ = nullptr;
     double looked_at_ = 0;  ///< s; frames use their memory again
-    bool use_depth_ = true, narrowing_ = false, free_readout_ = false;
-    Pose T_associated_;  ///< pose at which points were associated within the final radius
+    bool use_depth_ = true, free_readout_ = false;
+    Pose T_associated_;  ///< pose at which edges were associated within the final radius
     bool has_associated_ = false;
 
     EdgeMatches matches_;

@@ -1,6 +1,7 @@
 #include "tracking/fine_tracker.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "tracking/se3.h"
 
@@ -11,13 +12,14 @@ namespace {
 /// their number.
 constexpr double kOverRelaxation = 1.6;
 constexpr int kPlainSteps = 2;
+constexpr int kPointsToChoose = 300;  ///< between two initial poses
 
 // Of the read-out time
 /// How much less the evidence of one frame counts: its velocity is only known from two poses.
 constexpr double kCaution = 100;
 /// Share of what is known that a frame must add to be worth its time.
 constexpr double kLeastWorth = 0.01;
-constexpr int kReadoutSteps = 5;
+constexpr int kReadoutSteps = 3;
 constexpr double kFreedom = 0.005;  ///< s, one sigma, of the read-out time in these steps
 
 /// Keeps the read-out time of one frame about where it was.
@@ -47,8 +49,10 @@ Pose FineTracker::chooseInitialPose(const Keyframe& keyframe, const Frame& frame
                                     const Pose& T_likely, const RollingShutter& shutter) {
     if (imageMotion(T_coarse, T_likely, ideal_.fx, keyframe.typicalDepth()) < options_.final_radius)
         return T_coarse;
+    edges_.look(keyframe, frame);
+    edges_.limit(std::min(kPointsToChoose, options_.max_points));
     const auto found = [&](const Pose& pose) {
-        associate(keyframe, frame, pose, shutter.motion(pose), options_.final_radius);
+        edges_.associate(pose, shutter.motion(pose), options_.final_radius);
         return matches().size();
     };
     const std::size_t by_coarse = found(T_coarse);
@@ -123,7 +127,6 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
         return;
     GaussNewtonOptions loop;
     loop.max_iterations = kReadoutSteps;
-    loop.settled_from = kReadoutSteps;
     loop.focal_length = ideal_.fx;
     loop.depth = keyframe.typicalDepth();
     loop.relaxation = kOverRelaxation;

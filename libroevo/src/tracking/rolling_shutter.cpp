@@ -17,12 +17,50 @@ RowMotion RowMotion::atPyramidLevel(int level) const {
     return {velocity, turn, seconds_per_row * scale, (reference_row + 0.5) / scale - 0.5};
 }
 
+namespace {
+
+/// RowMotion::exchange() of many points, in single precision.
+class MotionExchange {
+  public:
+    MotionExchange(const RowMotion& from, const RowMotion& to) : from_(from), to_(to) {}
+
+    /// A motion that would bring a point to the camera is none: such a point stays.
+    void apply(float row, std::size_t i, Points3& points) const {
+        constexpr float kNearest = 0.05F;  // m
+        const Eigen::Vector3f p(points.x[i], points.y[i], points.z[i]);
+        const Eigen::Vector3f velocity = to_.at(row, to_.velocity) - from_.at(row, from_.velocity);
+        const Eigen::Vector3f turn = to_.at(row, to_.turn) - from_.at(row, from_.turn);
+        const Eigen::Vector3f moved = p + velocity + turn.cross(p);
+        if (moved.z() > kNearest) points.set(i, moved.x(), moved.y(), moved.z());
+    }
+
+  private:
+    /// By how much a camera moves from one row to the next.
+    struct PerRow {
+        explicit PerRow(const RowMotion& motion)
+            : velocity((motion.seconds_per_row * motion.velocity).cast<float>()),
+              turn((motion.seconds_per_row * motion.turn).cast<float>()),
+              reference(static_cast<float>(motion.reference_row)) {}
+        Eigen::Vector3f at(float row, const Eigen::Vector3f& rate) const { return (row - reference) * rate; }
+        Eigen::Vector3f velocity, turn;
+        float reference;
+    } from_, to_;
+};
+
+}  // namespace
+
 void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
                     std::size_t count, Points3& points) {
-    constexpr double kNearest = 0.05;  // m
-    for (std::size_t i = 0; i < count; ++i) {
-        const Eigen::Vector3d p = from.exchange(points.at(i), static_cast<double>(rows[i]), to);
-        if (p.z() > kNearest) points.set(i, p);
+    const MotionExchange exchange(from, to);
+    for (std::size_t i = 0; i < count; ++i) exchange.apply(rows[i], i, points);
+}
+
+void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
+                    const std::vector<std::int32_t>& which, Points3& points) {
+    const MotionExchange exchange(from, to);
+    for (const std::int32_t i : which) {
+        const auto point = static_cast<std::size_t>(i);
+        exchange.apply(rows[point], point, points);
     }
 }
 
