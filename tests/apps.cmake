@@ -13,14 +13,14 @@ roevo_test(test_programs
   SOURCES apps/test_every_program.cpp apps/test_eval_program.cpp apps/test_render_program.cpp
           apps/test_odometry_program.cpp apps/test_bad_folders.cpp apps/test_bad_rawlogs.cpp apps/test_realtime.cpp
           apps/test_odd_rawlogs_program.cpp apps/test_scale_check.cpp apps/test_special_files.cpp
-          apps/test_shown_text.cpp apps/test_limits.cpp apps/test_same_bytes.cpp
+          apps/test_shown_text.cpp apps/test_limits.cpp
   LIBS roevo_test_support roevo_evaluation roevo_mrpt roevo_internal nlohmann_json::nlohmann_json)
 add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog rawlog2rgbd rawlog-simulate
                  roevo-study)
 roevo_test(test_map_program
-  SOURCES apps/test_map_program.cpp
+  SOURCES apps/test_map_program.cpp apps/test_same_bytes.cpp
   LIBS roevo_test_support roevo_evaluation nlohmann_json::nlohmann_json)
-add_dependencies(test_map_program roevo-odometry)
+add_dependencies(test_map_program roevo-odometry rawlog-simulate)
 
 # Needs the whole build. Sanitized libraries would want the sanitizer in the program that uses them, too.
 if(NOT ROEVO_SANITIZE)

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <new>
 #include <string>
 
 #include "fuzz/targets.h"
@@ -18,7 +19,7 @@ inline void requireRigid(const Pose& pose) {
             "a pose is no rigid motion");
 }
 
-/// Runs a reader, which may refuse its input in one line.
+/// Runs a reader, which may refuse its input in one line, or find that there is no memory for it.
 /// @return whether it took it
 template <class Read>
 bool accepted(const Read& read) {
@@ -29,6 +30,8 @@ bool accepted(const Read& read) {
         const std::string text = error.what();
         require(!text.empty() && text.find('\n') == std::string::npos, "an error is not one line: " + text);
         return false;
+    } catch (const std::bad_alloc&) {
+        return false;  // programs say so
     }
 }
 

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
 #include <random>
 
 #include "fuzz/targets.h"
@@ -75,16 +78,20 @@ void expectFine(const Target& target, const std::string& bytes) {
 }
 
 TEST_P(Fuzz, SeedsAndMutationsKeepThePromises) {
-    constexpr int kMutations = 300;
-    constexpr std::chrono::milliseconds kTime(800);  // so many of them as fit: no test of speed
+    const char* longer = std::getenv("ROEVO_FUZZ_SECONDS");  // for each target
+    const int mutations = longer ? std::numeric_limits<int>::max() : 300;
+    // So many of them as fit: no test of speed
+    const std::chrono::duration<double> time(longer ? std::atof(longer) : 0.8);
     const auto seeds = GetParam().seeds();
     ASSERT_FALSE(seeds.empty());
     for (const std::string& seed : seeds) expectFine(GetParam(), seed);
     for (const std::string bytes : {"", "x", "\n"}) expectFine(GetParam(), bytes);
-    Mutations mutations(seeds);
+    Mutations changed(seeds);
     const auto begin = std::chrono::steady_clock::now();
-    for (int i = 0; i < kMutations && std::chrono::steady_clock::now() - begin < kTime; i++)
-        expectFine(GetParam(), mutations.next());
+    int run = 0;
+    for (; run < mutations && std::chrono::steady_clock::now() - begin < time; run++)
+        expectFine(GetParam(), changed.next());
+    std::printf("%s: %d mutations of %zu seeds\n", GetParam().name, run, seeds.size());
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, Fuzz, ::testing::ValuesIn(targets()),
