@@ -18,9 +18,9 @@ roevo_test(test_programs
 add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog rawlog2rgbd rawlog-simulate
                  roevo-study)
 roevo_test(test_map_program
-  SOURCES apps/test_map_program.cpp
+  SOURCES apps/test_map_program.cpp apps/test_same_bytes.cpp
   LIBS roevo_test_support roevo_evaluation nlohmann_json::nlohmann_json)
-add_dependencies(test_map_program roevo-odometry)
+add_dependencies(test_map_program roevo-odometry rawlog-simulate)
 
 # Needs the whole build. Sanitized libraries would want the sanitizer in the program that uses them, too.
 if(NOT ROEVO_SANITIZE)

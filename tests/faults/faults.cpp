@@ -109,11 +109,12 @@ Injection turn(const Eigen::Vector3d& axis, double degrees) {
                     depth.at<float>(y, x) = static_cast<float>(std::max(0.0, z * new_z));
                 }
             const Mat homography(K * R * K.inv());
-            Mat image;
+            Mat image, new_depth;  // of their own: the recording's stay as they are
             cv::warpPerspective(frame.grey, image, homography, frame.grey.size(), cv::INTER_LINEAR,
                                 cv::BORDER_REFLECT_101);
+            cv::warpPerspective(depth, new_depth, homography, depth.size(), cv::INTER_NEAREST);
             frame.grey = image;
-            cv::warpPerspective(depth, frame.depth, homography, depth.size(), cv::INTER_NEAREST);
+            frame.depth = new_depth;
             frames[i].truth = frames[i].truth * T_turned_camera.inverse();
             frames[i].faulty = true;
         }

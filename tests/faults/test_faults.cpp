@@ -177,12 +177,13 @@ TEST(FaultTable, Whole) {
                 if (kind) out << story(frames, played) << "\n";
             }
         }
-        if (kind) continue;
+        if (kind && std::string("mix").find(kind) == std::string::npos) continue;
         for (std::uint64_t seed = 1; seed <= 6; ++seed) {
             std::string names;
             const auto frames = injectMix(recording, seed, names);
-            add({recording.name, "mix: " + names, "1 to 5",
-                 judge(frames, play(recording, frames), clean, Expected::kAny, 5)});
+            const Played played = play(recording, frames);
+            add({recording.name, "mix: " + names, "1 to 5", judge(frames, played, clean, Expected::kAny, 5)});
+            if (kind) out << story(frames, played) << "\n";
         }
     }
     out << "\n" << held << " of " << cases << " cases hold all promises.\n";
