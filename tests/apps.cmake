@@ -17,6 +17,10 @@ roevo_test(test_programs
   LIBS roevo_test_support roevo_evaluation roevo_mrpt roevo_internal nlohmann_json::nlohmann_json)
 add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog rawlog2rgbd rawlog-simulate
                  roevo-study)
+roevo_test(test_render_page
+  SOURCES apps/test_render_page.cpp
+  LIBS roevo_test_support roevo_evaluation roevo_programs roevo_mrpt roevo_internal nlohmann_json::nlohmann_json)
+add_dependencies(test_render_page roevo-render)
 roevo_test(test_map_program
   SOURCES apps/test_map_program.cpp
   LIBS roevo_test_support roevo_evaluation nlohmann_json::nlohmann_json)

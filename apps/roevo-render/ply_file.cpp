@@ -1,6 +1,7 @@
 #include "ply_file.h"
 
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -43,8 +44,9 @@ std::size_t PlyFile::readHead() {
         std::string kind, type, name;
         words >> kind >> type >> name;
         if (kind == "element") {
-            std::istringstream count(name);
-            if (type != "vertex" || size_ > 0 || !(count >> size_) || !count.eof())
+            const char* const end_of_count = name.data() + name.size();
+            const auto [rest, error] = std::from_chars(name.data(), end_of_count, size_);
+            if (type != "vertex" || stride_ > 0 || error != std::errc() || rest != end_of_count)
                 fail("its head says '" + excerpt(line) + "'");
         } else if (kind == "property") {
             if (kTypeSizes.count(type) == 0) fail("its head says '" + excerpt(line) + "'");

@@ -71,6 +71,11 @@
         object: roevo.lines(grid.positions, roevo.evenColours(grid.positions.length / 3, [58, 68, 84], 2), {width: 1})
     });
 
+    paths.forEach((path, i) => {  // where they lie on one another the first in the list is seen
+        path.item.object.material.polygonOffset = true;
+        path.item.object.material.polygonOffsetUnits = 40 * (i - paths.length);
+    });
+
     // ---- drawing
 
     const canvas = byId('canvas');
@@ -160,8 +165,8 @@
         for (const path of paths) {
             const paint = path.item.object.userData.paint;
             for (let i = 0; i < path.count; ++i)
-                paint.array.set(byError && path.errors ? roevo.rampColour(most > 0 ? path.errors[i] / most : 0)
-                                                       : path.colour, 4 * i);
+                paint.array.set(!byError ? path.colour :
+                                roevo.rampColour(!path.errors ? NaN : most > 0 ? path.errors[i] / most : 0), 4 * i);
             paint.needsUpdate = true;
         }
         byId('scale').hidden = !byError;
