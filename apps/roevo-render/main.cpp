@@ -23,7 +23,8 @@ constexpr float kPointSizeHeight = 800;  // pixels; in higher pictures points gr
 constexpr int kMinSize = 16, kMaxSize = 4096;
 
 struct Settings {
-    std::string scene, input, output, size = "1280x800", view = "iso", layer = "edges", ground_truth;
+    std::string scene, input, output, size = "1280x800", view = "iso", layer = "edges", background = "dark",
+                                      ground_truth;
     std::vector<std::string> trajectories;
     double max_size_mb = 15;
 };
@@ -35,13 +36,11 @@ void parseSize(const std::string& text, int& width, int& height) {
         throw UsageError("--size: '" + text + "' is not WIDTHxHEIGHT with 16 to 4096 pixels, e.g. 1280x800");
 }
 
-// "NAME=FILE", or a file, which is then its own name.
+// A trajectory that is not named has the name of its file.
 NamedPath namedPath(const std::string& argument) {
-    const std::size_t equals = argument.find('=');
-    if (equals == std::string::npos || fs::exists(argument))
-        return {fs::path(argument).stem().string(), readTumTrajectory(argument)};
-    if (equals == 0) throw UsageError("--trajectory: '" + argument + "' has no name before the '='");
-    return {argument.substr(0, equals), readTumTrajectory(argument.substr(equals + 1))};
+    const NamedFile named = splitNamedFile(argument);
+    return {named.name.empty() ? fs::path(named.file).stem().string() : named.name,
+            readTumTrajectory(named.file)};
 }
 
 // The last camera of a trajectory, in the scene's axes (x forward, y left, z up) with an optical camera
@@ -70,8 +69,10 @@ int drawPicture(const Settings& settings, bool layer_wanted) {
     const View view = settings.view == "follow"
                           ? followView(lastCamera(trajectory_file), content)
                           : fixedView(settings.view, content, static_cast<double>(width) / height);
-    preparePoints(*scene, kSuperSampling * std::max(1.f, static_cast<float>(height) / kPointSizeHeight));
-    const cv::Mat picture = renderOffscreen(*scene, view, width, height);
+    const Background background = settings.background == "white" ? Background::kWhite : Background::kDark;
+    const float larger = std::max(1.f, static_cast<float>(height) / kPointSizeHeight);
+    preparePoints(*scene, kSuperSampling * larger, background);
+    const cv::Mat picture = renderOffscreen(*scene, view, background, width, height);
     writeAtomically(settings.output, [&](const std::string& path) { writeImageFile(path, picture); });
     std::printf("%s: %d x %d pixels, view %s, layer %s, %zu points\n", settings.output.c_str(), width, height,
                 settings.view.c_str(), settings.layer.c_str(), content.cloud.size());
@@ -93,7 +94,8 @@ NamedPath groundTruth(const std::string& file, const ResultFolder& result) {
 }
 
 int writeView(const Settings& settings) {
-    const AtomicFile probe(settings.output);  // a name that cannot be had is said before the work is done
+    AtomicFile page(settings.output);
+    page.stream();  // what cannot be written is said before the work is done
     const ResultFolder result = readResultFolder(settings.input);
     WebViewSettings view_settings;
     view_settings.truth = groundTruth(settings.ground_truth, result);
@@ -101,7 +103,8 @@ int writeView(const Settings& settings) {
     for (const std::string& argument : settings.trajectories)
         view_settings.others.push_back(namedPath(argument));
     const WebView view = makeWebView(result, view_settings);
-    writeTextAtomically(settings.output, view.html);
+    page.stream() << view.html;
+    page.commit();
     for (const std::string& name : result.missing)
         printWarning(kName,
                      "there is no " + name + " in " + settings.input + "; what it has is not in the view");
@@ -132,7 +135,10 @@ int run(int argc, char** argv) {
             ->check(CLI::IsMember({"iso", "top", "front", "follow"})),
         app.add_option("--layer", settings.layer, "Of a picture: what to show of the map")
             ->capture_default_str()
-            ->check(CLI::IsMember(layerNames()))};
+            ->check(CLI::IsMember(layerNames())),
+        app.add_option("--background", settings.background, "Of a picture: dark, or white as for print")
+            ->capture_default_str()
+            ->check(CLI::IsMember({"dark", "white"}))};
     app.add_option(
         "--trajectory", settings.trajectories,
         "[NAME=]FILE. Of a page: more trajectories, aligned with the ground truth or else with the "
@@ -157,8 +163,7 @@ int run(int argc, char** argv) {
         throw UsageError("--output: '" + settings.output + "' must end in .png or .html");
     for (const CLI::Option* option : picture_options)
         if (kind == ".html" && option->count() > 0)
-            throw UsageError(option->get_name() +
-                             " is for pictures (.png); in a page it is chosen with the mouse");
+            throw UsageError(option->get_name() + " is for pictures (.png)");
     for (const CLI::Option* option : page_options)
         if (kind == ".png" && option->count() > 0)
             throw UsageError(option->get_name() + " is for pages (.html)");

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "input/byte_stream.h"
 #include "programs/text.h"
 #include "roevo_mrpt/scene_builder.h"
 
@@ -15,31 +15,20 @@ constexpr std::size_t kBlock = 1024;  // points that share a box: neighbours mos
 constexpr float kSteps = 65535;
 constexpr float kFaintest = 0.35f;  // visibility of an edge with confidence 0
 
-template <class Unsigned>
-void append(std::string& bytes, Unsigned value) {
-    for (std::size_t i = 0; i < sizeof value; ++i)
-        bytes += static_cast<char>(static_cast<unsigned char>(value >> (8 * i) & 0xffu));
-}
-
-void appendFloat(std::string& bytes, float value) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    append(bytes, bits);
-}
-
-void packBlock(const Cloud& cloud, std::size_t begin, std::size_t end, std::string& boxes,
-               std::string& positions) {
+void packBlock(const Cloud& cloud, std::size_t begin, std::size_t end, ByteWriter& boxes,
+               ByteWriter& positions) {
     Eigen::Vector3f low = cloud.positions[begin], high = low;
     for (std::size_t i = begin; i < end; ++i) {
         low = low.cwiseMin(cloud.positions[i]);
         high = high.cwiseMax(cloud.positions[i]);
     }
-    const float step = (high - low).maxCoeff() / kSteps;
-    for (const float value : {low.x(), low.y(), low.z(), step}) appendFloat(boxes, value);
+    float step = (high - low).maxCoeff() / kSteps;
+    boxes(low, step);
     for (std::size_t i = begin; i < end; ++i)
         for (int axis = 0; axis < 3; ++axis) {
             const float steps = step > 0 ? (cloud.positions[i][axis] - low[axis]) / step : 0;
-            append(positions, static_cast<std::uint16_t>(std::clamp(std::round(steps), 0.f, kSteps)));
+            auto place = static_cast<std::uint16_t>(std::clamp(std::round(steps), 0.f, kSteps));
+            positions(place);
         }
 }
 
@@ -90,22 +79,21 @@ Cloud thinned(const Cloud& cloud, std::size_t k) {
 }
 
 nlohmann::ordered_json packed(const Cloud& cloud) {
-    std::string boxes, positions, colours;
+    ByteWriter boxes, positions, colours;
     for (std::size_t begin = 0; begin < cloud.size(); begin += kBlock)
         packBlock(cloud, begin, std::min(begin + kBlock, cloud.size()), boxes, positions);
-    for (const auto& colour : cloud.colours)
-        for (const std::uint8_t channel : colour) colours += static_cast<char>(channel);
+    for (auto colour : cloud.colours) colours(colour);
     return {{"count", cloud.size()},
             {"block", kBlock},
-            {"boxes", base64(boxes)},
-            {"positions", base64(positions)},
-            {"colours", base64(colours)}};
+            {"boxes", base64(boxes.bytes())},
+            {"positions", base64(positions.bytes())},
+            {"colours", base64(colours.bytes())}};
 }
 
 std::string packedFloats(const std::vector<float>& values) {
-    std::string bytes;
-    for (const float value : values) appendFloat(bytes, value);
-    return base64(bytes);
+    ByteWriter bytes;
+    for (float value : values) bytes(value);
+    return base64(bytes.bytes());
 }
 
 }  // namespace roevo

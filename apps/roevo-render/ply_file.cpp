@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "input/byte_stream.h"
 #include "input/excerpt.h"
 #include "input/regular_file.h"
 
@@ -80,29 +81,19 @@ std::size_t PlyFile::offsetOf(const std::string& property, const std::string& ty
 
 template <class Value>
 Value PlyFile::get(std::size_t vertex, std::size_t offset) const {
-    std::uint32_t bits = 0;  // least significant byte first in the file, whatever this machine does
-    for (std::size_t i = 0; i < sizeof(Value); ++i)
-        bits |= static_cast<std::uint32_t>(
-                    static_cast<unsigned char>(bytes_[begin_ + vertex * stride_ + offset + i]))
-                << (8 * i);
-    if constexpr (sizeof(Value) == 1) return static_cast<Value>(bits);
-    Value value;
-    std::memcpy(&value, &bits, sizeof value);
+    Value value{};
+    ByteReader(std::string_view(bytes_).substr(begin_ + vertex * stride_ + offset))(value);
     return value;
 }
 
 Eigen::Vector3f PlyFile::position(std::size_t vertex) const {
-    Eigen::Vector3f p;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        p[static_cast<Eigen::Index>(axis)] = get<float>(vertex, position_ + 4 * axis);
+    const auto p = get<Eigen::Vector3f>(vertex, position_);
     if (!p.allFinite()) fail("point " + std::to_string(vertex) + " is not finite");
     return p;
 }
 
 Rgb PlyFile::colour(std::size_t vertex) const {
-    Rgb colour{};
-    for (std::size_t c = 0; c < 3; ++c) colour[c] = get<std::uint8_t>(vertex, colour_ + c);
-    return colour;
+    return get<Rgb>(vertex, colour_);
 }
 
 EdgeMap readEdgesPly(const std::string& path) {

@@ -30,7 +30,8 @@ void readSummary(const std::string& path, ResultFolder& result) {
         pinhole.cx = camera.at("cx").get<double>(), pinhole.cy = camera.at("cy").get<double>();
         if (pinhole.check().empty()) result.camera = pinhole;
         const auto& truth = json.at("ground_truth");
-        if (truth.is_object()) result.ground_truth = truth.value("file", "");
+        if (truth.is_object() && truth.contains("ate_m"))  // else it could not be compared
+            result.ground_truth = truth.at("file").get<std::string>();
     } catch (const nlohmann::json::exception&) {
         throw std::runtime_error(path + " is no summary of roevo-odometry; is it cut off?");
     }
@@ -49,7 +50,7 @@ ResultFolder readResultFolder(const std::string& folder) {
                                  "; give a result folder of roevo-odometry");
 
     ResultFolder result;
-    result.name = fs::absolute(fs::path(folder) / ".").parent_path().filename().string();
+    result.name = fs::canonical(folder).filename().string();
     result.trajectory = readTumTrajectory(file("trajectory.txt"));
     const auto take = [&](const char* name, const auto& read) {
         if (fs::exists(file(name)))

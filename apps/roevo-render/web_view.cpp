@@ -1,8 +1,6 @@
 #include "web_view.h"
 
-#include <cmath>
-#include <cstdio>
-#include <limits>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
@@ -106,14 +104,10 @@ Json layerJson(const char* id, const char* title, bool shown, const Cloud& cloud
     return json;
 }
 
-std::string shortLength(double metres) {
-    return shownNumber(metres, 2) + " m";
-}
-
 Json factsJson(const ResultFolder& result) {
     const double duration = result.trajectory.back().timestamp - result.trajectory.front().timestamp;
     Json facts = {std::to_string(result.trajectory.size()) + " frames", shownNumber(duration, 1) + " s",
-                  "path " + shortLength(pathLength(result.trajectory))};
+                  "path " + shownNumber(pathLength(result.trajectory), 2) + " m"};
     if (!result.keyframes.empty()) facts.push_back(std::to_string(result.keyframes.size()) + " keyframes");
     if (!result.mode.empty()) facts.push_back("mode " + result.mode);
     return facts;

@@ -20,7 +20,9 @@
     const paths = data.paths.map((path, i) => {
         const others = data.paths.slice(0, i).filter(p => p.role === 'other').length;
         const colour = path.role === 'other' ? kOtherColours[others % kOtherColours.length] : kColours[path.role];
-        const poses = {count: path.count, positions: roevo.floats(path.positions), rotations: roevo.floats(path.rotations)};
+        const poses = {
+            count: path.count, positions: roevo.floats(path.positions), rotations: roevo.floats(path.rotations)
+        };
         return Object.assign(poses, {
             name: path.name, colour: roevo.rgb(colour), times: roevo.floats(path.times),
             errors: path.errors === null ? null : roevo.floats(path.errors),
@@ -36,7 +38,8 @@
     const layers = data.layers.filter(layer => layer.count > 0).map(layer => {
         const positions = roevo.positions(layer), colours = roevo.bytes(layer.colours);
         add({
-            id: layer.id, title: layer.title, list: 'layer-list', shown: layer.shown, figure: layer.count.toLocaleString('en') + ' points',
+            id: layer.id, title: layer.title, list: 'layer-list', shown: layer.shown,
+            figure: layer.count.toLocaleString('en') + ' points',
             object: layer.lines ? roevo.lines(positions, colours, {width: 1.6, darkest: 0.5})
                                 : roevo.points(positions, colours, {size: 0.014, darkest: 0.15})
         });
@@ -54,20 +57,24 @@
     const frustumDepth = Math.min(Math.max(0.03 * extent, 0.03), 0.3);
     let marker = null;
     if (data.corners !== null) {
-        const poses = {positions: roevo.floats(data.keyframes.positions), rotations: roevo.floats(data.keyframes.rotations)};
+        const poses = {
+            positions: roevo.floats(data.keyframes.positions), rotations: roevo.floats(data.keyframes.rotations)
+        };
         const all = [...Array(data.keyframes.count).keys()];
         if (all.length > 0) {
             const frusta = roevo.frusta(poses, all, data.corners, frustumDepth);
             add({
-                id: 'keyframes', title: 'keyframes', list: 'layer-list', shown: true, swatch: kColours.keyframes, figure: String(all.length),
-                object: roevo.lines(frusta, roevo.evenColours(frusta.length / 3, roevo.rgb(kColours.keyframes), roevo.strokeLength),
-                                    {width: 1.3})
+                id: 'keyframes', title: 'keyframes', list: 'layer-list', shown: true, swatch: kColours.keyframes,
+                figure: String(all.length),
+                object: roevo.lines(frusta, roevo.evenColours(frusta.length / 3, roevo.rgb(kColours.keyframes),
+                                                              roevo.strokeLength), {width: 1.3})
             });
         }
     }
     const grid = roevo.grid(content);
     add({
-        id: 'grid', title: 'ground grid', list: 'layer-list', shown: true, figure: 'cells of ' + roevo.lengthText(grid.cell),
+        id: 'grid', title: 'ground grid', list: 'layer-list', shown: true,
+        figure: 'cells of ' + roevo.lengthText(grid.cell),
         object: roevo.lines(grid.positions, roevo.evenColours(grid.positions.length / 3, [58, 68, 84], 2), {width: 1})
     });
 
@@ -112,7 +119,10 @@
     // The part of the window that the panel leaves free: px.
     function freeArea() {
         const wide = innerWidth > kNarrow, open = byId('panel').open;
-        return {left: wide && open ? 292 : 0, top: wide ? 20 : 60, right: innerWidth, bottom: innerHeight - (wide ? 60 : 100)};
+        return {
+            left: wide && open ? 292 : 0, top: wide ? 20 : 60,
+            right: innerWidth, bottom: innerHeight - (wide ? 60 : 100)
+        };
     }
 
     function resize() {
@@ -237,7 +247,8 @@
         if (data.corners === null) return;
         const positions = roevo.frusta(paths[0], [i], data.corners, 1.8 * frustumDepth);
         if (marker === null) {
-            marker = roevo.lines(positions, roevo.evenColours(roevo.strokeLength, [255, 255, 255], roevo.strokeLength), {width: 2});
+            const white = roevo.evenColours(roevo.strokeLength, [255, 255, 255], roevo.strokeLength);
+            marker = roevo.lines(positions, white, {width: 2});
             scene.add(marker);
         }
         marker.visible = true;
@@ -282,7 +293,8 @@
         for (const item of items)
             if (item.object.visible && item.id !== 'grid')
                 project(item.object.userData.positions, event.clientX, event.clientY, (i, distance, depth) => {
-                    if (distance < 14 && depth < nearest) [found, nearest] = [[item.object.userData.positions, 3 * i], depth];
+                    if (distance < 14 && depth < nearest)
+                        [found, nearest] = [[item.object.userData.positions, 3 * i], depth];
                 });
         if (found === null) return;
         touched = true;
