@@ -24,10 +24,12 @@ roevo-odometry --input "$rawlog" --output "$out/odometry"
 
 say "Rendering the map"
 roevo-render --scene "$out/odometry/map.3Dscene" --output "$out/map.png" --size 1600x1000 --view iso
+roevo-render --input "$out/odometry" --output "$out/view.html"
 
 say "Done"
 cat <<END
 picture     $out/map.png
+look around $out/view.html              (in any browser, no network needed)
 trajectory  $out/odometry/trajectory.txt
 3-D map     $out/odometry/map.3Dscene   (look at it with: SceneViewer3D $out/odometry/map.3Dscene)
             $out/odometry/map.ply       (CloudCompare, MeshLab)

@@ -4,8 +4,9 @@ target_link_libraries(roevo_test_support PUBLIC opencv_core opencv_imgproc openc
 
 roevo_test(test_evaluation
   SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_nees.cpp apps/test_support.cpp apps/test_ahead.cpp
-          apps/test_run_report.cpp ${PROJECT_SOURCE_DIR}/apps/roevo-odometry/run_report.cpp
-  LIBS roevo_internal roevo_evaluation roevo_programs roevo_test_support)
+          apps/test_run_report.cpp apps/test_eval_alignments.cpp ${PROJECT_SOURCE_DIR}/apps/roevo-odometry/run_report.cpp
+  LIBS roevo_internal roevo_evaluation roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
+add_dependencies(test_evaluation roevo-eval)
 
 target_include_directories(test_evaluation PRIVATE ${PROJECT_SOURCE_DIR}/apps)
 
@@ -17,6 +18,10 @@ roevo_test(test_programs
   LIBS roevo_test_support roevo_evaluation roevo_mrpt roevo_internal nlohmann_json::nlohmann_json)
 add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog rawlog2rgbd rawlog-simulate
                  roevo-study)
+roevo_test(test_render_page
+  SOURCES apps/test_render_page.cpp apps/test_render_browser.cpp
+  LIBS roevo_test_support roevo_evaluation roevo_programs roevo_mrpt roevo_internal nlohmann_json::nlohmann_json)
+add_dependencies(test_render_page roevo-render)
 roevo_test(test_map_program
   SOURCES apps/test_map_program.cpp apps/test_same_bytes.cpp
   LIBS roevo_test_support roevo_evaluation nlohmann_json::nlohmann_json)

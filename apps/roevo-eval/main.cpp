@@ -1,12 +1,16 @@
 // roevo-eval: errors of a trajectory against a reference.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "evaluation/evaluate.h"
 #include "evaluation/to_json.h"
 #include "evaluation/trajectory_io.h"
 #include "programs/atomic_file.h"
 #include "programs/program.h"
+#include "programs/text.h"
+#include "tables.h"
 
 namespace roevo {
 namespace {
@@ -22,10 +26,31 @@ void printRow(const char* label, const ErrorStatistics& s, double scale) {
                 s.median * scale, s.std * scale, s.max * scale);
 }
 
-void print(const Evaluation& e, std::size_t num_reference, std::size_t num_estimate, double max_dt) {
-    std::printf(
-        "%zu of %zu estimated poses have a reference (%zu poses) within %g s; SE(3) alignment, no scale\n\n",
-        e.pairs.size(), num_estimate, num_reference, max_dt);
+constexpr struct {
+    const char *name, *text;
+    Alignment alignment;
+} kAlignments[] = {{"se3", "SE(3) alignment, no scale", Alignment::kSe3},
+                   {"sim3", "Sim(3) alignment, with scale", Alignment::kSim3},
+                   {"yaw", "alignment by a turn about z and a translation", Alignment::kYaw},
+                   {"none", "no alignment", Alignment::kNone}};
+
+struct Settings {
+    std::string reference, alignment = "se3", json, table;
+    std::vector<std::string> estimates;
+    double max_dt = kDefaultMaxDt, offset = 0;
+};
+
+const auto& alignmentOf(const Settings& settings) {
+    return *std::find_if(std::begin(kAlignments), std::end(kAlignments),
+                         [&](const auto& each) { return each.name == settings.alignment; });
+}
+
+void print(const JudgedEstimate& estimate, std::size_t num_reference, const Settings& settings) {
+    const Evaluation& e = estimate.evaluation;
+    std::printf("%zu of %zu estimated poses have a reference (%zu poses) within %g s; %s", e.pairs.size(),
+                estimate.poses, num_reference, settings.max_dt, alignmentOf(settings).text);
+    if (alignmentOf(settings).alignment == Alignment::kSim3) std::printf(" (%.6g)", e.scale);
+    std::printf("\n\n");
     std::printf("%-22s %10s %10s %10s %10s %10s\n", "", "rmse", "mean", "median", "std", "max");
     printRow("ATE [cm]", e.ate.translation, 100);
     printRow("RPE over 1 s [cm/s]", e.rpe_second.translation, 100);
@@ -34,33 +59,82 @@ void print(const Evaluation& e, std::size_t num_reference, std::size_t num_estim
     printRow("RPE per frame [deg]", e.rpe_frame.rotation, 1);
 }
 
+JudgedEstimate judge(const std::vector<StampedPose>& reference, const std::string& argument,
+                     const Settings& settings) {
+    const NamedFile named = splitNamedFile(argument);
+    auto poses = readTumTrajectory(named.file);
+    for (StampedPose& pose : poses) pose.timestamp += settings.offset;
+    try {
+        return {named.name.empty() ? named.file : named.name, named.file, poses.size(),
+                evaluate(reference, poses, settings.max_dt, alignmentOf(settings).alignment)};
+    } catch (const std::runtime_error& e) {
+        if (settings.estimates.size() == 1) throw;
+        throw std::runtime_error(named.file + ": " + e.what());
+    }
+}
+
+nlohmann::ordered_json jsonOf(const JudgedEstimate& estimate) {
+    nlohmann::ordered_json json = {{"name", cleanText(estimate.name)}, {"estimate", estimate.file}};
+    json.update(toJson(estimate.evaluation));
+    json["scale"] = estimate.evaluation.scale;
+    return json;
+}
+
+// One estimate stands at the top, several are in a list.
+void writeJson(const std::vector<JudgedEstimate>& estimates, const Settings& settings) {
+    nlohmann::ordered_json json = {{"reference", settings.reference},
+                                   {"alignment", settings.alignment},
+                                   {"max_dt_s", settings.max_dt},
+                                   {"offset_s", settings.offset}};
+    if (estimates.size() == 1)
+        json.update(jsonOf(estimates.front()));
+    else
+        for (const JudgedEstimate& estimate : estimates) json["estimates"].push_back(jsonOf(estimate));
+    writeTextAtomically(settings.json, json.dump(2) + "\n");
+}
+
 int run(int argc, char** argv) {
-    std::string reference_file, estimate_file, json_file;
-    double max_dt = kDefaultMaxDt, offset = 0;
+    Settings settings;
+    std::vector<std::string> alignments;
+    for (const auto& each : kAlignments) alignments.emplace_back(each.name);
     CLI::App app("Absolute (ATE) and relative (RPE) trajectory error of TUM trajectory files.", kName);
-    app.add_option("--reference", reference_file, "Ground truth")->required();
-    app.add_option("--estimate", estimate_file, "Trajectory to judge")->required();
-    app.add_option("--max-dt", max_dt, "Largest difference of paired stamps, s")
+    app.add_option("--reference", settings.reference, "Ground truth")->required();
+    app.add_option("--estimate", settings.estimates, "Trajectories to judge, [NAME=]FILE each")->required();
+    app.add_option("--align", settings.alignment,
+                   "How the ATE brings an estimate onto the reference: se3 (rotation, translation), sim3 "
+                   "(and scale), "
+                   "yaw (turn about z, translation), none")
+        ->capture_default_str()
+        ->check(CLI::IsMember(alignments));
+    app.add_option("--max-dt", settings.max_dt, "Largest difference of paired stamps, s")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 1.0));
-    app.add_option("--offset", offset, "Added to the estimate's stamps, s")->capture_default_str();
-    app.add_option("--json", json_file, "Write all figures there too (m, deg)");
-    app.footer("Example:\n  roevo-eval --reference groundtruth.txt --estimate out/trajectory.txt");
+    app.add_option("--offset", settings.offset, "Added to the estimates' stamps, s")->capture_default_str();
+    app.add_option("--json", settings.json, "Write all figures there too (m, deg)");
+    app.add_option("--table", settings.table,
+                   "Write a table there too, one row per estimate: FILE.csv or FILE.tex");
+    app.footer(
+        "Example:\n  roevo-eval --reference groundtruth.txt --estimate out/trajectory.txt\n"
+        "  roevo-eval --reference groundtruth.txt --estimate ours=out/trajectory.txt theirs=other.txt "
+        "--table errors.tex");
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
+    const std::string kind = std::filesystem::path(settings.table).extension().string();
+    if (!settings.table.empty() && kind != ".csv" && kind != ".tex")
+        throw UsageError("--table: '" + settings.table + "' must end in .csv or .tex");
 
-    const auto reference = readTumTrajectory(reference_file);
-    auto estimate = readTumTrajectory(estimate_file);
-    for (StampedPose& pose : estimate) pose.timestamp += offset;
-    const Evaluation evaluation = evaluate(reference, estimate, max_dt);
-    print(evaluation, reference.size(), estimate.size(), max_dt);
-    if (!json_file.empty()) {
-        nlohmann::ordered_json json = {{"reference", reference_file},
-                                       {"estimate", estimate_file},
-                                       {"max_dt_s", max_dt},
-                                       {"offset_s", offset}};
-        json.update(toJson(evaluation));
-        writeTextAtomically(json_file, json.dump(2) + "\n");
-    }
+    const auto reference = readTumTrajectory(settings.reference);
+    std::vector<JudgedEstimate> estimates;
+    for (const std::string& argument : settings.estimates)
+        estimates.push_back(judge(reference, argument, settings));
+    if (estimates.size() == 1)
+        print(estimates.front(), reference.size(), settings);
+    else
+        std::printf("reference has %zu poses; pairs within %g s; %s\n\n%s", reference.size(), settings.max_dt,
+                    alignmentOf(settings).text, terminalTable(estimates).c_str());
+    if (!settings.json.empty()) writeJson(estimates, settings);
+    if (!settings.table.empty())
+        writeTextAtomically(settings.table,
+                            kind == ".csv" ? csvTable(estimates, settings.alignment) : latexTable(estimates));
     return 0;
 }
 

@@ -32,13 +32,16 @@ std::unique_ptr<mrpt::opengl::CFBORender> createRenderer(unsigned width, unsigne
 
 }  // namespace
 
-cv::Mat renderOffscreen(mrpt::opengl::COpenGLScene& scene, const View& view, int width, int height) {
+cv::Mat renderOffscreen(mrpt::opengl::COpenGLScene& scene, const View& view, Background background, int width,
+                        int height) {
     const int large_width = width * kSuperSampling, large_height = height * kSuperSampling;
     const auto padded_width = (static_cast<unsigned>(large_width) + kWidthStep - 1) / kWidthStep * kWidthStep;
     const auto renderer = createRenderer(padded_width, static_cast<unsigned>(large_height));
 
     const auto viewport = scene.getViewport("main");
-    viewport->setCustomBackgroundColor({0.055f, 0.067f, 0.09f});
+    viewport->setCustomBackgroundColor(background == Background::kWhite
+                                           ? mrpt::img::TColorf(1.f, 1.f, 1.f)
+                                           : mrpt::img::TColorf(0.055f, 0.067f, 0.09f));
     viewport->setViewportClipDistances(static_cast<float>(view.near), static_cast<float>(view.far));
     auto& lights = viewport->lightParameters();
     compat::setWhiteLight(lights.ambient, 0.6f);

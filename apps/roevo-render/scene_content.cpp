@@ -79,6 +79,12 @@ void brighten(float minimum, float& r, float& g, float& b) {
     r += lift, g += lift, b += lift;
 }
 
+// Takes a colour down to a maximum brightness, keeping its hue.
+void darken(float maximum, float& r, float& g, float& b) {
+    const float share = std::min(1.f, maximum / std::max({r, g, b, 1e-3f}));
+    r *= share, g *= share, b *= share;
+}
+
 }  // namespace
 
 COpenGLScene::Ptr loadScene(const std::string& path) {
@@ -134,19 +140,22 @@ ViewContent sceneContent(const COpenGLScene& scene) {
     return content;
 }
 
-void preparePoints(COpenGLScene& scene, float factor) {
+void preparePoints(COpenGLScene& scene, float factor, Background background) {
     visitObjects(scene, [&](CRenderizable& object, const mrpt::poses::CPose3D&) {
         auto* points = dynamic_cast<CRenderizableShaderPoints*>(&object);
         if (!points) return;
         points->enableVariablePointSize(false);
         points->setPointSize(points->getPointSize() * factor);
         auto* coloured = dynamic_cast<CPointCloudColoured*>(&object);
-        // A surface is seen by its colours, a line on the dark background by its brightness
-        const float brightness = object.getName() == SceneNames::kSemiDense ? 0.2f : 0.55f;
+        // A surface is seen by its colours, a line by how it differs from the background
+        const bool is_surface = object.getName() == SceneNames::kSemiDense;
         for (std::size_t i = 0; coloured && i < coloured->size(); ++i) {
             float r, g, b;
             coloured->getPointColor_fast(i, r, g, b);
-            brighten(brightness, r, g, b);
+            if (background == Background::kDark)
+                brighten(is_surface ? 0.2f : 0.55f, r, g, b);
+            else
+                darken(is_surface ? 0.85f : 0.55f, r, g, b);
             coloured->setPointColor_fast(i, r, g, b);
         }
     });

@@ -23,7 +23,7 @@ void showLayer(mrpt::opengl::COpenGLScene& scene, const std::string& layer);
 ViewContent sceneContent(const mrpt::opengl::COpenGLScene& scene);
 
 /// Makes the points of the scene's clouds `factor` times larger and of one size at any distance, and colours
-/// that are too dark to be seen on a dark background brighter.
-void preparePoints(mrpt::opengl::COpenGLScene& scene, float factor);
+/// that could not be told from the background brighter or darker.
+void preparePoints(mrpt::opengl::COpenGLScene& scene, float factor, Background background);
 
 }  // namespace roevo

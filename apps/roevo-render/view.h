@@ -5,6 +5,9 @@
 
 namespace roevo {
 
+/// What a picture is drawn on. Colours that would not stand out from it are changed.
+enum class Background { kDark, kWhite };
+
 /// Where a scene is looked at from. The camera is optical: x right, y down, z forward.
 struct View {
     Eigen::Isometry3d T_scene_camera = Eigen::Isometry3d::Identity();

@@ -76,10 +76,21 @@ std::string explainTooFew(const std::vector<StampedPose>& reference, const std::
            " apart" + advice(reference, estimate, found, max_dt);
 }
 
+// Of the estimate, in units of the reference's.
+double scaleOf(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
+               const std::vector<PosePair>& pairs) {
+    std::vector<Eigen::Vector3d> source, target;
+    for (const PosePair& pair : pairs) {
+        source.push_back(estimate[pair.estimate].T_world_camera.translation());
+        target.push_back(reference[pair.reference].T_world_camera.translation());
+    }
+    return bestScale(source, target);
+}
+
 }  // namespace
 
 Evaluation evaluate(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
-                    double max_dt) {
+                    double max_dt, Alignment alignment) {
     if (reference.empty() || estimate.empty())
         throw std::runtime_error(std::string("the ") + (reference.empty() ? "reference" : "estimate") +
                                  " has no pose");
@@ -87,7 +98,16 @@ Evaluation evaluate(const std::vector<StampedPose>& reference, const std::vector
     result.pairs = associate(reference, estimate, max_dt);
     if (result.pairs.size() < kMinPairs)
         throw std::runtime_error(explainTooFew(reference, estimate, result.pairs.size(), max_dt));
-    result.ate = absoluteTrajectoryError(reference, estimate, result.pairs);
+    if (alignment == Alignment::kSim3) {
+        // The best rotation does not depend on the scale: what is left to do is rigid
+        const double scale = scaleOf(reference, estimate, result.pairs);
+        auto scaled = estimate;
+        for (StampedPose& pose : scaled) pose.T_world_camera.translation() *= scale;
+        result = evaluate(reference, scaled, max_dt);
+        result.scale = scale;
+        return result;
+    }
+    result.ate = absoluteTrajectoryError(reference, estimate, result.pairs, alignment);
     result.rpe_second = relativePoseErrorOverTime(reference, estimate, result.pairs, 1.0);
     result.rpe_frame = relativePoseErrorPerFrame(reference, estimate, result.pairs);
     return result;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "input/regular_file.h"
 #include "programs/atomic_file.h"
 #include "programs/byte_order_mark.h"
+#include "programs/program.h"
 
 namespace roevo {
 namespace {
@@ -104,6 +106,14 @@ std::string toTumLine(const StampedPose& pose) {
     std::snprintf(line, sizeof line, "%.6f %.9f %.9f %.9f %.9f %.9f %.9f %.9f", pose.timestamp, t.x(), t.y(),
                   t.z(), q.x(), q.y(), q.z(), q.w());
     return line;
+}
+
+NamedFile splitNamedFile(const std::string& argument) {
+    const std::size_t equals = argument.find('=');
+    std::error_code unseen;
+    if (equals == std::string::npos || std::filesystem::exists(argument, unseen)) return {"", argument};
+    if (equals == 0) throw UsageError("'" + argument + "' has no name before the '='");
+    return {argument.substr(0, equals), argument.substr(equals + 1)};
 }
 
 void writeTumTrajectory(const std::string& path, const std::vector<StampedPose>& poses) {

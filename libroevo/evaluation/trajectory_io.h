@@ -13,6 +13,16 @@ namespace roevo {
 ///         length is not one; or a file with no pose at all
 std::vector<StampedPose> readTumTrajectory(const std::string& path);
 
+/// A trajectory as programs take it on their command line.
+struct NamedFile {
+    std::string name;  ///< may be empty
+    std::string file;
+};
+
+/// "NAME=FILE", or a file alone, which may have a '=' in its own name if it is there.
+/// @throws UsageError when there is no name before the '='
+NamedFile splitNamedFile(const std::string& argument);
+
 /// Writes a TUM trajectory, the stamp with 6 decimals and the pose with 9; the file appears when whole.
 /// @throws std::runtime_error
 void writeTumTrajectory(const std::string& path, const std::vector<StampedPose>& poses);

@@ -41,4 +41,7 @@ std::string shortened(const std::string& text, std::size_t limit);
 /// All of `text` with `from` replaced by `to`.
 std::string replaceAll(std::string text, const std::string& from, const std::string& to);
 
+/// Any bytes as text, RFC 4648, with padding.
+std::string base64(const std::string& bytes);
+
 }  // namespace roevo

@@ -152,6 +152,19 @@ TEST_F(RenderProgram, ShowsTheLayerThatIsWanted) {
     EXPECT_EQ(shown({"--layer", "all"}), "edges covisibility semi-dense pseudo-edges ");
 }
 
+TEST_F(RenderProgram, OnWhiteEvenWhiteEdgesAreSeen) {
+    // The room's long edges are white
+    const auto result = render({"--background", "white", "--view", "front", "--size", "400x300"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    const cv::Mat picture = cv::imread(folder_ / "room.png");
+    EXPECT_EQ(picture.at<cv::Vec3b>(2, 2), cv::Vec3b(255, 255, 255));
+    EXPECT_EQ(picture.at<cv::Vec3b>(2, 397), cv::Vec3b(255, 255, 255));
+    int grey = 0;
+    for (const auto& p : cv::Mat3b(picture.rowRange(0, 100)))  // above the grid on the ground
+        grey += p[0] < 190 && std::abs(p[0] - p[1]) < 12 && std::abs(p[1] - p[2]) < 12;
+    EXPECT_GT(grey, 100);
+}
+
 TEST_F(RenderProgram, FailuresAreOneLine) {
     namespace fs = std::filesystem;
     expectError(render({"--size", "1000"}), 2, kName, {"--size", "1000"});

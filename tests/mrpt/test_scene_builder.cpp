@@ -263,17 +263,20 @@ TEST(SceneBuilder, PlyHoldsEveryPointExactly) {
     ASSERT_EQ(count, 200u);
     EXPECT_EQ(properties,
               "float x\nfloat y\nfloat z\nuchar red\nuchar green\nuchar blue\n"
-              "float confidence\nint views\nuchar verdict\n");
-    for (const char* word : {"confidence", "views", "verdict", "metres"})
+              "float confidence\nint views\nuchar verdict\nint edge\n");
+    for (const char* word : {"confidence", "views", "verdict", "edge", "metres"})
         EXPECT_NE(comments.find(word), std::string::npos) << word;
-    for (const MapEdge& edge : map)
+    for (std::size_t e = 0; e < map.size(); e++) {
+        const MapEdge& edge = map[e];
         for (std::size_t i = 0; i < edge.points.size(); i++) {
             for (int axis = 0; axis < 3; axis++) EXPECT_EQ(take<float>(in), edge.points[i][axis]);
             for (std::size_t c = 0; c < 3; c++) EXPECT_EQ(take<std::uint8_t>(in), edge.colours[i][c]);
             EXPECT_EQ(take<float>(in), edge.confidence);
             EXPECT_EQ(take<std::int32_t>(in), edge.views);
             EXPECT_EQ(take<std::uint8_t>(in), static_cast<std::uint8_t>(edge.verdict));
+            EXPECT_EQ(take<std::int32_t>(in), static_cast<std::int32_t>(e));
         }
+    }
     ASSERT_TRUE(in);
     EXPECT_EQ(in.peek(), EOF);
 }

@@ -14,7 +14,4 @@ struct ScenePicture {
 /// @throws Interrupted after a signal (needs an InterruptGuard)
 ScenePicture renderScene(const std::string& scene, const std::string& layer);
 
-/// RFC 4648, with padding.
-std::string base64(const std::string& bytes);
-
 }  // namespace roevo

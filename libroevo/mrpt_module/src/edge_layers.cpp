@@ -13,8 +13,7 @@ namespace {
 using Cloud = mrpt::opengl::CPointCloudColoured;
 
 constexpr float kSpacing = 0.005f;  // m between the points of a drawn edge
-// Points of an edge are neighbours in an image, so that a gap is filled unless it is much larger than those
-// of the edge are (far away they are wide): then nothing is known between.
+// A gap is filled unless it is much larger than those of the edge are (far away they are wide)
 constexpr float kFilled = 0.05f, kNeverFilled = 0.25f, kUsualGaps = 3;  // m, m, times the median
 constexpr float kFaintest = 0.35f;     // opacity of an edge with confidence 0
 constexpr float kSurfacePoint = 1.5f;  // times the size of an edge's: they are farther apart
@@ -56,7 +55,7 @@ class Layer {
     /// The edge as a line of points. `colourOf` gives the colour of its i-th point.
     template <class ColourOf>
     void addLine(const std::vector<Eigen::Vector3f>& points, const ColourOf& colourOf, float opacity = 1) {
-        const float largest_gap = std::clamp(kUsualGaps * medianGap(points), kFilled, kNeverFilled);
+        const float largest_gap = largestDrawnGap(points);
         for (std::size_t i = 0; i < points.size(); i++) {
             if (i > 0 && (points[i] - points[i - 1]).norm() < largest_gap)
                 fill(points[i - 1], points[i], colourOf(i - 1), colourOf(i), opacity);
@@ -107,7 +106,7 @@ void insertEdges(compat::Scene& scene, const SceneContent& content) {
                 edge.points, [&](std::size_t i) { return edge.colours.at(i); }, opacity);
             continue;
         }
-        const Rgb colour = edge.verdict == EdgeVerdict::kSpread ? kSpreadColour : kVanishingColour;
+        const Rgb colour = pseudoEdgeColour(edge.verdict);
         pseudo.addLine(edge.points, [&](std::size_t) { return colour; });
     }
     edges.insertInto(scene, true);
@@ -138,6 +137,14 @@ void insertSemiDense(compat::Scene& scene, const SceneContent& content) {
 }
 
 }  // namespace
+
+float largestDrawnGap(const std::vector<Eigen::Vector3f>& edge) {
+    return std::clamp(kUsualGaps * medianGap(edge), kFilled, kNeverFilled);
+}
+
+Rgb pseudoEdgeColour(EdgeVerdict verdict) {
+    return verdict == EdgeVerdict::kSpread ? kSpreadColour : kVanishingColour;
+}
 
 void insertEdgeLayers(compat::Scene& scene, const SceneContent& content) {
     insertEdges(scene, content);

@@ -11,14 +11,16 @@ namespace {
 
 constexpr char kEdgeComments[] =
     "comment organized edges: the points of all edges, world frame, metres\n"
-    "comment confidence, views and verdict are those of the edge that a point belongs to\n"
+    "comment confidence, views, verdict and number are those of the edge that a point belongs to\n"
     "comment confidence: 0 to 1; views: keyframes that see the edge\n"
-    "comment verdict: 0 unconfirmed, 1 true, 2 pseudo (spread), 3 pseudo (vanishing)\n";
+    "comment verdict: 0 unconfirmed, 1 true, 2 pseudo (spread), 3 pseudo (vanishing)\n"
+    "comment edge: its number; the points of an edge follow one another along it\n";
 constexpr char kPointComments[] = "comment surface points next to edges, world frame, metres\n";
 constexpr char kPointProperties[] =
     "property float x\nproperty float y\nproperty float z\n"
     "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-constexpr char kEdgeProperties[] = "property float confidence\nproperty int views\nproperty uchar verdict\n";
+constexpr char kEdgeProperties[] =
+    "property float confidence\nproperty int views\nproperty uchar verdict\nproperty int edge\n";
 
 /// The bytes of one vertex, least significant first on any machine.
 class Vertex {
@@ -39,7 +41,7 @@ class Vertex {
     void putBits(std::uint32_t bits) {
         for (int i = 0; i < 4; i++) put(static_cast<std::uint8_t>(bits >> (8 * i) & 0xffu));
     }
-    std::array<char, 24> bytes_{};
+    std::array<char, 28> bytes_{};
     std::size_t used_ = 0;
 };
 
@@ -61,14 +63,18 @@ bool writeEdges(const std::string& file, const EdgeMap& map) {
     std::ofstream out(file, std::ios::binary);
     writeHeader(out, kEdgeComments, count, std::string(kPointProperties) + kEdgeProperties);
     Vertex vertex;
-    for (const MapEdge& edge : map)
+    std::int32_t number = -1;
+    for (const MapEdge& edge : map) {
+        number++;
         for (std::size_t i = 0; i < edge.points.size(); i++) {
             putPoint(vertex, edge.points[i], edge.colours.at(i));
             vertex.put(edge.confidence);
             vertex.put(static_cast<std::int32_t>(edge.views));
             vertex.put(static_cast<std::uint8_t>(edge.verdict));
+            vertex.put(number);
             vertex.writeTo(out);
         }
+    }
     out.close();
     return !out.fail();
 }

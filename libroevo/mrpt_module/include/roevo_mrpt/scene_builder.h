@@ -26,6 +26,13 @@ struct SceneContent {
     float point_size = 2;     ///< pixels
 };
 
+/// Points of an edge that follow one another are drawn as joined when they are nearer than this, m: they are
+/// neighbours in an image, but where depth jumps nothing is known between them.
+float largestDrawnGap(const std::vector<Eigen::Vector3f>& edge);
+
+/// A colour per kind of pseudo-edge, which has no use for the image's.
+Rgb pseudoEdgeColour(EdgeVerdict verdict);
+
 /// Names of the objects in a scene, for programs that look for them.
 struct SceneNames {
     static constexpr const char* kEdges = "edges";
@@ -55,7 +62,7 @@ void saveScene(const std::string& file, const compat::Scene& scene);
 
 /// Writes all edge points, in the map's own frame, as binary PLY; appears when whole. Of each point: x y z
 /// (float), red green blue (uchar), and of its edge: confidence (float, 0..1), views (int, keyframes that see
-/// it), verdict (uchar, as in EdgeVerdict).
+/// it), verdict (uchar, as in EdgeVerdict), edge (int, its number in the map).
 /// @throws std::runtime_error
 void savePly(const std::string& file, const EdgeMap& map);
 
