@@ -70,7 +70,7 @@ int run(int argc, char** argv) {
                  "Frames arrive by the clock and are dropped when tracking is behind; the tracker takes what "
                  "mapping has ready (results differ from run to run)");
     bool profile = false;
-    app.add_flag("--profile", profile, "Print what each stage of a frame takes, and beside decoding it");
+    app.add_flag("--profile", profile, "Print the time of each stage of a frame, ms, and relative to decoding");
     app.add_flag("--quiet", settings.quiet, "Print errors and warnings only");
     app.add_option("--write-default-config", default_config,
                    "Write all options with their defaults to this file ('-': print) and end");

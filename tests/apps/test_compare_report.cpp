@@ -10,6 +10,7 @@
 
 #include "programs/interrupt.h"
 #include "programs/process.h"
+#include "programs/text.h"
 #include "report_fixture.h"
 #include "roevo-compare/report/line_style.h"
 #include "roevo-compare/report/ranking.h"

@@ -9,7 +9,7 @@
 namespace roevo {
 namespace {
 
-constexpr auto kLast = Fault::Kind::kTimeSetBack;
+constexpr auto kLast = Fault::Kind::kTimeLeap;
 
 /// How many numbers are part of the words. The compiler asks here for kinds that come to be.
 std::size_t numbersOf(Fault::Kind kind) {
@@ -22,7 +22,6 @@ std::size_t numbersOf(Fault::Kind kind) {
         case Kind::kGap:
         case Kind::kUnconfirmed:
         case Kind::kTimeLeap:
-        case Kind::kTimeSetBack:
             return 1;
         case Kind::kFewPointsWithDepth:
         case Kind::kFewPointsInView:

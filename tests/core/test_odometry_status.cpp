@@ -155,40 +155,6 @@ TEST_F(OdometryStatus, RepeatedAndBackwardTimeStampsAreRejected) {
     EXPECT_EQ(odometry_.trajectory().size(), 8U) << "rejected frames have no pose";
 }
 
-TEST_F(OdometryStatus, TimeGoesOnWhereTheClockIsSetBack) {
-    constexpr int kBefore = 8, kAll = 20;
-    for (const double back : {3600., 90.}) {
-        Odometry odometry(room().camera, OdometryOptions(), room().start());
-        std::vector<double> stamps;
-        for (int i = 0; i < kAll; ++i) {
-            RgbdFrame frame = frameAt(i);
-            if (i >= kBefore) frame.timestamp -= back;
-            const FrameResult result = odometry.processFrame(frame);
-            EXPECT_EQ(result.timestamp, frame.timestamp);
-            if (i == kBefore) {
-                EXPECT_EQ(result.status, FrameStatus::kRejected);
-                EXPECT_NE(result.reason.find("goes back by " + std::to_string(static_cast<int>(back) - 1)),
-                          std::string::npos)
-                    << result.reason;
-                continue;
-            }
-            stamps.push_back(frame.timestamp);
-            if (i == 0) continue;
-            EXPECT_EQ(result.status, FrameStatus::kOk) << i << ": " << result.reason;
-            EXPECT_EQ(result.reason, "") << i;
-            EXPECT_LT(errorAt(result, i), 0.006) << i;
-        }
-        for (const auto& poses : {odometry.trajectory(), odometry.liveTrajectory()}) {
-            ASSERT_EQ(poses.size(), stamps.size());
-            for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_NEAR(poses[i].timestamp, stamps[i], 1e-9);
-        }
-        for (const KeyframeInfo& keyframe : odometry.keyframes())
-            EXPECT_TRUE(std::any_of(stamps.begin(), stamps.end(), [&](double stamp) {
-                return std::abs(stamp - keyframe.timestamp) < 1e-9;
-            }));
-    }
-}
-
 TEST_F(OdometryStatus, DamagedStampsCostTheirFrames) {
     feedRoom(0, 5);
     const double damaged[] = {-1e9, -5e11, 3e11, 5e11, 1e6, 1e12};

@@ -51,9 +51,7 @@ class Odometry {
     /// @throws std::logic_error when a map is used to localise only
     int saveMap(std::ostream& out) const;
 
-    /// Tracks one frame. Stamps that leap by more than a minute, ahead or back, are believed from the next
-    /// one on; smaller steps back are rejected. Never throws for bad frames: they come back kRejected with a
-    /// reason.
+    /// Tracks one frame. Never throws for bad frames: they come back kRejected with a reason.
     [[nodiscard]] FrameResult processFrame(const RgbdFrame& frame);
 
     /// Brings the map into agreement, at the end of a recording or whenever there is time: what is still
@@ -63,8 +61,7 @@ class Odometry {
     /// @throws what mapping threw in its thread, e.g. std::bad_alloc
     std::vector<MapRefusal> refineAll();
 
-    /// Final poses of all frames that have one, in the order of the frames: of time, with unique stamps, but
-    /// where the clock was set back by more than a minute.
+    /// Final poses of all frames that have one, in time order, unique stamps.
     std::vector<StampedPose> trajectory() const;
     /// The poses as they were known when their frames were processed.
     std::vector<StampedPose> liveTrajectory() const;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 namespace roevo {
 
@@ -27,32 +26,16 @@ Fault inputFault(const RgbdFrame& frame, const PinholeCamera& camera, double las
     return {};
 }
 
-double FrameClock::timeOf(double stamp, double last) {
+Fault LeapCheck::check(double timestamp, double last_timestamp) {
     constexpr double kLeap = 60, kFarApart = 3600;  // s
-    leap_fault_ = {};
-    if (!std::isfinite(stamp)) return stamp;
-    const auto ahead = [&] { return set_back_.empty() ? 0 : set_back_.back().ahead; };
-    const std::optional<double> before = std::exchange(leap_, std::nullopt);
-    const double by = stamp + ahead() - last;
-    if (std::abs(by) <= kLeap || !std::isfinite(last)) return stamp + ahead();
-    const double step = before ? stamp - *before : 0;
+    const double ahead = timestamp - last_timestamp;
     // Frames may be minutes apart, all of them; two damaged stamps are not likely to be
-    const bool goes_on = step > 0 && step <= std::clamp(*before + ahead() - last, kLeap, kFarApart);
-    if (!goes_on) {
-        leap_ = stamp;
-        leap_fault_ = {by > 0 ? Fault::Kind::kTimeLeap : Fault::Kind::kTimeSetBack,
-                       {static_cast<int>(std::min(std::abs(by), 1e9))}};
-    } else if (by < 0) {
-        // The frame that was not believed came a step after the last one, and this one a step after it
-        set_back_.push_back({last + step, last + 2 * step - stamp});
-    }
-    return stamp + ahead();
-}
-
-double FrameClock::stampAt(double time) const {
-    const auto next = std::upper_bound(set_back_.begin(), set_back_.end(), time,
-                                       [](double t, const Setting& setting) { return t < setting.since; });
-    return next == set_back_.begin() ? time : time - std::prev(next)->ahead;
+    const bool goes_on =
+        leap_ && timestamp > *leap_ && timestamp - *leap_ <= std::min(*leap_ - last_timestamp, kFarApart);
+    leap_.reset();
+    if (ahead <= kLeap || goes_on) return {};
+    leap_ = timestamp;
+    return {Fault::Kind::kTimeLeap, {static_cast<int>(std::min(ahead, 1e9))}};
 }
 
 bool sameBytes(const cv::Mat& a, const cv::Mat& b) {

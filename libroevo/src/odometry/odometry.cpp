@@ -41,7 +41,6 @@ int Odometry::saveMap(std::ostream& out) const {
 FrameResult Odometry::processFrame(const RgbdFrame& images) {
     const Stopwatch watch;
     FrameResult result = impl_->processFrame(images);
-    result.timestamp = images.timestamp;
     result.ms.total = watch.milliseconds();
     return result;
 }
@@ -50,10 +49,10 @@ std::vector<MapRefusal> Odometry::refineAll() {
     return impl_->world.refineAll();
 }
 std::vector<StampedPose> Odometry::trajectory() const {
-    return impl_->stamped(impl_->world.finalTrajectory().frames());
+    return impl_->world.finalTrajectory().frames();
 }
 std::vector<StampedPose> Odometry::liveTrajectory() const {
-    return impl_->stamped(impl_->world.trajectory().live());
+    return impl_->world.trajectory().live();
 }
 Pose Odometry::motion(std::size_t from, std::size_t to) const {
     return impl_->world.trajectory().motion(from, to);
@@ -62,8 +61,7 @@ Matrix6d Odometry::motionCovariance(std::size_t from, std::size_t to) const {
     return impl_->world.trajectory().motionCovariance(from, to);
 }
 std::vector<KeyframeInfo> Odometry::keyframes() const {
-    return impl_->stamped(impl_->world.finalTrajectory().keyframes(),
-                          static_cast<std::size_t>(impl_->world.loaded()));
+    return impl_->world.finalTrajectory().keyframes();
 }
 EdgeMap Odometry::map() const {
     return impl_->world.fusedMap();

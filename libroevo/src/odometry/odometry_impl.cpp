@@ -6,12 +6,11 @@
 namespace roevo {
 
 /// The paper's pipeline figure.
-FrameResult Odometry::Impl::processFrame(const RgbdFrame& given) {
-    RgbdFrame images = given;
-    images.timestamp = clock.timeOf(given.timestamp, last_timestamp);
-    if (clock.leap()) return rejected(given.timestamp, clock.leap());
+FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
     if (const Fault fault = inputFault(images, camera, last_timestamp))
-        return rejected(given.timestamp, fault);
+        return rejected(images.timestamp, fault);
+    if (const Fault fault = world.empty() ? Fault() : leaps.check(images.timestamp, last_timestamp))
+        return rejected(images.timestamp, fault);
     if (isFrozen(images)) return report(frozen(images.timestamp));
     prepare(images);  // Sec. IV
     if (world.empty()) return report(start());

@@ -2,7 +2,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "front_end.h"
 #include "input_check.h"
@@ -36,20 +35,14 @@ struct Odometry::Impl {
     std::unique_ptr<Frame> frame = std::make_unique<Frame>(), frame_before = std::make_unique<Frame>();
     std::optional<Tracking> candidate;  // of the frame before, if it can still become a keyframe
     double last_timestamp = -std::numeric_limits<double>::infinity();
-    FrameClock clock;  // what is in here has its time, and what comes out the stamps
+    LeapCheck leaps;
     double edges_ms = 0;
     bool measured = false;   // the pose of what is in `frame` was
     bool is_frozen = false;  // images since then are the same
     int lost_frames = 0;
     double lost_since = 0;  // s
 
-    FrameResult processFrame(const RgbdFrame& given);
-    /// With stamps for the times of frames.
-    template <class Stamped>
-    std::vector<Stamped> stamped(std::vector<Stamped> all, std::size_t from = 0) const {
-        for (std::size_t i = from; i < all.size(); ++i) all[i].timestamp = clock.stampAt(all[i].timestamp);
-        return all;
-    }
+    FrameResult processFrame(const RgbdFrame& images);
     void expect(double timestamp);
     void prepare(const RgbdFrame& images);
     bool isFrozen(const RgbdFrame& images);

@@ -32,6 +32,8 @@ class EdgeAssociator {
 
     /// Of a reference at most so many points are looked up from now on; fine.max_points until then.
     void limit(int max_points) { options_.max_points = max_points; }
+    /// One point of so many was looked up the last time.
+    std::size_t stride() const { return stride_; }
 
     /// @param reference  reference edges (spans and gradients)
     /// @param u, v       their reprojected points, px; outside the image where not visible

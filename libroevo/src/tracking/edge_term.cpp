@@ -14,8 +14,8 @@ namespace {
 /// Once the search radius is the final one, points stay with the edges that they were associated with until
 /// the image has moved so far since, px: what is nearer then lies on the same edge.
 constexpr double kSameEdges = 1.5;
-constexpr double kNarrowing = 2;   ///< iterations in which the radius narrows down
-constexpr int kFirstPoints = 800;  ///< looked up as it does
+constexpr double kNarrowing = 2;    ///< iterations in which the radius narrows down
+constexpr int kFirstPoints = 1600;  ///< looked up as it does
 /// Neighbours along an edge look at much the same pixels of the depth image: every n-th speaks for all.
 constexpr std::size_t kDepthStride = 3;
 constexpr float kUnknown = -1;  ///< depth or blur not looked up yet
@@ -67,12 +67,15 @@ bool EdgeTerm::linearise(const Linearisation& at, PoseSystem& system) {
         EdgeAssociator::follow(projected_.u.data(), projected_.v.data(), frame_->edges, matches_);
     } else {
         has_associated_ = share >= 1;
-        associator_.limit(
-            std::min(options_.max_points, has_associated_ ? options_.max_points : kFirstPoints));
+        const bool goes_on = at.iteration < narrowed() && narrowed() < options_.max_iterations;
+        associator_.limit(std::min(options_.max_points, goes_on ? kFirstPoints : options_.max_points));
         associateProjected(at.T_current_keyframe, radius);
         T_associated_ = at.T_current_keyframe;
     }
-    if (static_cast<int>(matches_.size()) < options_.min_inliers) return false;
+    // min_inliers is of as many points as there may be
+    const std::size_t needed = static_cast<std::size_t>(options_.min_inliers) *
+                               strideFor(keyframe_->edges.size(), options_.max_points) / associator_.stride();
+    if (matches_.size() < needed) return false;
     tangentResiduals(at.rows);
     weigh();
     if (free_readout_) {

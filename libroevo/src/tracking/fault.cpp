@@ -48,9 +48,6 @@ std::string describe(const Fault& fault) {
         case Kind::kTimeLeap:
             return "time stamp leaps ahead by " + number(0) +
                    " s; the next frame tells whether it is damaged";
-        case Kind::kTimeSetBack:
-            return "time stamp goes back by " + number(0) +
-                   " s; the next frame tells whether the clock was set back";
         case Kind::kFrozen:
             return "the image is the same as the one before it: a frozen camera, or one at rest without "
                    "noise";

@@ -30,8 +30,7 @@ struct Fault {
         kGap,               ///< number: how long no pose was measured, ms
         kUnconfirmed,       ///< the same
         kFrozen,
-        kTimeLeap,    ///< number: by how much the stamp is ahead, s
-        kTimeSetBack  ///< number: by how much the stamp is behind, s
+        kTimeLeap  ///< number: by how much the stamp is ahead, s
     };
     Kind kind = Kind::kNone;
     std::array<int, 4> numbers{};
