@@ -193,8 +193,9 @@ TEST_F(OdometryProgram, TheProfileShowsTheTimesOfTheSummary) {
     std::istringstream lines(result.out);
     for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line.substr(std::min<std::size_t>(24, line.size())));
+        const std::size_t first = line.find_first_not_of(' ');
         if (double median; words >> median)
-            medians[line.substr(2, line.find_last_not_of(' ', 23) - 1)] = median;
+            medians[line.substr(first, line.find_last_not_of(' ', 23) + 1 - first)] = median;
     }
     for (const char* stage : {"decode", "edges", "coarse", "fine", "total"}) {
         ASSERT_EQ(medians.count(stage), 1U) << stage << '\n' << result.out;

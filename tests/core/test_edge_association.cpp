@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "roevo/types.h"
 #include "tracking/edge_association.h"
@@ -177,8 +178,10 @@ TEST(EdgeAssociation, FollowedMatchesMoveAlongTheirEdgesToTheNearestPoint) {
     edges.finishEdge();
     addLine(edges, 120, 100, 4);
     addLine(edges, 70, 64.5, 60);
-    EdgeMatches matches = match(edges, edges);
-    ASSERT_EQ(matches.size(), edges.size());
+    EdgeMatches matches;
+    matches.reference.resize(edges.size());
+    std::iota(matches.reference.begin(), matches.reference.end(), 0);
+    matches.current = matches.reference;
     const std::vector<std::int32_t> before = matches.current;
     for (const auto& [du, dv] : {std::pair{2.6F, 0.3F}, {-2.6F, -0.8F}, {400.0F, 0.0F}, {0.0F, 0.0F}}) {
         std::vector<float> u = edges.x, v = edges.y;
