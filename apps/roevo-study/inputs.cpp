@@ -70,6 +70,7 @@ StudyInput openInput(const std::string& path, const InputSettings& settings,
     input.options = settings.options;
     input.modes = settings.modes;
     input.truth_noise = settings.truth_noise;
+    input.gaps = settings.gaps;
     setGroundTruth(input, settings, *source);
     checkFrames(*source, path);
     input.damage = std::make_shared<RecordingDamage>();

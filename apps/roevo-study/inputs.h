@@ -17,6 +17,7 @@ struct InputSettings {
     OdometryOptions options;
     std::vector<Mode> modes{Mode::kBundleAdjustment, Mode::kTracking};  ///< see StudyInput
     TruthNoise truth_noise;
+    std::vector<std::size_t> gaps{20, 60, 120};  ///< frames
 };
 
 /// Fewer frames show no motion to measure.

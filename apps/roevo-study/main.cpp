@@ -43,6 +43,9 @@ constexpr char kFooter[] =
     "                 what its covariance says; sigmas*.*\n"
     "  distribution   nothing; error of the trajectory (median, least, largest), final against live,\n"
     "                 what the map refused; distribution*.*\n"
+    "  gaps           20, 60 and 120 frames cut out (--gap) at ten places; whether the camera is found "
+    "again,\n"
+    "                 error of the other frames against the uncut run's; gaps.*\n"
     "loop, sigmas and distribution run in ba and in tr unless --mode says, and the last two forwards and\n"
     "backwards, from five starts each (0, 3, 6, 9 and 12 frames left out).\n"
     "Each writes CSV tables and SVG plots into the output folder; study.md there explains and lists them.\n"
@@ -64,6 +67,7 @@ constexpr Study kStudies[] = {
     {"sigmas", "Sigmas", studySigmas, false},
     {"distribution", "Distribution of errors", studyDistribution, false},
     {"loop", "Paths that return", studyLoop, false},
+    {"gaps", "Gaps in a recording", studyGaps, false},
 };
 
 // What is wrong with the name of an experiment; empty when nothing is.
@@ -141,7 +145,7 @@ int run(int argc, char** argv) {
         kName);
     app.add_option("--experiment", experiments,
                    "canny, depth-weight, ablation, repeatability, efficiency or all; loop, sigmas, "
-                   "distribution; one or more, see below")
+                   "distribution, gaps; one or more, see below")
         ->required()
         ->check(faultOfName, "");
     app.add_option("--input", settings.paths, "Recordings: .rawlog files, ROS bags or dataset folders")
@@ -165,6 +169,9 @@ int run(int argc, char** argv) {
         ->expected(2)
         ->check(CLI::NonNegativeNumber)
         ->type_name("M DEG");
+    app.add_option("--gap", settings.gaps, "gaps: how many frames are cut out, one or more numbers")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
     app.add_option("--first", settings.first, "Use at most this many frames of each recording")
         ->check(CLI::NonNegativeNumber);
     app.add_option("--skip", settings.skip, "Leave out this many frames at the start of each")

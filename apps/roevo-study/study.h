@@ -36,6 +36,7 @@ struct StudyInput {
     OdometryOptions options;                  ///< from --config and --set
     std::vector<Mode> modes;                  ///< for experiments that compare them
     TruthNoise truth_noise;                   ///< of the ground truth, from --truth-sigma
+    std::vector<std::size_t> gaps;            ///< frames to cut out, from --gap
     std::shared_ptr<RecordingDamage> damage;  ///< known once it has been read; may be absent
 };
 
@@ -67,6 +68,7 @@ StudyReport studyEfficiency(const std::vector<StudyInput>& inputs, const std::st
 StudyReport studySigmas(const std::vector<StudyInput>& inputs, const std::string& folder);
 StudyReport studyDistribution(const std::vector<StudyInput>& inputs, const std::string& folder);
 StudyReport studyLoop(const std::vector<StudyInput>& inputs, const std::string& folder);
+StudyReport studyGaps(const std::vector<StudyInput>& inputs, const std::string& folder);
 
 /// Measures on each input. One that fails becomes a line of the report, and the others go on; `measure` must
 /// not have added anything to the tables by then.

@@ -29,6 +29,29 @@ class FirstFrames : public ForwardingSource {
     std::size_t left_, count_;
 };
 
+/// Without those from `first` on.
+class GappedSource : public ForwardingSource {
+  public:
+    GappedSource(std::unique_ptr<FrameSource> source, std::size_t first, std::size_t count)
+        : ForwardingSource(std::move(source)), before_(first), cut_(count) {}
+
+    bool next(SourceFrame& frame) override { return cross() && ForwardingSource::next(frame); }
+    bool skip() override { return cross() && ForwardingSource::skip(); }
+
+  private:
+    bool cross() {
+        if (before_ > 0) {
+            --before_;
+            return true;
+        }
+        for (; cut_ > 0; --cut_)
+            if (!ForwardingSource::skip()) return false;
+        return true;
+    }
+
+    std::size_t before_, cut_;
+};
+
 class WatchedSource : public ForwardingSource {
   public:
     WatchedSource(std::unique_ptr<FrameSource> source, std::shared_ptr<RecordingDamage> damage)
@@ -55,6 +78,11 @@ class WatchedSource : public ForwardingSource {
 
 std::unique_ptr<FrameSource> firstFrames(std::unique_ptr<FrameSource> source, std::size_t count) {
     return std::make_unique<FirstFrames>(std::move(source), count);
+}
+
+std::unique_ptr<FrameSource> withoutFrames(std::unique_ptr<FrameSource> source, std::size_t first,
+                                           std::size_t count) {
+    return std::make_unique<GappedSource>(std::move(source), first, count);
 }
 
 std::unique_ptr<FrameSource> watched(std::unique_ptr<FrameSource> source,

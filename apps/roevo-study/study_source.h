@@ -10,6 +10,10 @@ namespace roevo {
 /// Ends after this many frames.
 std::unique_ptr<FrameSource> firstFrames(std::unique_ptr<FrameSource> source, std::size_t count);
 
+/// Leaves out `count` frames after the first `first` ones.
+std::unique_ptr<FrameSource> withoutFrames(std::unique_ptr<FrameSource> source, std::size_t first,
+                                           std::size_t count);
+
 /// Notes what is wrong with a recording once it has been read to its end.
 std::unique_ptr<FrameSource> watched(std::unique_ptr<FrameSource> source,
                                      std::shared_ptr<RecordingDamage> damage);
