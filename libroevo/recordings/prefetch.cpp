@@ -19,7 +19,11 @@ class PrefetchingSource : public ForwardingSource {
         return true;
     }
 
-    // skip() only before the first next(): the thread owns the source from then on.
+    /// From the first next() on the thread owns the source: the frame is then decoded in vain.
+    bool skip() override {
+        SourceFrame left_out;
+        return ahead_ ? next(left_out) : ForwardingSource::skip();
+    }
 
     std::string warning() const override {
         // What has been read so far may be changing under the thread's hands until it has ended.

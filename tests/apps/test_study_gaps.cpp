@@ -1,6 +1,7 @@
 // Gaps cut into recordings: what was seen before them, and whether the camera is found again.
 #include "known_view.h"
 #include "study_fixture.h"
+#include "study_source.h"
 
 namespace roevo {
 namespace {
@@ -51,6 +52,17 @@ TEST_F(StudyGaps, FramesAreCutOutAndTheCameraIsFoundAgain) {
     }
     EXPECT_EQ(before, 32u) << "the last gap leaves ten frames";
     EXPECT_NE(report.table.find("| slides | 3 | 10 | 10 | 10 of 10 | "), std::string::npos) << report.table;
+}
+
+TEST_F(StudyGaps, TheRightFramesAreCutOutOfWhatIsDecodedAhead) {
+    const testing::Sequence sequence = sliding(20);
+    const StudyInput memory = input("slides", sequence, true);
+    const auto source = withoutFrames(prefetch(memory.open()), 4, 10);
+    std::vector<double> expected, stamps;
+    for (const std::size_t i : {0, 1, 2, 3, 14, 15, 16, 17, 18, 19})
+        expected.push_back(sequence.frames[i].timestamp);
+    for (SourceFrame frame; source->next(frame);) stamps.push_back(frame.timestamp);
+    EXPECT_EQ(stamps, expected);
 }
 
 TEST_F(StudyGaps, WhatCannotBeCutIsLeftOutByName) {
