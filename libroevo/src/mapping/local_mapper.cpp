@@ -250,6 +250,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
         update.posterior = adjuster_.posterior(window_, trackedClusters(), priors_);
     keepVerdicts();
     update.verdicts = verdicts_.at(id);
+    update.clusters = keyframe.clusters;
     leaveWindow(keyframe);
     return update;
 }

@@ -119,10 +119,12 @@ void World::takeUpdate(const MapUpdate& update) {
     noteMotion(before);
     change_.mapping_ms += update.milliseconds;
     change_.refusals.insert(change_.refusals.end(), update.refusals.begin(), update.refusals.end());
-    if (update.keyframe != reference_->id || update.verdicts.empty()) return;
-    std::vector<bool> pseudo;
-    for (const EdgeVerdict verdict : update.verdicts) pseudo.push_back(isPseudo(verdict));
-    reference_->weaken(pseudo, options_.mapping.pseudo_weight);
+    pseudo_clusters_.judge(update.verdicts, update.clusters);
+    weakenPseudoEdges();
+}
+
+void World::weakenPseudoEdges() {
+    reference_->weaken(pseudo_clusters_.among(reference_->clusters), options_.mapping.pseudo_weight);
 }
 
 Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker& tracker,
@@ -162,6 +164,7 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
                      seconds_per_row_},
                     timestamp_);
     reference_ = std::move(fresh);
+    weakenPseudoEdges();
     noteTrack();
 }
 

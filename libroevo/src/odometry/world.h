@@ -4,6 +4,7 @@
 
 #include "keyframe_maker.h"
 #include "mapping/mapper.h"
+#include "pseudo_clusters.h"
 #include "relocaliser.h"
 #include "semi_dense_store.h"
 #include "stored_map.h"
@@ -94,6 +95,7 @@ class World {
     void closeLoop(const Look& newest);
     bool isWithinReach(const RelativePose& pose) const;
     void takeUpdate(const MapUpdate& update);
+    void weakenPseudoEdges();
     void noteMotion(const Pose& before);
     void noteTrack();
     bool closesLoops() const;
@@ -109,6 +111,7 @@ class World {
     Trajectory trajectory_;
     std::unique_ptr<Keyframe> reference_;
     std::int32_t next_cluster_ = 0;
+    PseudoClusters pseudo_clusters_;
     int loaded_ = 0;
     bool held_ = false;
     bool localised_ = false;  // in the map that was loaded
