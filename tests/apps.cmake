@@ -30,10 +30,12 @@ add_dependencies(test_map_program roevo-odometry rawlog-simulate)
 # Needs the whole build. Sanitized libraries would want the sanitizer in the program that uses them, too.
 if(NOT ROEVO_SANITIZE)
   add_test(NAME Install.LibrariesCanBeFoundAndUsed
-           COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/apps/consumer
-                   -DWORK=${CMAKE_BINARY_DIR}/install_test -DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
-                   -P ${CMAKE_CURRENT_SOURCE_DIR}/apps/install_test.cmake)
+           COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DWORK=${CMAKE_BINARY_DIR}/install_test
+                   -DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER} -P ${CMAKE_CURRENT_SOURCE_DIR}/apps/install_test.cmake)
   set_tests_properties(Install.LibrariesCanBeFoundAndUsed PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
+  if(NOT TARGET roevo_python)
+    set_tests_properties(Install.LibrariesCanBeFoundAndUsed PROPERTIES ENVIRONMENT WITHOUT_PYTHON=1)
+  endif()
 endif()
 
 roevo_test(test_distance_field
