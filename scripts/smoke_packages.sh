@@ -24,10 +24,12 @@ if [ "$1" = installed ]; then
     for program in $(dpkg -L roevo-tools | sed -n 's|^/usr/bin/||p'); do
         dpkg -L roevo-tools | grep -q "/man1/$program\.1" || die "$program has no man page"
     done
-    $apt install /exchange/libroevo-dev_*.deb
+    $apt install /exchange/libroevo-dev_*.deb g++ cmake make
+    cmake -S examples -B /tmp/core -DONLY_CORE=ON
+    cmake --build /tmp/core
     say "Used together"
     recommended=$(dpkg-query -W -f '${Recommends}' libroevo-dev | tr -d ,)
-    $apt install $recommended python3-pil g++ cmake make
+    $apt install $recommended python3-pil
     tests/apps/use_installed.sh /usr /tmp/used -DCMAKE_BUILD_TYPE=Release
     $apt purge libroevo-dev roevo-tools python3-roevo
     [ -z "$(find /usr -name '*roevo*')" ] || die "left behind: $(find /usr -name '*roevo*')"

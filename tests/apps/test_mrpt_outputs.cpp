@@ -54,7 +54,7 @@ class MrptOutputsProgram : public test::OdometryProgram {
     }
 
     test::ProgramResult runMounted(std::vector<std::string> more) const {
-        more.insert(more.end(), {"--quiet", "--set", "keyframe.max_translation=0.02"});
+        more.insert(more.end(), {"--quiet", "--set", "keyframe.max_translation=0.01"});
         return run(rawlog(), more);
     }
     std::string rawlog() const { return folder_ / "mounted.rawlog"; }
@@ -175,7 +175,7 @@ TEST_F(MrptOutputsProgram, TheRawlogWithPosesGivesTheSamePosesAgain) {
     const std::string trajectory = readFile(output() + "/trajectory.txt");
     fs::remove(rawlog());  // it has images of its own
     fs::remove_all(RawlogWriter::imagesDirectory(rawlog()));
-    ASSERT_EQ(run(posed, {"--quiet", "--set", "keyframe.max_translation=0.02"}).exit_code, 0);
+    ASSERT_EQ(run(posed, {"--quiet", "--set", "keyframe.max_translation=0.01"}).exit_code, 0);
     EXPECT_EQ(readFile(output() + "/trajectory.txt"), trajectory);
 }
 
