@@ -14,7 +14,7 @@ roevo_test(test_programs
   SOURCES apps/test_every_program.cpp apps/test_eval_program.cpp apps/test_render_program.cpp
           apps/test_odometry_program.cpp apps/test_bad_folders.cpp apps/test_bad_rawlogs.cpp apps/test_realtime.cpp
           apps/test_odd_rawlogs_program.cpp apps/test_scale_check.cpp apps/test_special_files.cpp
-          apps/test_shown_text.cpp apps/test_limits.cpp
+          apps/test_shown_text.cpp apps/test_limits.cpp apps/test_mrpt_outputs.cpp
   LIBS roevo_test_support roevo_evaluation roevo_mrpt roevo_internal nlohmann_json::nlohmann_json)
 add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog rawlog2rgbd rawlog-simulate
                  roevo-study)
@@ -30,10 +30,12 @@ add_dependencies(test_map_program roevo-odometry rawlog-simulate)
 # Needs the whole build. Sanitized libraries would want the sanitizer in the program that uses them, too.
 if(NOT ROEVO_SANITIZE)
   add_test(NAME Install.LibrariesCanBeFoundAndUsed
-           COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/apps/consumer
-                   -DWORK=${CMAKE_BINARY_DIR}/install_test -DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
-                   -P ${CMAKE_CURRENT_SOURCE_DIR}/apps/install_test.cmake)
+           COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DWORK=${CMAKE_BINARY_DIR}/install_test
+                   -DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER} -P ${CMAKE_CURRENT_SOURCE_DIR}/apps/install_test.cmake)
   set_tests_properties(Install.LibrariesCanBeFoundAndUsed PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
+  if(NOT TARGET roevo_python)
+    set_tests_properties(Install.LibrariesCanBeFoundAndUsed PROPERTIES ENVIRONMENT WITHOUT_PYTHON=1)
+  endif()
 endif()
 
 roevo_test(test_distance_field

@@ -66,11 +66,21 @@ int run(int argc, char** argv) {
         "--map-out", settings.map_out,
         "Write the keyframes as a map for --map-in; with --map-in: what was there and what was added");
     app.add_flag("--localise-only", settings.localise_only, "The map of --map-in stays as it is");
+    app.add_option("--simplemap", settings.simple_map,
+                   "Write the keyframes, with their edges, as MRPT's CSimpleMap to this file (.simplemap)")
+        ->type_name("FILE");
+    app.add_flag("--simplemap-images", settings.simple_map_images,
+                 "With the keyframes' colour and depth images");
+    app.add_option(
+           "--rawlog-with-poses", settings.rawlog_with_poses,
+           "Copy the rawlog to this file, with the robot's pose and motion at every scan that has one")
+        ->type_name("FILE");
     app.add_flag("--realtime", settings.realtime,
                  "Frames arrive by the clock and are dropped when tracking is behind; the tracker takes what "
                  "mapping has ready (results differ from run to run)");
     bool profile = false;
-    app.add_flag("--profile", profile, "Print the time of each stage of a frame, ms, and relative to decoding");
+    app.add_flag("--profile", profile,
+                 "Print the time of each stage of a frame, ms, and relative to decoding");
     app.add_flag("--quiet", settings.quiet, "Print errors and warnings only");
     app.add_option("--write-default-config", default_config,
                    "Write all options with their defaults to this file ('-': print) and end");
@@ -86,6 +96,8 @@ int run(int argc, char** argv) {
     if (settings.localise_only && settings.map_in.empty()) throw UsageError("--localise-only needs --map-in");
     if (settings.localise_only && !settings.map_out.empty())
         throw UsageError("--localise-only leaves the map as it is: there is nothing to write by --map-out");
+    if (settings.simple_map_images && settings.simple_map.empty())
+        throw UsageError("--simplemap-images needs --simplemap");
     settings.options = collectOptions(config_file, sets, mode);
     if (!settings.options.loss.recognise && !(settings.map_in + settings.map_out).empty())
         throw UsageError("maps need loss.recognise=true: without, no places are remembered or looked for");

@@ -14,6 +14,7 @@
 #include "evaluation/scale_check.h"
 #include "evaluation/trajectory_io.h"
 #include "input/regular_file.h"
+#include "mrpt_outputs.h"
 #include "programs/atomic_file.h"
 #include "programs/interrupt.h"
 #include "programs/output_folder.h"
@@ -67,6 +68,8 @@ void checkNames(const RunSettings& settings) {
     };
     check("--covariances", settings.covariances);
     check("--map-out", settings.map_out);
+    check("--simplemap", settings.simple_map);
+    check("--rawlog-with-poses", settings.rawlog_with_poses);
     if (settings.covariances.empty()) return;
     for (const std::string& map : {settings.map_in, settings.map_out})
         if (!map.empty() && isSameFile(settings.covariances, map))
@@ -251,6 +254,7 @@ RunReport runOdometry(const RunSettings& settings) {
     std::optional<AtomicFile> map_file, covariances;  // opened now, else nothing is begun
     open(map_file, settings.map_out);
     open(covariances, settings.covariances);
+    MrptOutputs for_mrpt(settings, *source);
 
     const GroundTruth ground_truth = groundTruthFor(settings.ground_truth, *source);
     report.ground_truth = ground_truth.file;
@@ -277,6 +281,7 @@ RunReport runOdometry(const RunSettings& settings) {
                                robotTrajectory(report.trajectory, report.camera_on_robot));
         writeMap(files, report, odometry, std::move(content), alignedReference(report, ground_truth.poses));
         if (map_file) report.map_out = {settings.map_out, odometry.saveMap(map_file->stream())};
+        for_mrpt.write(report, odometry);
     }
     saveConfigFile(files.path("config_used.ini"), odometry.options());
     writeTextAtomically(files.path("frames.csv"), framesCsv(report));
@@ -286,6 +291,7 @@ RunReport runOdometry(const RunSettings& settings) {
     finish(covariances, settings.covariances);
     finish(map_file, settings.map_out);
     files.commit();
+    for_mrpt.commit();
     if (covariances && failure.empty()) covariances->commit();
     if (!report.map_out.file.empty()) map_file->commit();
     if (!failure.empty())

@@ -12,9 +12,11 @@ namespace roevo {
 struct RunSettings {
     std::string input, output_dir, ground_truth;
     InputChoice choice;
-    std::string map_in, map_out;  ///< files; empty: none
-    bool localise_only = false;   ///< the map stays as it is
-    std::string covariances;      ///< file for the poses' covariances; empty: none
+    std::string map_in, map_out;                ///< files; empty: none
+    bool localise_only = false;                 ///< the map stays as it is
+    std::string covariances;                    ///< file for the poses' covariances; empty: none
+    std::string simple_map, rawlog_with_poses;  ///< files for MRPT's programs; empty: none
+    bool simple_map_images = false;             ///< with the keyframes' images
     OdometryOptions options;
     std::size_t first = 0, skip = 0;  ///< process at most `first` frames (0: all) after leaving out `skip`
     bool realtime = false;            ///< frames arrive by the clock; those that come too early are dropped

@@ -9,6 +9,7 @@
 #include "roevo_mrpt/camera_conversions.h"
 #include "roevo_mrpt/image_conversions.h"
 #include "roevo_mrpt/pose_conversions.h"
+#include "roevo_mrpt/simple_map.h"
 #include "roevo_mrpt/time_conversions.h"
 
 namespace roevo {
@@ -94,6 +95,39 @@ TEST(PoseConversions, CovarianceFollowsTheNumericJacobian) {
             for (int c = 0; c < 6; c++)
                 EXPECT_NEAR(gaussian.cov(r, c), expected(r, c), 1e-5 * expected.norm());
         EXPECT_TRUE(toEigen(gaussian.mean).isApprox(T_world_camera * T_camera_body, 1e-9));
+    }
+}
+
+TEST(PoseConversions, TheRobotsMotionFollowsTheCameras) {
+    std::mt19937 rng(4);
+    for (int trial = 0; trial < 30; trial++) {
+        const Pose T_from_to = randomPose(rng), from = randomPose(rng), to = randomPose(rng);
+        Matrix6d root = Matrix6d::Random(), J;
+        const Matrix6d covariance = 1e-4 * root * root.transpose();
+        const double step = 1e-6;
+        const auto moved = [&](int axis, double by) {
+            Vector6d d = Vector6d::Zero();
+            d[axis] = by;
+            // Along the axes of the second camera
+            const Pose error(
+                Eigen::Quaterniond(Eigen::AngleAxisd(d.tail<3>().norm(), d.tail<3>().stableNormalized())),
+                d.head<3>());
+            const auto p = toMrpt(from * T_from_to * error * to.inverse());
+            Vector6d out;
+            out << p.x(), p.y(), p.z(), p.yaw(), p.pitch(), p.roll();
+            return out;
+        };
+        for (int axis = 0; axis < 6; axis++) {
+            Vector6d difference = moved(axis, step) - moved(axis, -step);
+            for (int k = 3; k < 6; k++) difference[k] = std::remainder(difference[k], 2 * M_PI);
+            J.col(axis) = difference / (2 * step);
+        }
+        const Matrix6d expected = J * covariance * J.transpose();
+        const auto gaussian = robotMotion(T_from_to, covariance, from, to);
+        for (int r = 0; r < 6; r++)
+            for (int c = 0; c < 6; c++)
+                EXPECT_NEAR(gaussian.cov(r, c), expected(r, c), 1e-5 * expected.norm());
+        EXPECT_TRUE(toEigen(gaussian.mean).isApprox(from * T_from_to * to.inverse(), 1e-9));
     }
 }
 

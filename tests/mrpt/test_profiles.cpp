@@ -1,5 +1,6 @@
 // The sensor profiles in config_ini/: what they set, and that they hold nothing else.
 #include <gtest/gtest.h>
+#include <mrpt/config/CConfigFile.h>
 
 #include <filesystem>
 #include <fstream>
@@ -7,6 +8,7 @@
 #include <set>
 
 #include "roevo_mrpt/config_file.h"
+#include "roevo_mrpt/roevo_odometry.h"
 
 namespace roevo {
 namespace {
@@ -72,8 +74,22 @@ TEST(Profiles, EveryLineDiffersFromTheDefault) {
 TEST(Profiles, NoOtherFileIsThere) {
     for (const auto& file : std::filesystem::directory_iterator(kFolder)) {
         const std::string name = file.path().stem().string();
-        EXPECT_TRUE(name == "roevo" || kProfiles.count(name) == 1) << file.path();
+        EXPECT_TRUE(name == "roevo" || name == "mrpt_application" || kProfiles.count(name) == 1)
+            << file.path();
     }
+}
+
+TEST(Profiles, TheFileForMrptsApplicationsNamesDefaults) {
+    const mrpt::config::CConfigFile config((kFolder / "mrpt_application.ini").string());
+    for (const char* key : {"rawlog_file", "logOutput_dir"})
+        EXPECT_TRUE(config.keyExists("MappingApplication", key)) << key;
+    CRoevoOdometry::TOptions options;
+    options.odometry.mode = Mode::kTracking;
+    options.odometry.sensor.max_depth = 1;
+    options.loadFromConfigFile(config, "CRoevoOdometry");
+    OdometryOptions defaults;
+    const auto usual = optionFields(defaults), fields = optionFields(options.odometry);
+    for (std::size_t i = 0; i < fields.size(); i++) EXPECT_EQ(fields[i].toText(), usual[i].toText());
 }
 
 }  // namespace

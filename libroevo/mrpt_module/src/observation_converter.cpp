@@ -157,4 +157,30 @@ RgbdFrame toRgbdFrame(const CObservation3DRangeScan& scan) {
     return frame;
 }
 
+CObservation3DRangeScan toScan(const RgbdFrame& frame, const PinholeCamera& camera,
+                               const Pose& T_robot_camera) {
+    constexpr double kUnitsPerMetre = 5000, kMost = 65535;
+    CObservation3DRangeScan scan;
+    scan.timestamp = toMrptTime(frame.timestamp);
+    scan.sensorLabel = "RGBD";
+    scan.sensorPose = sensorPoseFromOptical(T_robot_camera);
+    scan.cameraParams = scan.cameraParamsIntensity = toMrptCamera(camera, scan.sensorLabel);
+    scan.range_is_depth = true;
+    scan.rangeUnits = depthUnit(kUnitsPerMetre);
+    scan.maxRange = static_cast<float>(kMost) * scan.rangeUnits;
+    scan.hasRangeImage = !frame.depth.empty();
+    scan.rangeImage_setSize(frame.depth.rows, frame.depth.cols);
+    for (int v = 0; v < frame.depth.rows; v++)
+        for (int u = 0; u < frame.depth.cols; u++) {
+            const double units = std::round(frame.depth.at<float>(v, u) * kUnitsPerMetre);
+            scan.rangeImage(v, u) =
+                units >= 0 && units <= kMost ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
+        }
+    scan.hasIntensityImage = true;
+    scan.intensityImageChannel = CObservation3DRangeScan::CH_VISIBLE;
+    scan.intensityImage =
+        mrpt::img::CImage(frame.colour.empty() ? frame.grey : frame.colour, mrpt::img::DEEP_COPY);
+    return scan;
+}
+
 }  // namespace roevo

@@ -31,6 +31,10 @@ std::string fileNamePart(std::string label) {
     return label;
 }
 
+void requireImage(const std::string& file) {
+    if (!fs::is_regular_file(file)) throw std::runtime_error("image file not found: " + file);
+}
+
 }  // namespace
 
 struct RawlogWriter::Impl {
@@ -52,7 +56,10 @@ struct RawlogWriter::Impl {
     std::string nextName(double timestamp, const std::string& ending) const {
         std::array<char, 64> stamp{};
         std::snprintf(stamp.data(), stamp.size(), "_%.6f", timestamp);
-        const std::string stem = fileNamePart(options.sensor_label) + stamp.data();
+        return unusedName(fileNamePart(options.sensor_label) + stamp.data(), ending);
+    }
+
+    std::string unusedName(const std::string& stem, const std::string& ending) const {
         std::string name = stem + ending;
         for (int i = 2; fs::exists(temporary_images / name); i++)
             name = stem + "_" + std::to_string(i) + ending;
@@ -185,10 +192,22 @@ void RawlogWriter::add(double timestamp, const cv::Mat& depth_u16, const cv::Mat
 void RawlogWriter::addFile(double timestamp, const cv::Mat& depth_u16, const std::string& image_file) {
     Impl& m = *impl_;
     m.checkDepth(depth_u16);
-    if (!fs::is_regular_file(image_file)) throw std::runtime_error("image file not found: " + image_file);
+    requireImage(image_file);
     const std::string name = m.nextName(timestamp, fs::path(image_file).extension().string());
     linkOrCopyFile(image_file, (m.temporary_images / name).string());
     m.write(timestamp, depth_u16, name);
+}
+
+void RawlogWriter::add(const mrpt::serialization::CSerializable& object) {
+    impl_->append(object);
+}
+
+std::string RawlogWriter::addImageFile(const std::string& image_file) {
+    const fs::path file = image_file;
+    requireImage(image_file);
+    const std::string name = impl_->unusedName(file.stem().string(), file.extension().string());
+    linkOrCopyFile(image_file, (impl_->temporary_images / name).string());
+    return name;
 }
 
 void RawlogWriter::addImu(double timestamp, const Eigen::Vector3d& acceleration,

@@ -1,9 +1,8 @@
 #include "roevo_mrpt/roevo_odometry.h"
 
-#include <mrpt/obs/CObservationPointCloud.h>
-
 #include <stdexcept>
 
+#include "coloured_points.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/scene_builder.h"
@@ -14,15 +13,6 @@ namespace {
 
 using mrpt::maps::CColouredPointsMap;
 using mrpt::obs::CObservation3DRangeScan;
-
-void append(CColouredPointsMap& out, const Eigen::Vector3f& p, const Rgb& c) {
-    out.insertPointRGB(p.x(), p.y(), p.z(), c[0] / 255.f, c[1] / 255.f, c[2] / 255.f);
-}
-
-void appendEdge(CColouredPointsMap& out, const MapEdge& edge, const Pose& T_out_world) {
-    const Eigen::Isometry3f T = T_out_world.cast<float>();
-    for (std::size_t i = 0; i < edge.points.size(); i++) append(out, T * edge.points[i], edge.colours.at(i));
-}
 
 }  // namespace
 
@@ -42,8 +32,7 @@ void CRoevoOdometry::initialize(const mrpt::maps::CSimpleMap& initial_map, const
 void CRoevoOdometry::initialize(const mrpt::poses::CPose3D& robot_pose) {
     T_world_robot_start_ = toEigen(robot_pose);
     odometry_.reset();
-    mountings_.clear();
-    keyframe_covariances_.clear();
+    context_ = {};
     latest_.reset();
     profiler_.clear();
 }
@@ -65,8 +54,8 @@ FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
         if (colourCameraOf(scan) != odometry_->camera())
             throw std::runtime_error("the camera's intrinsics changed");
         const RgbdFrame frame = convert(scan);
-        if (mountings_.empty() || !mountings_.rbegin()->second.isApprox(T_robot_optical))
-            mountings_[timestamp] = T_robot_optical;
+        if (context_.mounts.empty() || !context_.mounts.rbegin()->second.isApprox(T_robot_optical))
+            context_.mounts[timestamp] = T_robot_optical;
         const mrpt::system::CTimeLoggerEntry entry(profiler_, "track");
         return odometry_->processFrame(frame);
     } catch (const std::runtime_error& error) {
@@ -78,7 +67,7 @@ FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
 FrameResult CRoevoOdometry::processObservation(const CObservation3DRangeScan& scan) {
     const FrameResult result = track(scan);
     if (result.hasPose()) latest_ = result;
-    if (result.new_keyframe) keyframe_covariances_[result.timestamp] = result.covariance;
+    if (result.new_keyframe) context_.covariances[result.timestamp] = result.covariance;
     report(result);
     return result;
 }
@@ -96,16 +85,10 @@ void CRoevoOdometry::processActionObservation(mrpt::obs::CActionCollection&,
             processObservation(*scan);
 }
 
-Pose CRoevoOdometry::robotFromOptical(double timestamp) const {
-    auto after = mountings_.upper_bound(timestamp);
-    if (after != mountings_.begin()) --after;
-    return after->second;
-}
-
 mrpt::poses::CPose3DPDF::Ptr CRoevoOdometry::getCurrentPoseEstimation() const {
     if (!latest_) return nullptr;
     return mrpt::poses::CPose3DPDFGaussian::Create(toMrptGaussian(
-        latest_->T_world_camera, latest_->covariance, robotFromOptical(latest_->timestamp).inverse()));
+        latest_->T_world_camera, latest_->covariance, context_.mountAt(latest_->timestamp).inverse()));
 }
 
 void CRoevoOdometry::refineAll() {
@@ -117,35 +100,13 @@ mrpt::poses::CPose3DInterpolator CRoevoOdometry::getTrajectory() const {
     if (!odometry_) return out;
     for (const StampedPose& pose : odometry_->trajectory())
         out.insert(toMrptTime(pose.timestamp),
-                   toMrpt(pose.T_world_camera * robotFromOptical(pose.timestamp).inverse()));
+                   toMrpt(pose.T_world_camera * context_.mountAt(pose.timestamp).inverse()));
     return out;
 }
 
 void CRoevoOdometry::getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out) const {
     out.clear();
-    if (!odometry_) return;
-    const EdgeMap edges = odometry_->keyframeEdges();
-    for (const KeyframeInfo& keyframe : odometry_->keyframes()) {
-        const Pose T_robot_optical = robotFromOptical(keyframe.timestamp);
-        auto cloud = mrpt::obs::CObservationPointCloud::Create();
-        cloud->timestamp = toMrptTime(keyframe.timestamp);
-        cloud->sensorLabel = "roevo_edges";
-        cloud->sensorPose = toMrpt(T_robot_optical * sensorFromOptical().inverse());
-        auto points = CColouredPointsMap::Create();
-        const Pose T_sensor_world = sensorFromOptical() * keyframe.T_world_camera.inverse();
-        for (const MapEdge& edge : edges)
-            if (edge.keyframe_id == keyframe.id) appendEdge(*points, edge, T_sensor_world);
-        cloud->pointcloud = points;
-
-        const auto covariance = keyframe_covariances_.find(keyframe.timestamp);
-        const Matrix6d zero = Matrix6d::Zero();
-        const auto pose = toMrptGaussian(
-            keyframe.T_world_camera, covariance == keyframe_covariances_.end() ? zero : covariance->second,
-            T_robot_optical.inverse());
-        const auto frame = mrpt::obs::CSensoryFrame::Create();
-        frame->insert(cloud);
-        out.insert(mrpt::poses::CPose3DPDFGaussian::Create(pose), frame);
-    }
+    if (odometry_) buildSimpleMap(odometry_->keyframes(), odometry_->keyframeEdges(), context_, out);
 }
 
 unsigned int CRoevoOdometry::getCurrentlyBuiltMapSize() const {
@@ -155,7 +116,7 @@ unsigned int CRoevoOdometry::getCurrentlyBuiltMapSize() const {
 void CRoevoOdometry::saveCurrentMapToFile(const std::string& simplemap_file) const {
     mrpt::maps::CSimpleMap map;
     getCurrentlyBuiltMap(map);
-    if (!map.saveToFile(simplemap_file)) throw std::runtime_error("cannot write " + simplemap_file);
+    saveSimpleMap(simplemap_file, map);
 }
 
 CColouredPointsMap::Ptr CRoevoOdometry::getMap() const {

@@ -30,6 +30,12 @@ Pose colourFromDepthAsStored(const Pose& T_depth_colour);
 /// intrinsics, sizes that do not fit the intrinsics, a pose of sensor or colour camera that is not rigid.
 RgbdFrame toRgbdFrame(const mrpt::obs::CObservation3DRangeScan& scan);
 
+/// A scan of a frame, for toRgbdFrame() to give the same frame again: everything in memory, depth in 1/5000 m
+/// (13.1 m at most, else unknown).
+/// @param T_robot_camera  optical axes
+mrpt::obs::CObservation3DRangeScan toScan(const RgbdFrame& frame, const PinholeCamera& camera,
+                                          const Pose& T_robot_camera);
+
 /// Whether toRgbdFrame() takes the depth as stored: both cameras coincide, and it is no range along the ray.
 bool depthIsAsStored(const mrpt::obs::CObservation3DRangeScan& scan);
 

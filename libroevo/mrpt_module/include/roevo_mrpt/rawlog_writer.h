@@ -8,6 +8,10 @@
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/types.h"
 
+namespace mrpt::serialization {
+class CSerializable;
+}
+
 namespace roevo {
 
 /// A depth camera that is not the colour camera.
@@ -27,13 +31,13 @@ struct RawlogWriterOptions {
 };
 
 /// Writes an observations-only rawlog of CObservation3DRangeScan: depth inside the file (lossless, uint16),
-/// or in files beside it, colour as external files in <stem>_Images beside it. Nothing appears under the
+/// or in files beside it, colour as external files in `<stem>_Images` beside it. Nothing appears under the
 /// final names before finish(); until then everything is in "<path>.part/".
 class RawlogWriter {
   public:
     /// @param path    "….rawlog"; an older rawlog there is replaced, with its images, when finish() is called
     /// @param camera  of the colour images, and of depth where options name no other
-    /// @throws std::runtime_error when the path cannot be written, or when <stem>_Images exists without its
+    /// @throws std::runtime_error when the path cannot be written, or when `<stem>_Images` exists without its
     /// rawlog.
     RawlogWriter(const std::string& path, const PinholeCamera& camera,
                  const RawlogWriterOptions& options = {});
@@ -57,6 +61,12 @@ class RawlogWriter {
     void addImu(double timestamp, const Eigen::Vector3d& acceleration,
                 const std::optional<Eigen::Vector3d>& angular_velocity = std::nullopt);
 
+    /// Adds whatever else a rawlog may hold: an observation, or an action, then a sensory frame.
+    void add(const mrpt::serialization::CSerializable& object);
+
+    /// Links or copies an image for an object that is added. @return the name that the object refers to it by
+    std::string addImageFile(const std::string& image_file);
+
     /// Ends the file, which can then be read, and checked, under temporaryPath().
     /// @throws std::runtime_error when the disk is full.
     void close();
@@ -66,10 +76,10 @@ class RawlogWriter {
     /// full.
     void finish();
 
-    /// Where the external images of a rawlog belong: <dir>/<stem>_Images.
+    /// Where the external images of a rawlog belong: `<dir>/<stem>_Images`.
     static std::string imagesDirectory(const std::string& rawlog_path);
 
-    /// Where the ground truth of a rawlog belongs: <dir>/<stem>_groundtruth.txt.
+    /// Where the ground truth of a rawlog belongs: `<dir>/<stem>_groundtruth.txt`.
     static std::string groundTruthFile(const std::string& rawlog_path);
 
   private:

@@ -13,12 +13,12 @@
 #include <mrpt/system/CTimeLogger.h>
 
 #include <iosfwd>
-#include <map>
 #include <optional>
 #include <string>
 
 #include "roevo/odometry.h"
 #include "roevo_mrpt/mrpt_compat.h"
+#include "roevo_mrpt/simple_map.h"
 
 namespace roevo {
 
@@ -28,7 +28,7 @@ namespace roevo {
 class CRoevoOdometry : public mrpt::system::COutputLogger {
   public:
     /// The odometry's options as MRPT loads and saves them. Option "sensor.max_depth" is key `max_depth` of
-    /// section [sensor], or of [<section>.sensor] when a section is given.
+    /// section [sensor], or of `[<section>.sensor]` when a section is given.
     struct TOptions : public mrpt::config::CLoadableOptions {
         OdometryOptions odometry;
 
@@ -102,14 +102,11 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
   private:
     RgbdFrame convert(const mrpt::obs::CObservation3DRangeScan& scan);
     FrameResult track(const mrpt::obs::CObservation3DRangeScan& scan);
-    Pose robotFromOptical(double timestamp) const;
     void report(const FrameResult& result);
 
     Pose T_world_robot_start_ = Pose::Identity();
     std::optional<Odometry> odometry_;
-    std::map<double, Pose>
-        mountings_;  // T_robot_optical from this time on; one entry unless the camera moves on the robot
-    std::map<double, Matrix6d> keyframe_covariances_;
+    RobotContext context_;  // one mount unless the camera moves on the robot; covariances of keyframes
     std::optional<FrameResult> latest_;
     mrpt::system::CTimeLogger profiler_;
 };

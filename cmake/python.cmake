@@ -1,0 +1,15 @@
+# The Python module needs pybind11 (Debian: pybind11-dev, python3-dev); without it all else is built. A sanitized module
+# would want a sanitized Python.
+if(ROEVO_SANITIZE OR ROEVO_FUZZ)
+  return()
+endif()
+if(EXISTS /usr/bin/python3)
+  set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Python that the module is for")
+endif()
+find_package(Python 3 COMPONENTS Interpreter Development.Module)
+find_package(pybind11 2.10 CONFIG QUIET)
+if(Python_FOUND AND pybind11_FOUND)
+  add_subdirectory(python)
+else()
+  message(STATUS "No Python module: it needs Debian's pybind11-dev and python3-dev")
+endif()
