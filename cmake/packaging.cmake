@@ -15,7 +15,7 @@ set(CPACK_COMPONENT_DEV_DESCRIPTION "RGB-D visual odometry from organized edges,
  what this package depends on, mrpt and recordings, which need what it recommends.")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libopencv-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS
-    "libmrpt-dev, zlib1g-dev, libjpeg-dev, libbz2-dev, liblz4-dev, libzstd-dev, libsqlite3-dev, pkg-config")
+    "libmrpt-dev, zlib1g-dev, libjpeg-dev, libbz2-dev, liblz4-dev, libzstd-dev, libsqlite3-dev, libyaml-cpp-dev, pkg-config")
 
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME roevo-tools)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)

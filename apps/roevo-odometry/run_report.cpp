@@ -48,6 +48,47 @@ Losses RunReport::losses() const {
     return out;
 }
 
+std::vector<int> RunReport::segments() const {
+    std::vector<int> parent{
+        0};  // of each piece, itself when it is joined to none; the first is the map's own
+    const auto root = [&](int piece) {
+        while (parent[static_cast<std::size_t>(piece)] != piece)
+            piece = parent[static_cast<std::size_t>(piece)];
+        return piece;
+    };
+    std::map<double, int> piece_at;  // by time stamp
+    const auto pieceOf = [&](int keyframe) {
+        if (map_in && keyframe < map_in->keyframes) return 0;
+        for (const KeyframeInfo& k : keyframes)
+            if (k.id == keyframe)
+                if (const auto found = piece_at.find(k.timestamp); found != piece_at.end())
+                    return found->second;
+        return static_cast<int>(parent.size()) - 1;
+    };
+    std::vector<int> pieces;
+    int current = 0;
+    for (const FrameRecord& f : frames) {
+        const FrameResult& r = f.result;
+        if (r.hasPose()) {
+            if (r.found_at >= 0) {
+                current = pieceOf(r.found_at);
+            } else if (r.status == FrameStatus::kInitialised) {
+                current = static_cast<int>(parent.size());
+                parent.push_back(current);
+            }
+            if (r.joined_at >= 0)
+                parent[static_cast<std::size_t>(root(current))] = root(pieceOf(r.joined_at));
+            piece_at[r.timestamp] = current;
+        }
+        pieces.push_back(r.hasPose() ? current : -1);
+    }
+    std::map<int, int> numbers;
+    for (int& piece : pieces)
+        piece =
+            piece < 0 ? 0 : numbers.emplace(root(piece), static_cast<int>(numbers.size()) + 1).first->second;
+    return pieces;
+}
+
 int RunReport::mapKeyframeOf(const FrameResult& frame) const {
     for (const int keyframe : {frame.found_at, frame.joined_at})
         if (map_in && keyframe >= 0 && keyframe < map_in->keyframes) return keyframe;
@@ -104,8 +145,10 @@ std::string framesCsv(const RunReport& report) {
     std::string csv =
         "timestamp,status,reason,keyframe,edges,points,matched_ratio,inliers,sigma_t_m,sigma_r_deg,"
         "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total,ms_mapping,ms_waiting,map_correction_m,map_correction_"
-        "deg,map_reason\n";
-    for (const FrameRecord& f : report.frames) {
+        "deg,map_reason,segment\n";
+    const std::vector<int> segments = report.segments();
+    for (std::size_t i = 0; i < report.frames.size(); ++i) {
+        const FrameRecord& f = report.frames[i];
         const FrameResult& r = f.result;
         csv += format("%.6f,%s,", r.timestamp, toString(r.status)) + csvField(r.reason) +
                format(",%d,%d,%d,%.4f,%d,%.6f,%.5f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.6f,%.5f,",
@@ -113,7 +156,7 @@ std::string framesCsv(const RunReport& report) {
                       r.sigmaTranslation(), r.sigmaRotationDeg(), f.ms_decode, r.ms.edges, r.ms.coarse,
                       r.ms.fine, r.ms.total, r.ms.mapping, r.ms.waiting, r.map_correction,
                       r.map_turn / kDegree) +
-               csvField(joined(r.map_refusals)) + "\n";
+               csvField(joined(r.map_refusals)) + "," + std::to_string(segments[i]) + "\n";
     }
     return csv;
 }

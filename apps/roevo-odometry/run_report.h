@@ -62,6 +62,9 @@ struct RunReport {
 
     std::size_t count(FrameStatus status) const;
     Losses losses() const;
+    /// The piece of the trajectory that each frame belongs to, from 1 on in the order of time; 0 without a
+    /// pose. Pieces that were joined later are one.
+    std::vector<int> segments() const;
     /// The frame that was recognised first in the map of map_in, or null.
     const FrameResult* localised() const;
     /// The keyframe of that map that a frame was recognised by, or -1.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <opencv2/core/version.hpp>
@@ -75,6 +76,26 @@ std::map<std::string, std::size_t> reasonsOf(const RunReport& report) {
     return reasons;
 }
 
+// The same for people: reasons that differ in their numbers only count as one, the commonest of them.
+std::map<std::string, std::size_t> alikeReasonsOf(const RunReport& report) {
+    std::map<std::string, std::map<std::string, std::size_t>> alike;
+    for (const auto& [reason, count] : reasonsOf(report)) {
+        std::string words;
+        std::remove_copy_if(reason.begin(), reason.end(), std::back_inserter(words),
+                            [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+        alike[words][reason] = count;
+    }
+    std::map<std::string, std::size_t> out;
+    for (const auto& [words, reasons] : alike) {
+        std::size_t all = 0;
+        for (const auto& [reason, count] : reasons) all += count;
+        const auto commonest = std::max_element(
+            reasons.begin(), reasons.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        out[commonest->first + (reasons.size() > 1 ? " (and the like)" : "")] = all;
+    }
+    return out;
+}
+
 Json cameraJson(const RunReport& report) {
     const PinholeCamera& c = report.camera;
     return {{"width", c.width},
@@ -83,7 +104,9 @@ Json cameraJson(const RunReport& report) {
             {"fy", c.fy},
             {"cx", c.cx},
             {"cy", c.cy},
+            {"lens", c.lens == LensModel::kKannalaBrandt ? "kannala_brandt" : "brown_conrady"},
             {"distortion_k1_k2_p1_p2_k3", c.distortion},
+            {"denominator_k4_k5_k6", c.denominator},
             {"source", report.camera_source},
             {"readout_time_s", report.readout_time},
             {"readout_learned", report.readout_learned}};
@@ -236,7 +259,7 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
         }
     std::printf("; %zu keyframes\n", report.keyframes.size());
     const std::string initialised = toString(FrameStatus::kInitialised);
-    for (const auto& [reason, count] : reasonsOf(report))
+    for (const auto& [reason, count] : alikeReasonsOf(report))
         if (reason.compare(0, initialised.size(), initialised) != 0 || count > 1)
             std::printf("            %zu %s\n", count, reason.c_str());
     const Losses losses = report.losses();
@@ -245,7 +268,7 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
                     times(losses.found_again).c_str(), times(losses.joined).c_str());
     if (losses.pieces > 1)
         std::printf(
-            "            the trajectory is in %zu pieces; where they are relative to each other is a guess\n",
+            "            trajectory in %zu pieces, the join is not measured: see 'segment' in frames.csv\n",
             losses.pieces);
     if (const FrameResult* frame = report.localised())
         std::printf("map in      %s, %d keyframes: recognised at keyframe %d, %.2f s after the first frame\n",

@@ -1,6 +1,8 @@
 #include "recordings/camera_file.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,20 +18,31 @@
 namespace roevo {
 namespace {
 
-constexpr char kDistortion[] = "distortion_k1_k2_p1_p2_k3";
+constexpr char kDepthPose[] = "depth_to_colour";
+
+struct LensKey {
+    const char* key;
+    std::size_t terms;
+    LensModel model;
+};
+constexpr LensKey kFiveTerms{"distortion_k1_k2_p1_p2_k3", 5, LensModel::kBrownConrady};
+constexpr LensKey kEightTerms{"distortion_k1_k2_p1_p2_k3_k4_k5_k6", 8, LensModel::kBrownConrady};
+constexpr LensKey kFisheye{"fisheye_k1_k2_k3_k4", 4, LensModel::kKannalaBrandt};
 
 struct Value {
     std::string where;
     std::vector<std::string> words;
 };
 
-std::map<std::string, Value> readKeyValues(const std::string& file) {
+using Values = std::map<std::string, Value>;
+
+Values readKeyValues(const std::string& file) {
     requireRegularInput(file);
     errno = 0;
     std::ifstream in(file);
     if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno ? errno : ENOENT));
     skipByteOrderMark(in);
-    std::map<std::string, Value> values;
+    Values values;
     std::string text;
     for (int number = 1; std::getline(in, text); number++) {
         text = text.substr(0, text.find('#'));
@@ -55,6 +68,69 @@ std::vector<double> numbers(const Value& value, const std::string& key, std::siz
     return result;
 }
 
+/// @param prefix  of the keys: "" or "depth_"
+void readLens(const Values& values, const std::string& prefix, PinholeCamera& camera) {
+    std::string known;
+    for (const LensKey& lens : {kFiveTerms, kEightTerms, kFisheye}) {
+        const std::string key = prefix + lens.key;
+        const auto found = values.find(key);
+        if (found == values.end()) continue;
+        if (!known.empty())
+            throw std::runtime_error(found->second.where + ": " + key + " and " + known +
+                                     ": one lens at a time");
+        known = key;
+        const auto terms = numbers(found->second, key, lens.terms);
+        for (std::size_t i = 0; i < terms.size(); i++)
+            (i < 5 ? camera.distortion[i] : camera.denominator[i - 5]) = terms[i];
+        camera.lens = lens.model;
+    }
+}
+
+/// The keys that begin with "depth_", which are there together or not at all.
+void readDepthCamera(const Values& values, CameraDescription& out) {
+    const char* const names[] = {"depth_width", "depth_height", "depth_fx",
+                                 "depth_fy",    "depth_cx",     "depth_cy"};
+    std::string missing, there;
+    std::vector<double> read;
+    for (const char* name : names) {
+        const auto found = values.find(name);
+        if (found == values.end()) {
+            missing += std::string(missing.empty() ? "" : ", ") + name;
+            continue;
+        }
+        there = found->second.where;
+        read.push_back(numbers(found->second, name, 1)[0]);
+    }
+    const auto placed = values.find(kDepthPose);
+    if (read.empty()) {
+        if (placed == values.end()) return;
+        throw std::runtime_error(placed->second.where + ": " + kDepthPose +
+                                 " is there, but no depth camera (" + missing + ")");
+    }
+    if (!missing.empty()) throw std::runtime_error(there + ": the depth camera lacks " + missing);
+    DepthRegistration registration;
+    registration.depth_camera = {static_cast<int>(std::clamp(read[0], 0., 1e6)),
+                                 static_cast<int>(std::clamp(read[1], 0., 1e6)),
+                                 read[2],
+                                 read[3],
+                                 read[4],
+                                 read[5],
+                                 {}};
+    readLens(values, "depth_", registration.depth_camera);
+    if (const std::string fault = registration.depth_camera.check(); !fault.empty())
+        throw std::runtime_error(there + ": depth " + fault);
+    if (placed != values.end()) {
+        const auto v = numbers(placed->second, kDepthPose, 7);
+        const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+        constexpr double kTolerance = 0.01;  // of a quaternion's length
+        if (!(std::abs(rotation.norm() - 1) < kTolerance))
+            throw std::runtime_error(placed->second.where + ": " + kDepthPose +
+                                     " is 'x y z qx qy qz qw', and the quaternion's length is not 1");
+        registration.T_colour_depth = Pose(rotation.normalized(), Eigen::Vector3d(v[0], v[1], v[2]));
+    }
+    out.registration = registration;
+}
+
 }  // namespace
 
 CameraDescription readCameraFile(const std::string& file) {
@@ -68,8 +144,8 @@ CameraDescription readCameraFile(const std::string& file) {
     };
     CameraDescription out;
     PinholeCamera& camera = out.camera;
-    camera.width = static_cast<int>(number("width"));
-    camera.height = static_cast<int>(number("height"));
+    camera.width = static_cast<int>(std::clamp(number("width"), 0., 1e6));
+    camera.height = static_cast<int>(std::clamp(number("height"), 0., 1e6));
     camera.fx = number("fx");
     camera.fy = number("fy");
     camera.cx = number("cx");
@@ -77,10 +153,7 @@ CameraDescription readCameraFile(const std::string& file) {
     out.depth_scale = number("depth_scale");
     if (!missing.empty()) throw std::runtime_error("no intrinsics: " + file + " lacks " + missing);
 
-    if (const auto found = values.find(kDistortion); found != values.end()) {
-        const auto terms = numbers(found->second, kDistortion, camera.distortion.size());
-        std::copy(terms.begin(), terms.end(), camera.distortion.begin());
-    }
+    readLens(values, "", camera);
     if (const std::string fault = camera.check(); !fault.empty())
         throw std::runtime_error(file + ": " + fault);
     if (const auto found = values.find("frame_rate"); found != values.end()) {
@@ -88,6 +161,7 @@ CameraDescription readCameraFile(const std::string& file) {
         if (!(*out.frame_rate > 0)) throw std::runtime_error(file + ": frame_rate must be above 0");
     }
     if (!(out.depth_scale > 0)) throw std::runtime_error(file + ": depth_scale must be above 0");
+    readDepthCamera(values, out);
     out.source = "camera.txt";
     return out;
 }
@@ -99,23 +173,15 @@ std::string cameraFileText(const PinholeCamera& camera, double depth_scale,
     const std::pair<const char*, double> values[] = {
         {"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx}, {"cy", camera.cy}};
     for (const auto& [key, value] : values) text += std::string(key) + ": " + number(value) + "\n";
-    text += std::string(kDistortion) + ":";
-    for (const double term : camera.distortion) text += " " + number(term);
+    const LensKey& lens = camera.lens == LensModel::kKannalaBrandt ? kFisheye
+                          : camera.isRational()                    ? kEightTerms
+                                                                   : kFiveTerms;
+    text += std::string(lens.key) + ":";
+    for (std::size_t i = 0; i < lens.terms; i++)
+        text += " " + number(i < 5 ? camera.distortion[i] : camera.denominator[i - 5]);
     text += "\ndepth_scale: " + number(depth_scale) + "   # PNG value / depth_scale = metres\n";
     for (const std::string& note : notes) text += note + "\n";
     return text;
-}
-
-void setCamera(const CameraDescription& camera, DatasetDescription& out) {
-    out.camera = camera.camera;
-    out.depth_scale = camera.depth_scale;
-    out.camera_source = camera.source;
-}
-
-std::optional<CameraDescription> cameraFileIn(const std::string& folder) {
-    const std::filesystem::path file = std::filesystem::path(folder) / "camera.txt";
-    if (!std::filesystem::exists(file)) return std::nullopt;
-    return readCameraFile(file.string());
 }
 
 std::optional<CameraDescription> tumCameraNamedIn(const std::string& text) {

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -15,9 +16,14 @@
 #include "recordings/bags/bag_dataset.h"
 #include "recordings/depth_scale.h"
 #include "recordings/eth3d.h"
+#include "recordings/facts.h"
 #include "recordings/icl.h"
+#include "recordings/lens.h"
+#include "recordings/phone.h"
 #include "recordings/plain.h"
+#include "recordings/scannet.h"
 #include "recordings/seven_scenes.h"
+#include "recordings/time_units.h"
 #include "recordings/tum.h"
 #include "roevo/camera/depth_registration.h"
 #include "roevo_mrpt/image_conversions.h"
@@ -28,7 +34,9 @@ namespace fs = std::filesystem;
 namespace roevo {
 namespace {
 
-constexpr std::size_t kMostEmpty = 30;  // images without any depth before that is said
+constexpr std::size_t kMostEmpty = 30;     // images without any depth before that is said
+constexpr double kUnitsOfFloats = 5000;    // per metre, that depth images of floats are rounded to
+constexpr double kUnitsOfIntegers = 1000;  // per metre, where nobody tells: mm
 
 struct Format {
     const char* name;
@@ -41,9 +49,13 @@ struct Format {
 const Format kFormats[] = {
     {"7scenes", &isSevenScenesFolder, &loadSevenScenes, "frame-000000.color.png, .depth.png, .pose.txt"},
     {"eth3d", &isEth3dFolder, &loadEth3d, "calibration.txt and associated.txt, or rgb.txt and depth.txt"},
+    {"scannet", &isScanNetFolder, &loadScanNet, "color/, depth/ and intrinsic/intrinsic_color.txt"},
+    {"stray", &isStrayFolder, &loadStray, "rgb/ (or rgb.mp4), depth/, camera_matrix.csv and odometry.csv"},
+    {"record3d", &isRecord3dFolder, &loadRecord3d, "rgb/, depth/ and metadata or metadata.json with K"},
     {"icl", &isIclFolder, &loadIcl, "associations.txt with whole numbers for times, files named alike"},
     {"tum", &isTumFolder, &loadTum, "rgb.txt and depth.txt, or associations.txt"},
-    {"plain", &isPlainFolder, &loadPlain, "camera.txt, rgb/ or color/, and depth/ with the same file names"},
+    {"plain", &isPlainFolder, &loadPlain,
+     "rgb/ or color/, and depth/, with numbers or times for names, and a camera"},
     {"bag", &isBag, &loadBag,
      "a .bag of ROS 1; of ROS 2 .db3 or .mcap, or the folder of metadata.yaml with them"},
 };
@@ -77,6 +89,7 @@ DatasetReader::DatasetReader(DatasetDescription description, bool tolerate_missi
     : description_(std::move(description)) {
     if (description_.registration)
         T_colour_depth_ = colourFromDepthAsStored(description_.registration->T_colour_depth.inverse());
+    too_far_.resize(description_.frames.size());
     checkFiles(tolerate_missing);
     checkDepthScale();
 }
@@ -110,6 +123,7 @@ const PinholeCamera& DatasetReader::depthCamera() const {
 
 void DatasetReader::checkDepthScale() {
     std::size_t empty = 0;
+    bool settled = false;
     for (std::size_t i = 0; i < size() && empty < kMostEmpty; i++) {
         cv::Mat depth;
         try {
@@ -119,56 +133,86 @@ void DatasetReader::checkDepthScale() {
             throw;
         }
         checkSize(depth, depthCamera(), entry(i).depth);
+        if (!settled) settleDepthScale(depth, entry(i).depth);
+        settled = true;
         const double median_units = medianDepth(depth, description_.invalid_depth);
         if (median_units == 0) {
             ++empty;
             continue;
         }
-        const double median = median_units / depthScale();
+        const double scale = floats_per_metre_ > 0 ? floats_per_metre_ : depthScale();
+        const double median = median_units / scale;
         if (isPlausibleMedianDepth(median)) {
-            noteFacts(median);
+            noteFacts(depth, median);
             return;
         }
         char text[160];
         std::snprintf(text, sizeof text, "median depth %.3g m with depth_scale %g makes no sense", median,
-                      depthScale());
+                      scale);
         const std::string likely = likelyDepthScales(median_units);
         throw std::runtime_error(entry(i).depth + ": " + text + (likely.empty() ? "" : "; " + likely) +
-                                 (description_.images ? ": is it depth? (--depth-topic)"
-                                                      : ": put the sensor's own into camera.txt"));
+                                 (description_.images
+                                      ? ": is it depth? (--depth-topic)"
+                                      : ": put the sensor's own into camera.txt, or give --depth-scale"));
     }
     if (empty > 0)
         description_.notes.push_back("warning: the first " + std::to_string(empty) +
                                      " depth images hold no depth at all");
 }
 
-/// What makes a wrong scale or wrong stamps seen although all can be read.
-void DatasetReader::noteFacts(double median_depth) {
+/// What the numbers of depth images mean, by the first one.
+void DatasetReader::settleDepthScale(const cv::Mat& first, const std::string& file) {
+    double& scale = description_.depth_scale;
+    if (first.depth() == CV_32F) {
+        floats_per_metre_ = scale > 0 ? scale : 1;
+        scale = kUnitsOfFloats;
+        char text[120];
+        std::snprintf(text, sizeof text, "depth images hold floats of %g per metre, rounded to 0.2 mm",
+                      floats_per_metre_);
+        description_.notes.emplace_back(text);
+    } else if (scale == 0) {
+        const std::string likely = likelyDepthScales(medianDepth(first, description_.invalid_depth));
+        if (description_.format == "tum" || description_.format == "eth3d" || description_.format == "icl")
+            throw std::runtime_error(
+                file + ": nobody says what its numbers mean: give --depth-scale units_per_metre" +
+                (likely.empty() ? "" : " (" + likely + ")"));
+        scale = kUnitsOfIntegers;
+        description_.notes.emplace_back("depth is taken as mm (depth_scale 1000), for " +
+                                        description_.camera_source + " does not tell it; --depth-scale does");
+    }
+}
+
+void DatasetReader::noteFacts(const cv::Mat& depth, double median_depth) {
     std::vector<double> steps;
     for (std::size_t i = 1; i < size(); i++) steps.push_back(entry(i).timestamp - entry(i - 1).timestamp);
     const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
     std::nth_element(steps.begin(), middle, steps.end());
-    char text[160];
-    std::snprintf(text, sizeof text, "%.1f Hz, %s, median depth %.3g m", steps.empty() ? 0 : 1 / *middle,
-                  camera().isDistorted() ? "lens distortion" : "no lens distortion", median_depth);
-    description_.notes.emplace_back(text);
+    description_.notes.push_back(
+        factsText(size(), camera(), depth.size(), steps.empty() ? 0 : *middle, median_depth));
 }
 
 void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,
                               const std::string& file) const {
     if (image.cols == camera.width && image.rows == camera.height) return;
-    throw std::runtime_error(file + " is " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
-                             ", but the camera is " + std::to_string(camera.width) + "x" +
-                             std::to_string(camera.height));
+    const bool is_depth = image.depth() != CV_8U && !description_.registration && !description_.images;
+    throw std::runtime_error(
+        file + " is " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
+        ", but the camera is " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+        (is_depth ? ": a depth camera of its own belongs into camera.txt (depth_width, …)" : ""));
 }
 
 cv::Mat DatasetReader::readStoredDepth(std::size_t i) const {
-    return description_.images ? description_.images->depth(i) : readDepthFile(entry(i).depth);
+    return description_.images ? description_.images->depth(i) : readAnyDepthFile(entry(i).depth);
 }
 
 cv::Mat DatasetReader::readDepth(std::size_t i) const {
     cv::Mat depth = readStoredDepth(i);
     checkSize(depth, depthCamera(), entry(i).depth);
+    if ((depth.depth() == CV_32F) != (floats_per_metre_ > 0))
+        throw std::runtime_error(entry(i).depth + (floats_per_metre_ > 0
+                                                       ? " is of 16 bits, others hold floats"
+                                                       : " holds floats, others are of 16 bits"));
+    if (floats_per_metre_ > 0) return depthInUnits(depth, depthScale() / floats_per_metre_, too_far_[i]);
     if (description_.invalid_depth != 0) depth.setTo(0, depth == description_.invalid_depth);
     return depth;
 }
@@ -195,12 +239,18 @@ RgbdFrame DatasetReader::readFrame(std::size_t i) const {
     return frame;
 }
 
+std::string DatasetReader::warning() const {
+    if (description_.images) return description_.images->warning();
+    const std::size_t all = std::accumulate(too_far_.begin(), too_far_.end(), std::size_t{0});
+    return all == 0 ? "" : tooFarText(all);
+}
+
 std::string DatasetReader::summary() const {
     const PinholeCamera& c = camera();
     char text[256];
     std::snprintf(text, sizeof text, "camera %dx%d fx %g fy %g cx %g cy %g, %s, depth_scale %g, from ",
                   c.width, c.height, c.fx, c.fy, c.cx, c.cy,
-                  c.isDistorted() ? "with lens distortion" : "no lens distortion", depthScale());
+                  c.isDistorted() ? ("with " + lensText(c)).c_str() : "no lens distortion", depthScale());
     std::string lines = text + description_.camera_source + "\n" + description_.association.toText();
     for (const std::string& note : notes()) lines += "\n" + note;
     return lines;
@@ -216,26 +266,46 @@ std::vector<std::string> DatasetReader::notes() const {
     return notes;
 }
 
-DatasetReader openDataset(const std::string& folder, const DatasetOptions& options) {
-    const bool is_bag = options.format == "bag" || isBag(folder);
+namespace {
+
+/// Checks that there is something that can be read. @return whether it is a folder
+bool requireInput(const std::string& input, const DatasetOptions& options) {
+    const bool is_bag = options.format == "bag" || isBag(input);
     std::error_code fault;
-    if (!is_bag && !fs::exists(folder, fault)) {
+    if (!is_bag && !fs::exists(input, fault)) {
         if (fault && fault != std::errc::no_such_file_or_directory)
-            throw std::runtime_error("cannot read folder " + folder + ": " + fault.message());
-        throw std::runtime_error("dataset folder not found: " + folder);
+            throw std::runtime_error("cannot read folder " + input + ": " + fault.message());
+        throw std::runtime_error("dataset folder not found: " + input);
     }
-    if (options.topics.any() && !is_bag) throw UsageError("topics are for bags, and " + folder + " is none");
-    const bool is_folder = fs::is_directory(folder, fault);
-    if (!is_folder && !is_bag) throw std::runtime_error("not a folder: " + folder);
-    if (is_folder && !isPermitted(folder, R_OK | X_OK))
-        throw std::runtime_error("cannot read folder " + folder + ": " + std::strerror(errno));
-    const std::string wanted = is_folder || options.format != "auto" ? options.format : "bag";
+    if (options.topics.any() && !is_bag) throw UsageError("topics are for bags, and " + input + " is none");
+    options.folder.check();
+    if (const auto given = options.folder.options(); is_bag && !given.empty())
+        throw UsageError(given[0].first + " is for folders, and " + input + " is a bag");
+    const bool is_folder = fs::is_directory(input, fault);
+    if (!is_folder && !is_bag) throw std::runtime_error("not a folder: " + input);
+    if (is_folder && !isPermitted(input, R_OK | X_OK))
+        throw std::runtime_error("cannot read folder " + input + ": " + std::strerror(errno));
+    return is_folder;
+}
+
+DatasetDescription load(const Format& format, const std::string& folder, const DatasetOptions& options) {
+    DatasetDescription out = format.load(folder, options);
+    if (const double scale = options.folder.depth_scale; scale > 0) out.depth_scale = scale;
+    settleClock(out);
+    return out;
+}
+
+}  // namespace
+
+DatasetReader openDataset(const std::string& folder, const DatasetOptions& options) {
+    std::string wanted = requireInput(folder, options) || options.format != "auto" ? options.format : "bag";
+    if (wanted == "auto" && !options.folder.associations.empty()) wanted = "tum";
     std::string names, needs;
     for (const Format& format : kFormats) {
         names += std::string(names.empty() ? "" : ", ") + format.name;
         needs += std::string(needs.empty() ? "" : "; ") + format.name + ": " + format.needs;
         if (wanted == format.name || (wanted == "auto" && format.recognises(folder)))
-            return DatasetReader(format.load(folder, options), options.tolerate_missing);
+            return DatasetReader(load(format, folder, options), options.tolerate_missing);
     }
     if (wanted != "auto")
         throw std::runtime_error("unknown dataset format '" + wanted + "' (known: auto, " + names + ")");

@@ -8,6 +8,7 @@
 
 #include "recordings/association_report.h"
 #include "recordings/bags/topic_names.h"
+#include "recordings/folder_choice.h"
 #include "recordings/sensor_data.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/camera/rgbd_frame.h"
@@ -47,7 +48,7 @@ struct DatasetDescription {
     std::string sensor_label;  ///< the camera's name where the recording has one
     PinholeCamera camera;
     std::string camera_source;        ///< in words: where the intrinsics come from
-    double depth_scale = 0;           ///< PNG units per metre
+    double depth_scale = 0;           ///< units per metre of the depth images; 0: not told
     std::uint16_t invalid_depth = 0;  ///< value that stands for "unknown" in the images, beside 0
     std::optional<DepthRegistration> registration;  ///< empty: depth and colour pixels are the same
     std::vector<std::string> notes;                 ///< what was assumed or converted, a line each
@@ -65,6 +66,7 @@ struct DatasetOptions {
     /// Listed images that are not there: go on, the frame cannot be read then; else openDataset() throws.
     bool tolerate_missing = false;
     BagTopicNames topics{};  ///< of bags
+    FolderChoice folder{};   ///< of folders
 };
 
 /// An RGB-D dataset in a folder or a bag, read frame by frame.
@@ -77,8 +79,8 @@ class DatasetReader {
     const DatasetDescription& description() const { return description_; }
     const PinholeCamera& camera() const { return description_.camera; }
     const PinholeCamera& depthCamera() const;  ///< of the depth images; mostly camera(), too
-    double depthScale() const { return description_.depth_scale; }  ///< PNG units per metre
-    float depthUnit() const;                                        ///< metres per PNG unit
+    double depthScale() const { return description_.depth_scale; }  ///< units per metre of readDepth()
+    float depthUnit() const;                                        ///< metres per unit
     const GroundTruth& groundTruth() const { return description_.ground_truth; }
     const std::vector<ImuSample>& imu() const { return description_.imu; }
 
@@ -91,7 +93,7 @@ class DatasetReader {
     const DatasetEntry& entry(std::size_t i) const { return description_.frames.at(i); }
 
     /// Depth as stored, in the depth camera's pixels: CV_16UC1 of depthScale() units per metre, 0 where
-    /// unknown (whatever the description's value for that is).
+    /// unknown (whatever the description's value for that is). Images of floats are rounded to 0.2 mm.
     /// @throws std::runtime_error when frame i's depth is unreadable or of another size.
     cv::Mat readDepth(std::size_t i) const;
 
@@ -106,6 +108,9 @@ class DatasetReader {
     /// still are usable.
     RgbdFrame readFrame(std::size_t i) const;
 
+    /// Once read: what was lost; one line or empty.
+    std::string warning() const;
+
     /// The camera with its source; how the images were matched; then a line for every note, the ground truth
     /// and the inertial samples.
     std::string summary() const;
@@ -118,10 +123,14 @@ class DatasetReader {
     void checkSize(const cv::Mat& image, const PinholeCamera& camera, const std::string& file) const;
     void checkFiles(bool tolerate_missing);
     void checkDepthScale();
-    void noteFacts(double median_depth);
+    void settleDepthScale(const cv::Mat& first, const std::string& file);
+    void noteFacts(const cv::Mat& depth, double median_depth);
 
     DatasetDescription description_;
     Pose T_colour_depth_ = Pose::Identity();  ///< of the registration
+    double floats_per_metre_ = 0;             ///< of depth images of floats; 0: they are of 16 bits
+    mutable std::vector<std::size_t>
+        too_far_;  ///< of each frame's depths, once read: those that 16 bits cannot hold
 };
 
 /// Opens a dataset folder or a bag. @param options.format  "auto" or one of datasetFormats()

@@ -57,6 +57,27 @@ std::string likelyDepthScales(double median_units) {
     return text;
 }
 
+cv::Mat depthInUnits(const cv::Mat& depth, double units, std::size_t& too_far) {
+    cv::Mat out(depth.size(), CV_16UC1);
+    too_far = 0;
+    for (int v = 0; v < depth.rows; v++) {
+        const auto* from = depth.ptr<float>(v);
+        auto* to = out.ptr<std::uint16_t>(v);
+        for (int u = 0; u < depth.cols; u++) {
+            const double value = std::round(static_cast<double>(from[u]) * units);
+            const bool fits = value <= 65535;
+            if (std::isfinite(value) && !fits) too_far++;
+            to[u] = value > 0 && fits ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
+        }
+    }
+    return out;
+}
+
+std::string tooFarText(std::size_t count) {
+    return std::to_string(count) +
+           " depth values beyond 13.107 m do not fit into 16 bits and are now unknown";
+}
+
 std::string depthScaleFault(const RgbdFrame& frame) {
     constexpr double kFactors[] = {0.0002, 0.001, 0.01, 0.1, 0.2, 5, 10, 100, 1000, 5000};
     const double median = medianDepth(frame.depth);

@@ -19,6 +19,14 @@ bool isPlausibleMedianDepth(double metres);
 /// 2 m first, and "" where none is.
 std::string likelyDepthScales(double median_units);
 
+/// Depths in floats as 16-bit units, rounded; what is no depth becomes 0, and so does what 16 bits cannot
+/// hold.
+/// @param depth  CV_32FC1. @param too_far  is set to how many were beyond
+cv::Mat depthInUnits(const cv::Mat& depth, double units, std::size_t& too_far);
+
+/// In words: so many depths were beyond 13.107 m.
+std::string tooFarText(std::size_t count);
+
 /// Empty when the depth of a frame is of a plausible scale (or there is none), else one line that says by
 /// which factor it is likely to be wrong.
 std::string depthScaleFault(const RgbdFrame& frame);

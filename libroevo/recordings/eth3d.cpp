@@ -1,35 +1,21 @@
 #include "recordings/eth3d.h"
 
 #include <filesystem>
-#include <opencv2/core.hpp>
 #include <stdexcept>
 
 #include "recordings/camera_file.h"
+#include "recordings/given_camera.h"
 #include "recordings/image_lists.h"
 #include "recordings/sensor_files.h"
 #include "recordings/text_list.h"
 #include "recordings/tum.h"
-#include "roevo_mrpt/image_conversions.h"
 
 namespace fs = std::filesystem;
 
 namespace roevo {
 namespace {
 
-/// Size of the first image that can be decoded. @throws the first one's fault when none can
-cv::Size imageSize(const std::vector<DatasetEntry>& frames) {
-    std::string fault;
-    for (const DatasetEntry& frame : frames) {
-        try {
-            return readColourFile(frame.image).size();
-        } catch (const std::runtime_error& error) {
-            if (fault.empty()) fault = error.what();
-        }
-    }
-    throw std::runtime_error(fault);
-}
-
-CameraDescription readCalibration(const std::string& file, const std::vector<DatasetEntry>& frames) {
+CameraDescription readCalibration(const std::string& file) {
     if (!fs::exists(file))
         throw std::runtime_error(
             "no intrinsics: calibration.txt is missing, which ETH3D SLAM sequences have "
@@ -43,12 +29,7 @@ CameraDescription readCalibration(const std::string& file, const std::vector<Dat
     PinholeCamera& camera = out.camera;
     double* const values[] = {&camera.fx, &camera.fy, &camera.cx, &camera.cy};
     for (std::size_t i = 0; i < 4; i++) *values[i] = parseNumber(lines[0].words[i], where);
-    const cv::Size size = imageSize(frames);
-    camera.width = size.width;
-    camera.height = size.height;
-    if (const std::string fault = camera.check(); !fault.empty())
-        throw std::runtime_error(where + ": " + fault);
-    out.source = "calibration.txt, size from the images";
+    out.source = "calibration.txt";
     return out;
 }
 
@@ -71,17 +52,17 @@ DatasetDescription loadEth3d(const std::string& folder_name, const DatasetOption
     out.format = "eth3d";
     const bool has_lists = fs::exists(folder / "rgb.txt") && fs::exists(folder / "depth.txt");
     if (fs::exists(folder / "associated.txt")) {
-        readAssociations(folder_name, "associated.txt", options.max_time_difference, out);
+        readAssociations("associated.txt", options.max_time_difference, out);
     } else if (has_lists) {
-        matchLists(folder_name, "rgb.txt", "depth.txt", options.max_time_difference, out);
+        matchLists("rgb.txt", "depth.txt", options.max_time_difference, out);
     } else {
         throw std::runtime_error(folder_name +
                                  " has no associated.txt, nor both rgb.txt and depth.txt: get the RGB-D part "
                                  "of the sequence, too");
     }
     finishFrames(out);
-    const auto given = cameraFileIn(folder_name);
-    setCamera(given ? *given : readCalibration((folder / "calibration.txt").string(), out.frames), out);
+    const auto given = givenCamera(folder_name, options.folder);
+    setCamera(given ? *given : readCalibration((folder / "calibration.txt").string()), out);
     out.ground_truth = readGroundTruth((folder / "groundtruth.txt").string());
     readImu((folder / "imu.txt").string(), out);
     return out;

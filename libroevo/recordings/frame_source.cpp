@@ -13,6 +13,7 @@
 #include "recordings/bags/message_store.h"
 #include "recordings/dataset_reader.h"
 #include "recordings/depth_scale.h"
+#include "recordings/facts.h"
 #include "recordings/sensor_files.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
@@ -41,7 +42,7 @@ void decodeInto(SourceFrame& frame, const Decode& decode) {
 
 class DatasetSource : public FrameSource {
   public:
-    DatasetSource(const std::string& path, const BagTopicNames& topics) : reader_(open(path, topics)) {}
+    DatasetSource(const std::string& path, const InputChoice& choice) : reader_(open(path, choice)) {}
 
     bool next(SourceFrame& frame) override {
         if (index_ >= reader_.size()) return false;
@@ -63,16 +64,14 @@ class DatasetSource : public FrameSource {
         return notes;
     }
     std::size_t size() const override { return reader_.size(); }
-    std::string warning() const override {
-        const auto& images = reader_.description().images;
-        return images ? images->warning() : std::string();
-    }
+    std::string warning() const override { return reader_.warning(); }
 
   private:
-    static DatasetReader open(const std::string& path, const BagTopicNames& topics) {
+    static DatasetReader open(const std::string& path, const InputChoice& choice) {
         DatasetOptions options;
         options.tolerate_missing = true;  // such frames are rejected with the reason, the others tracked
-        options.topics = topics;
+        options.topics = choice.topics;
+        options.folder = choice.folder;
         return openDataset(path, options);
     }
 
@@ -85,7 +84,10 @@ class RawlogSource : public FrameSource {
     RawlogSource(const std::string& path, const std::string& sensor_label)
         : path_(path), reader_(path, sensor_label), scan_(reader_.next()) {
         // next() throws by itself when there is no scan at all.
-        if (scan_) camera_ = colourCameraOf(*scan_);
+        if (!scan_) return;
+        camera_ = colourCameraOf(*scan_);
+        following_ = reader_.next();
+        noteFacts();
     }
 
     bool next(SourceFrame& frame) override {
@@ -102,7 +104,7 @@ class RawlogSource : public FrameSource {
         frame.camera_on_robot.reset();
         if (frame.fault.empty()) frame.camera_on_robot = cameraOnRobot(*scan_);
         const auto start = std::chrono::steady_clock::now();
-        scan_ = reader_.next();  // reading from the file belongs to decoding, too
+        advance();  // reading from the file belongs to decoding, too
         frame.ms_decode +=
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
         frame.progress = reader_.progress();
@@ -110,7 +112,7 @@ class RawlogSource : public FrameSource {
     }
     bool skip() override {
         if (!scan_) return false;
-        scan_ = reader_.next();
+        advance();
         return true;
     }
 
@@ -124,15 +126,35 @@ class RawlogSource : public FrameSource {
         beside.replace_filename(beside.stem().string() + "_groundtruth.txt");
         return readGroundTruth(beside.string());
     }
-    std::vector<std::string> notes() const override { return {}; }
+    std::vector<std::string> notes() const override { return notes_; }
     std::size_t size() const override { return 0; }
     std::string warning() const override { return reader_.report().warning(); }
 
   private:
+    void advance() {
+        scan_ = std::move(following_);
+        following_ = scan_ ? reader_.next() : nullptr;
+    }
+
+    /// Of the first frame, if that can be read.
+    void noteFacts() {
+        try {
+            const RgbdFrame frame = toRgbdFrame(*scan_);
+            const cv::Size depth(static_cast<int>(scan_->rangeImage.cols()),
+                                 static_cast<int>(scan_->rangeImage.rows()));
+            const double step =
+                following_ ? fromMrptTime(following_->timestamp) - fromMrptTime(scan_->timestamp) : 0;
+            notes_.push_back(factsText(0, camera_, depth, step, medianDepth(frame.depth)));
+        } catch (const std::exception& e) {
+            if (isOutOfMemory(e)) throw;  // what is wrong with it is said when its turn comes
+        }
+    }
+
     std::string path_;
     RawlogReader reader_;
-    std::shared_ptr<mrpt::obs::CObservation3DRangeScan> scan_;
+    std::shared_ptr<mrpt::obs::CObservation3DRangeScan> scan_, following_;
     PinholeCamera camera_;
+    std::vector<std::string> notes_;
 };
 
 }  // namespace
@@ -147,8 +169,10 @@ std::unique_ptr<FrameSource> openSource(const std::string& input, const InputCho
     if (is_dataset && !choice.sensor_label.empty())
         throw UsageError("--sensor-label is for rawlogs, and " + input + " is a " +
                          (isBag(input) ? "bag" : "folder"));
-    if (is_dataset) return std::make_unique<DatasetSource>(input, choice.topics);
+    if (is_dataset) return std::make_unique<DatasetSource>(input, choice);
     if (choice.topics.any()) throw UsageError("topics are for bags, and " + input + " is none");
+    if (const auto given = choice.folder.options(); !given.empty())
+        throw UsageError(given[0].first + " is for folders, and " + input + " is none");
     return std::make_unique<RawlogSource>(input, choice.sensor_label);
 }
 

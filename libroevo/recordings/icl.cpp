@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "recordings/camera_file.h"
+#include "recordings/given_camera.h"
 #include "recordings/handedness.h"
 #include "recordings/image_lists.h"
 #include "recordings/numbered_files.h"
@@ -63,7 +63,7 @@ bool isSurelyIcl(const fs::path& folder) {
 }
 
 CameraDescription findCamera(const std::string& folder, const DatasetOptions& options) {
-    if (const auto given = cameraFileIn(folder)) return *given;
+    if (const auto given = givenCamera(folder, options.folder)) return *given;
     if (options.format != "icl" && !isSurelyIcl(folder))
         throw std::runtime_error("no intrinsics: " + folder +
                                  " counts frames as ICL-NUIM does, but nothing else says that it is: write "
@@ -143,7 +143,7 @@ DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions&
     out.folder = folder_name;
     out.format = "icl";
     if (fs::exists(folder / "associations.txt")) {
-        readAssociations(folder_name, "associations.txt", options.max_time_difference, out);
+        readAssociations("associations.txt", options.max_time_difference, out);
         for (const DatasetEntry& frame : out.frames)
             if (!isWhole(frame.timestamp) || !isWhole(frame.depth_timestamp))
                 throw std::runtime_error((folder / "associations.txt").string() +
@@ -154,7 +154,10 @@ DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions&
             frame.depth_timestamp /= kRate;
         }
     } else if (fs::is_directory(folder / "rgb") && fs::is_directory(folder / "depth")) {
-        pairByName(folder / "rgb", folder / "depth", kRate, out);
+        const NamedImages colours = imagesIn(folder / "rgb"), depths = imagesIn(folder / "depth");
+        requireImages(colours, (folder / "rgb").string());
+        requireImages(depths, (folder / "depth").string());
+        pairByName(colours, depths, kRate, options.max_time_difference, out);
         out.notes.push_back("no associations.txt: colour and depth were paired by file name");
     } else {
         throw std::runtime_error(folder_name + " has no associations.txt, nor rgb/ and depth/");

@@ -9,24 +9,19 @@
 
 #include "evaluation/association.h"
 #include "recordings/text_list.h"
+#include "recordings/time_units.h"
 #include "roevo_mrpt/time_conversions.h"
 
 namespace fs = std::filesystem;
 
 namespace roevo {
 
-void matchLists(const std::string& folder_name, const std::string& colour_list, const std::string& depth_list,
-                double max_difference, DatasetDescription& out) {
-    const fs::path folder(folder_name);
-    const auto colours = readStampedList((folder / colour_list).string(), out.association);
-    const auto depths = readStampedList((folder / depth_list).string(), out.association);
-    for (const auto& [list, name] : {std::pair(&colours, &colour_list), {&depths, &depth_list}})
-        if (list->empty()) throw std::runtime_error((folder / *name).string() + " lists no images");
+void matchEntries(const std::vector<ListEntry>& colours, const std::vector<ListEntry>& depths,
+                  double max_difference, DatasetDescription& out) {
     const auto colour = stampsOf(colours), depth = stampsOf(depths);
     for (const StampMatch& match : associateStamps(colour, depth, max_difference)) {
         const ListEntry &c = colours[match.first], &d = depths[match.second];
-        out.frames.push_back(
-            {c.timestamp, d.timestamp, (folder / c.file).string(), (folder / d.file).string()});
+        out.frames.push_back({c.timestamp, d.timestamp, c.file, d.file});
     }
     if (out.frames.empty()) {
         char text[200];
@@ -34,28 +29,54 @@ void matchLists(const std::string& folder_name, const std::string& colour_list, 
                       ": no colour image has a depth image within %g s (%zu colour, %zu depth images, "
                       "closest pair %.3g s apart)",
                       max_difference, colour.size(), depth.size(), smallestDifference(colour, depth));
-        throw std::runtime_error(folder.string() + text);
+        throw std::runtime_error(out.folder + text);
     }
     out.association.dropped_colour = colour.size() - out.frames.size();
     out.association.dropped_depth = depth.size() - out.frames.size();
 }
 
-void readAssociations(const std::string& folder_name, const std::string& file_name, double max_difference,
-                      DatasetDescription& out) {
+void matchLists(const std::string& colour_list, const std::string& depth_list, double max_difference,
+                DatasetDescription& out) {
+    const auto read = [&](const std::string& name) {
+        const std::string file = (fs::path(out.folder) / name).string();
+        auto entries = readStampedList(file, out.association);
+        if (entries.empty()) throw std::runtime_error(file + " lists no images");
+        for (ListEntry& entry : entries) entry.file = (fs::path(out.folder) / entry.file).string();
+        return entries;
+    };
+    const auto colours = read(colour_list), depths = read(depth_list);
+    matchEntries(colours, depths, max_difference, out);
+}
+
+namespace {
+
+DatasetEntry pairOn(const TextLine& line, const fs::path& folder, const std::string& where) {
+    if (line.words.size() != 4)
+        throw std::runtime_error(where + ": expected 'timestamp image timestamp depth_image'");
+    DatasetEntry entry{parseNumber(line.words[0], where), parseNumber(line.words[2], where),
+                       (folder / parseFileName(line.words[1], where)).string(),
+                       (folder / parseFileName(line.words[3], where)).string()};
+    if (line.words[1].find("depth") != std::string::npos &&
+        line.words[3].find("depth") == std::string::npos) {
+        std::swap(entry.timestamp, entry.depth_timestamp);
+        std::swap(entry.image, entry.depth);
+    }
+    return entry;
+}
+
+}  // namespace
+
+void readAssociations(const std::string& file_name, double max_difference, DatasetDescription& out) {
+    const std::string file = (fs::path(out.folder) / file_name).string();
+    std::vector<DatasetEntry> pairs;
+    for (const TextLine& line : readTable(file))
+        pairs.push_back(pairOn(line, out.folder, file + ":" + std::to_string(line.number)));
+    if (pairs.empty()) throw std::runtime_error(file + " lists no images");
+    const double unit = out.format == "icl" ? 1 : unitOfStamps(stampsOf(pairs));  // which counts frames
     double closest = INFINITY;
-    const fs::path folder(folder_name), file = folder / file_name;
-    for (const TextLine& line : readTextLines(file.string())) {
-        const std::string where = file.string() + ":" + std::to_string(line.number);
-        if (line.words.size() != 4)
-            throw std::runtime_error(where + ": expected 'timestamp image timestamp depth_image'");
-        DatasetEntry entry{parseNumber(line.words[0], where), parseNumber(line.words[2], where),
-                           (folder / parseFileName(line.words[1], where)).string(),
-                           (folder / parseFileName(line.words[3], where)).string()};
-        if (line.words[1].find("depth") != std::string::npos &&
-            line.words[3].find("depth") == std::string::npos) {
-            std::swap(entry.timestamp, entry.depth_timestamp);
-            std::swap(entry.image, entry.depth);
-        }
+    for (DatasetEntry& entry : pairs) {
+        entry.timestamp /= unit;
+        entry.depth_timestamp /= unit;
         const double difference = std::abs(entry.timestamp - entry.depth_timestamp);
         closest = std::min(closest, difference);
         if (difference > max_difference) {
@@ -66,11 +87,10 @@ void readAssociations(const std::string& folder_name, const std::string& file_na
         out.frames.push_back(std::move(entry));
     }
     if (!out.frames.empty()) return;
-    if (std::isinf(closest)) throw std::runtime_error(file.string() + " lists no images");
     char text[120];
     std::snprintf(text, sizeof text, ": no pair is within %g s, the closest is %.3g s apart", max_difference,
                   closest);
-    throw std::runtime_error(file.string() + text);
+    throw std::runtime_error(file + text);
 }
 
 void finishFrames(DatasetDescription& out) {
@@ -80,6 +100,7 @@ void finishFrames(DatasetDescription& out) {
         frame.depth_timestamp = roundToMicroseconds(frame.depth_timestamp);
     }
     sortByTime(out.frames, report);
+    report.largest_difference = report.largest_gap = 0;
     for (std::size_t i = 0; i < out.frames.size(); i++) {
         const DatasetEntry& frame = out.frames[i];
         report.largest_difference =

@@ -29,6 +29,7 @@ constexpr TopicOption kOptions[] = {
 void addInputOptions(CLI::App& app, InputChoice& choice) {
     app.add_option(kSensorLabel, choice.sensor_label, "Rawlogs with several cameras: which one");
     addTopicOptions(app, choice.topics);
+    addFolderOptions(app, choice.folder);
 }
 
 void addTopicOptions(CLI::App& app, BagTopicNames& topics) {
@@ -42,6 +43,7 @@ std::vector<std::pair<std::string, std::string>> chosenOptions(const InputChoice
     for (const TopicOption& option : kOptions)
         if (!(choice.topics.*option.topic).empty())
             out.emplace_back(option.name, choice.topics.*option.topic);
+    for (auto& option : choice.folder.options()) out.push_back(std::move(option));
     return out;
 }
 

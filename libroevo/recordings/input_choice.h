@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "recordings/bags/topic_names.h"
+#include "recordings/folder_choice.h"
 
 namespace CLI {
 class App;
@@ -11,13 +12,15 @@ class App;
 
 namespace roevo {
 
-/// Which frames of an input to read, where it has several cameras.
+/// What a user says of an input: which frames, where it has several cameras; and what it does not tell
+/// itself.
 struct InputChoice {
     std::string sensor_label;  ///< rawlogs: only this sensor; empty: the first with range images
     BagTopicNames topics;      ///< bags: those that are not to be found by themselves
+    FolderChoice folder;       ///< folders: what is not in them, or wrong there
 };
 
-/// The options --sensor-label and those of addTopicOptions().
+/// The options --sensor-label and those of addTopicOptions() and addFolderOptions().
 void addInputOptions(CLI::App& app, InputChoice& choice);
 
 /// The options by which the topics of bags are chosen: --colour-topic, --depth-topic, --info-topic,

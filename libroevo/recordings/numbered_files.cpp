@@ -4,61 +4,87 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <stdexcept>
+#include <vector>
+
+#include "evaluation/association.h"
+#include "recordings/image_lists.h"
+#include "recordings/time_units.h"
 
 namespace fs = std::filesystem;
 
 namespace roevo {
 namespace {
 
+constexpr double kFirstStamp = 1e9;    // of ten digits: no recording has so many frames
+constexpr double kLargestStep = 1000;  // frames that are left out between two
+
 bool isDigit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/// Image files by name without ending. Hidden files (of file managers) are none.
-std::map<std::string, std::string> imagesIn(const fs::path& folder) {
-    std::map<std::string, std::string> images;
-    std::error_code fault;
-    const fs::directory_iterator entries(folder, fault);
-    if (fault) throw std::runtime_error("cannot read folder " + folder.string() + ": " + fault.message());
-    for (const auto& entry : entries) {
-        std::string ending = entry.path().extension().string();
-        std::transform(ending.begin(), ending.end(), ending.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        const bool image = ending == ".png" || ending == ".jpg" || ending == ".jpeg" || ending == ".ppm" ||
-                           ending == ".pgm" || ending == ".tif" || ending == ".tiff" || ending == ".bmp";
-        if (image && entry.path().filename().string().front() != '.')
-            images[entry.path().stem().string()] = entry.path().string();
+struct NamedNumber {
+    double value = 0;
+    bool decimal = false;
+};
+
+/// Where the digits begin that end before `end`.
+std::size_t beginOfDigits(const std::string& name, std::size_t end) {
+    while (end > 0 && isDigit(name[end - 1])) end--;
+    return end;
+}
+
+/// The last number in a name, with its decimals. Seconds and nanoseconds of a stamp ("1305031453_359684000")
+/// are one.
+std::optional<NamedNumber> lastNumber(const std::string& name) {
+    constexpr std::size_t kSeconds = 10, kNanoseconds = 9, kLongest = 60;  // digits
+    std::size_t end = name.size();
+    while (end > 0 && !isDigit(name[end - 1])) end--;
+    std::size_t begin = beginOfDigits(name, end);
+    if (begin == end) return std::nullopt;
+    std::string digits = name.substr(begin, std::min(end - begin, kLongest));
+    NamedNumber out;
+    if (begin > 1) {
+        const std::size_t whole = beginOfDigits(name, begin - 1);
+        const char between = name[begin - 1];
+        out.decimal = whole < begin - 1 &&
+                      (between == '.' || ((between == '_' || between == '-') &&
+                                          begin - 1 - whole == kSeconds && end - begin == kNanoseconds));
+        if (out.decimal) digits = name.substr(whole, std::min(begin - 1 - whole, kLongest)) + "." + digits;
     }
-    if (images.empty()) throw std::runtime_error(folder.string() + " has no images in it");
-    return images;
+    out.value = std::stod(digits);
+    return out;
 }
 
-/// Digits, a point, digits.
-std::optional<double> decimalNumber(const std::string& word) {
-    const std::size_t point = word.find('.');
-    if (point == std::string::npos || point == 0 || point + 1 == word.size()) return std::nullopt;
-    for (std::size_t i = 0; i < word.size(); i++)
-        if (i != point && !isDigit(word[i])) return std::nullopt;
-    return std::stod(word);
-}
+/// One kind of image, ascending.
+struct Numbered {
+    std::vector<ListEntry> images;  ///< with the number where the time belongs
+    bool stamps = false;            ///< the numbers are times
 
-/// The digits that a name ends with.
-std::optional<long long> trailingNumber(const std::string& name) {
-    std::size_t begin = name.size();
-    while (begin > 0 && isDigit(name[begin - 1])) begin--;
-    return wholeNumber(name.substr(begin));
-}
+    Numbered(const NamedImages& files, AssociationReport& report) {
+        bool decimal = false;
+        for (const auto& [name, file] : files) {
+            const auto number = lastNumber(name);
+            if (!number)
+                throw std::runtime_error(file +
+                                         ": no time in its name: expected a number or a time in seconds");
+            decimal = decimal || number->decimal;
+            images.push_back({number->value, file});
+        }
+        // By name "10" comes before "9": that is no disorder of a list
+        std::stable_sort(images.begin(), images.end(),
+                         [](const ListEntry& a, const ListEntry& b) { return a.timestamp < b.timestamp; });
+        sortByTime(images, report);
+        const bool far_apart = images.size() > 1 && images.back().timestamp - images.front().timestamp >
+                                                        kLargestStep * static_cast<double>(images.size() - 1);
+        stamps = decimal || far_apart || images.back().timestamp >= kFirstStamp;
+    }
 
-constexpr long long kFirstStamp = 1000000000;  // of ten digits: no recording has so many frames
-constexpr double kYear2100 = 4.1e9;            // s
-
-double secondsFromStamp(long long stamp) {
-    double seconds = static_cast<double>(stamp), unit = 1;
-    while (seconds / unit > kYear2100) unit *= 1000;
-    return seconds / unit;
-}
+    void toSeconds(double rate) {
+        const double unit = stamps ? unitOfStamps(stampsOf(images)) : rate;
+        for (ListEntry& image : images) image.timestamp /= unit;
+    }
+};
 
 }  // namespace
 
@@ -72,44 +98,42 @@ std::optional<long long> wholeNumber(const std::string& word) {
     }
 }
 
-std::string pairByName(const fs::path& colour_folder, const fs::path& depth_folder, double rate,
-                       DatasetDescription& out) {
-    const auto colours = imagesIn(colour_folder), depths = imagesIn(depth_folder);
-    bool numbers = false, stamps = false;
-    for (const auto& [name, file] : colours) {
-        const auto depth = depths.find(name);
-        if (depth == depths.end()) continue;
-        DatasetEntry entry;
-        if (const auto seconds = decimalNumber(name)) {
-            entry.timestamp = *seconds;
-            stamps = true;
-        } else if (const auto number = trailingNumber(name)) {
-            const bool stamp = *number >= kFirstStamp;
-            entry.timestamp = stamp ? secondsFromStamp(*number) : static_cast<double>(*number) / rate;
-            (stamp ? stamps : numbers) = true;
-        } else {
-            throw std::runtime_error(file + ": no time in its name: expected a number or a time in seconds");
-        }
-        if (numbers && stamps)
-            throw std::runtime_error(file + ": some images are named by number, others by time");
-        entry.depth_timestamp = entry.timestamp;
-        entry.image = file;
-        entry.depth = depth->second;
-        out.frames.push_back(std::move(entry));
+NamedImages imagesIn(const fs::path& folder) {
+    NamedImages images;
+    std::error_code fault;
+    const fs::directory_iterator entries(folder, fault);
+    if (fault) throw std::runtime_error("cannot read folder " + folder.string() + ": " + fault.message());
+    constexpr const char* kEndings[] = {".png", ".jpg",  ".jpeg", ".ppm", ".pgm",
+                                        ".tif", ".tiff", ".bmp",  ".exr", ".npy"};
+    for (const auto& entry : entries) {
+        std::string ending = entry.path().extension().string();
+        std::transform(ending.begin(), ending.end(), ending.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        const bool image = std::find(std::begin(kEndings), std::end(kEndings), ending) != std::end(kEndings);
+        if (!image || entry.path().filename().string().front() == '.') continue;
+        const auto [at, fresh] = images.emplace(entry.path().stem().string(), entry.path().string());
+        if (!fresh) at->second = std::min(at->second, entry.path().string());  // in whatever order they come
     }
-    if (out.frames.empty())
-        throw std::runtime_error("no image in " + colour_folder.string() + " has the name of one in " +
-                                 depth_folder.string() + " (" +
-                                 fs::path(colours.begin()->second).filename().string() + ", " +
-                                 fs::path(depths.begin()->second).filename().string() + " …)");
-    out.association.dropped_colour = colours.size() - out.frames.size();
-    out.association.dropped_depth = depths.size() - out.frames.size();
-    // By name "10" comes before "9": that is no disorder of a list
-    std::stable_sort(out.frames.begin(), out.frames.end(),
-                     [](const DatasetEntry& a, const DatasetEntry& b) { return a.timestamp < b.timestamp; });
+    return images;
+}
+
+void requireImages(const NamedImages& images, const std::string& place) {
+    if (images.empty()) throw std::runtime_error(place + " has no images in it");
+}
+
+std::string pairByName(const NamedImages& colour_files, const NamedImages& depth_files, double rate,
+                       double max_difference, DatasetDescription& out) {
+    Numbered colours(colour_files, out.association), depths(depth_files, out.association);
+    if (colours.stamps != depths.stamps)
+        throw std::runtime_error(depths.images.front().file +
+                                 ": some images are named by number, others by time (" +
+                                 fs::path(colours.images.front().file).filename().string() + ")");
+    colours.toSeconds(rate);
+    depths.toSeconds(rate);
+    matchEntries(colours.images, depths.images, colours.stamps ? max_difference : 0, out);
     char text[100];
     std::snprintf(text, sizeof text, "times are frame numbers at %g Hz", rate);
-    return numbers ? text : "times are in the file names";
+    return colours.stamps ? "times are in the file names" : text;
 }
 
 }  // namespace roevo

@@ -1,7 +1,8 @@
 #pragma once
-/// Folders of numbered images, without lists.
+/// Folders of images whose names tell what belongs together and when it was, without lists.
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -12,14 +13,25 @@ namespace roevo {
 /// The number that a word of digits only stands for, padded with zeros or not.
 std::optional<long long> wholeNumber(const std::string& word);
 
-/// Pairs the images of two folders that have the same name (but for its ending) into `out.frames`, and counts
-/// those without a partner. The time is told by the name: "1305031453.359684" are seconds; whole numbers of
-/// at least ten digits are seconds, milli-, micro- or nanoseconds since 1970, whichever gives a year before
-/// 2100; smaller ones, also after other letters ("frame_0012"), are frames at `rate`.
+/// Image files by name without ending.
+using NamedImages = std::map<std::string, std::string>;
+
+/// The images of a folder (depth also as .npy and .exr); hidden files, of file managers, are none.
+/// @throws std::runtime_error when the folder cannot be read
+NamedImages imagesIn(const std::filesystem::path& folder);
+
+/// @param place  their folder, for the error. @throws std::runtime_error when there are none
+void requireImages(const NamedImages& images, const std::string& place);
+
+/// Pairs images by what their names tell into `out.frames`, and counts those without a partner. The last
+/// number in a name is its time: with a point in it ("1305031453.359684"), or of at least ten digits, or
+/// where neighbours are more than 1000 apart, in the unit that unitOfStamps() tells; such are paired by
+/// nearest time. Smaller ones ("frame_0012", "12.color") are frames at `rate`, and paired where they are the
+/// same.
 /// @param rate  Hz
 /// @return in words: what the names were taken for
-/// @throws std::runtime_error when a folder is empty, nothing pairs, or a name holds no number
-std::string pairByName(const std::filesystem::path& colour_folder, const std::filesystem::path& depth_folder,
-                       double rate, DatasetDescription& out);
+/// @throws std::runtime_error when nothing pairs, or names hold no numbers or both kinds
+std::string pairByName(const NamedImages& colours, const NamedImages& depths, double rate,
+                       double max_difference, DatasetDescription& out);
 
 }  // namespace roevo

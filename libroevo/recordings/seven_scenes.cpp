@@ -1,17 +1,15 @@
 #include "recordings/seven_scenes.h"
 
-#include <Eigen/LU>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <stdexcept>
 
 #include "recordings/camera_file.h"
+#include "recordings/given_camera.h"
 #include "recordings/image_lists.h"
 #include "recordings/numbered_files.h"
-#include "recordings/text_list.h"
-#include "roevo_mrpt/time_conversions.h"
+#include "recordings/pose_files.h"
 
 namespace fs = std::filesystem;
 
@@ -20,7 +18,6 @@ namespace {
 
 constexpr double kRate = 30;  // Hz, of the Kinect
 constexpr double kUnitsPerMetre = 1000;
-constexpr double kRotationTolerance = 0.01;
 constexpr std::uint16_t kInvalidDepth = 65535;
 
 struct FrameFiles {
@@ -51,53 +48,27 @@ std::map<long long, FrameFiles> filesIn(const fs::path& folder) {
     return frames;
 }
 
-/// A rigid 4x4 matrix. @throws std::runtime_error
-Pose readPose(const std::string& file) {
-    std::vector<double> values;
-    for (const TextLine& line : readTextLines(file))
-        for (const std::string& word : line.words)
-            values.push_back(parseNumber(word, file + ":" + std::to_string(line.number)));
-    if (values.size() != 16)
-        throw std::runtime_error(file + ": expected a 4x4 matrix, found " + std::to_string(values.size()) +
-                                 " numbers");
-    const Eigen::Matrix4d matrix = Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
-    const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
-    if (!(rotation * rotation.transpose()).isApprox(Eigen::Matrix3d::Identity(), kRotationTolerance) ||
-        rotation.determinant() < 0)
-        throw std::runtime_error(file + ": the matrix is not a rotation and a translation");
-    Pose pose = Pose::Identity();
-    pose.setRotation(Eigen::Quaterniond(rotation).normalized().toRotationMatrix());
-    pose.translation() = matrix.topRightCorner<3, 1>();
-    return pose;
-}
-
 /// @param T_depth_colour  from the camera whose poses are wanted to the one that the files speak of
 void readPoses(const std::map<long long, FrameFiles>& frames, const Pose& T_depth_colour,
                DatasetDescription& out) {
-    GroundTruth& truth = out.ground_truth;
-    std::size_t unusable = 0, missing = 0;
-    std::string first_fault;
+    std::size_t missing = 0;
+    std::map<double, std::string> poses;
     for (const auto& [number, files] : frames) {
-        if (files.pose.empty()) {
-            if (!files.colour.empty() && !files.depth.empty()) missing++;
-            continue;
-        }
-        truth.file = out.folder;
-        try {
-            const Pose T_world_depth = readPose(files.pose);
-            truth.poses.push_back(
-                {roundToMicroseconds(static_cast<double>(number) / kRate), T_world_depth * T_depth_colour});
-        } catch (const std::runtime_error& error) {
-            if (unusable++ == 0) first_fault = error.what();
-        }
+        if (!files.pose.empty())
+            poses[static_cast<double>(number) / kRate] = files.pose;
+        else if (!files.colour.empty() && !files.depth.empty())
+            missing++;
     }
     if (missing > 0)
         out.notes.push_back(std::to_string(missing) + " of " + std::to_string(out.frames.size()) +
                             " frames have no frame-N.pose.txt: no ground truth for them");
+    GroundTruth& truth = out.ground_truth;
+    truth = readPoseFiles(poses, out.folder, T_depth_colour);
     if (truth.file.empty()) return;
-    truth.note = out.registration ? "KinectFusion's poses of the depth camera, moved to the colour camera"
+    const std::string whose = out.registration
+                                  ? "KinectFusion's poses of the depth camera, moved to the colour camera"
                                   : "taken as poses of the colour camera";
-    if (unusable > 0) truth.note += ", " + std::to_string(unusable) + " left out, first: " + first_fault;
+    truth.note = whose + (truth.note.empty() ? "" : ", " + truth.note);
 }
 
 }  // namespace
@@ -127,7 +98,7 @@ bool isSevenScenesFolder(const std::string& folder) {
     return false;
 }
 
-DatasetDescription loadSevenScenes(const std::string& folder, const DatasetOptions&) {
+DatasetDescription loadSevenScenes(const std::string& folder, const DatasetOptions& options) {
     DatasetDescription out;
     out.folder = folder;
     out.format = "7scenes";
@@ -145,15 +116,17 @@ DatasetDescription loadSevenScenes(const std::string& folder, const DatasetOptio
     out.notes.push_back("times are frame numbers at 30 Hz");
     out.invalid_depth = kInvalidDepth;
 
-    if (const auto given = cameraFileIn(folder)) {
+    if (const auto given = givenCamera(folder, options.folder)) {
         setCamera(*given, out);
-        out.notes.push_back("depth is taken as registered to colour, because there is a camera.txt");
+        if (!out.registration)
+            out.notes.push_back("depth is taken as registered to colour, because the camera is given: " +
+                                given->source);
     } else {
-        setCamera({sevenScenesColourCamera(),
-                   kUnitsPerMetre,
-                   {},
-                   "the customary 7-Scenes camera (assumed: the dataset publishes none for colour)"},
-                  out);
+        CameraDescription customary;
+        customary.camera = sevenScenesColourCamera();
+        customary.depth_scale = kUnitsPerMetre;
+        customary.source = "the customary 7-Scenes camera (assumed: the dataset publishes none for colour)";
+        setCamera(customary, out);
         out.registration = sevenScenesRegistration();
         out.notes.push_back(
             "depth is of the published depth camera f 585 c (320, 240) and registered to colour when a frame "

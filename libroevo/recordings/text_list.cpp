@@ -8,11 +8,34 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "evaluation/association.h"
 #include "input/excerpt.h"
 #include "input/regular_file.h"
 #include "programs/byte_order_mark.h"
+#include "recordings/time_units.h"
 
 namespace roevo {
+namespace {
+
+/// Words between blanks; between commas where the first word ends with one. What follows a '#' is none.
+std::vector<std::string> splitLine(std::string text) {
+    const std::size_t first = text.find_first_not_of(" \t");
+    const bool csv = text.find(',') != std::string::npos && text.find(',') < text.find_first_of(" \t", first);
+    if (csv) std::replace(text.begin(), text.end(), ',', ' ');
+    std::vector<std::string> out;
+    std::istringstream words(text);
+    for (std::string word; words >> word && word[0] != '#';) {
+        const bool quoted = csv && word.size() > 1 && word.front() == '"' && word.back() == '"';
+        out.push_back(quoted ? word.substr(1, word.size() - 2) : word);
+    }
+    return out;
+}
+
+bool hasDigit(const std::string& word) {
+    return word.find_first_of("0123456789") != std::string::npos;
+}
+
+}  // namespace
 
 std::vector<TextLine> readTextLines(const std::string& file) {
     requireRegularInput(file);
@@ -25,8 +48,7 @@ std::vector<TextLine> readTextLines(const std::string& file) {
     for (int number = 1; std::getline(in, text); number++) {
         TextLine line;
         line.number = number;
-        std::istringstream words(text);
-        for (std::string word; words >> word && word[0] != '#';) line.words.push_back(word);
+        line.words = splitLine(text);
         if (line.words.empty()) continue;
         lines.push_back(std::move(line));
     }
@@ -59,13 +81,22 @@ double parseNumber(const std::string& word, const std::string& where) {
     return value;
 }
 
+std::vector<TextLine> readTable(const std::string& file) {
+    auto lines = readTextLines(file);
+    if (lines.size() > 1 && std::none_of(lines[0].words.begin(), lines[0].words.end(), hasDigit))
+        lines.erase(lines.begin());
+    return lines;
+}
+
 std::vector<ListEntry> readStampedList(const std::string& file, AssociationReport& report) {
     std::vector<ListEntry> entries;
-    for (const TextLine& line : readTextLines(file)) {
+    for (const TextLine& line : readTable(file)) {
         const std::string where = file + ":" + std::to_string(line.number);
         if (line.words.size() < 2) throw std::runtime_error(where + ": expected 'timestamp filename'");
         entries.push_back({parseNumber(line.words[0], where), parseFileName(line.words[1], where)});
     }
+    const double unit = unitOfStamps(stampsOf(entries));
+    for (ListEntry& entry : entries) entry.timestamp /= unit;
     sortByTime(entries, report);
     return entries;
 }

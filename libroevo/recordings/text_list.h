@@ -14,10 +14,13 @@ struct TextLine {
     std::vector<std::string> words;
 };
 
-/// Lines with something on them, split at blanks; comments (whole lines or at a line's end), blank lines and
-/// carriage returns are dropped.
+/// Lines with something on them, split at blanks (at commas where one follows the first word); comments
+/// (whole lines or at a line's end), blank lines and carriage returns are dropped.
 /// @throws std::runtime_error when the file cannot be read.
 std::vector<TextLine> readTextLines(const std::string& file);
+
+/// readTextLines() without a first line that names the columns: there is no digit in it, and more follow.
+std::vector<TextLine> readTable(const std::string& file);
 
 /// The comment lines ('#') at the head of a file, or "" when there are none or no file.
 std::string readHeaderComments(const std::string& file);
@@ -48,7 +51,7 @@ void sortByTime(std::vector<Entry>& entries, AssociationReport& report) {
     entries.erase(last, entries.end());
 }
 
-/// "timestamp filename" lines after sortByTime().
+/// "timestamp filename" lines after sortByTime(); stamps in the unit that unitOfStamps() tells.
 /// @throws std::runtime_error with file and line number for a malformed line.
 std::vector<ListEntry> readStampedList(const std::string& file, AssociationReport& report);
 

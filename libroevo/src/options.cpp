@@ -44,7 +44,8 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
     return row.back();
 }
 
-/// How far a name is from meaning this option: typed wrong, without its section, or in another section.
+/// How far a name is from meaning this option: typed wrong, cut short, without its section, or in another
+/// section.
 std::size_t distanceFrom(const OptionField& field, std::string name) {
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::tolower(c)); });
@@ -52,8 +53,11 @@ std::size_t distanceFrom(const OptionField& field, std::string name) {
     const bool has_section = dot != std::string::npos;
     const std::string section = has_section ? name.substr(0, dot) : "",
                       key = name.substr(has_section ? dot + 1 : 0);
-    const std::size_t by_key =
-        editDistance(field.key, key) + (!has_section || section == field.section ? 0 : 1);
+    constexpr std::size_t kShortest = 3;  // of a beginning that stands for the whole
+    const bool begun = key.size() >= kShortest && field.key.compare(0, key.size(), key) == 0;
+    const std::size_t distance = editDistance(field.key, key);
+    const std::size_t by_key = (begun ? std::min<std::size_t>(1, distance) : distance) +
+                               (!has_section || section == field.section ? 0 : 1);
     return std::min(editDistance(field.name(), name), by_key);
 }
 

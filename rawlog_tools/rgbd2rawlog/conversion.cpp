@@ -92,8 +92,7 @@ void convertRecording(const char* program, const ConversionSettings& settings) {
     if (dataset.description().registration)
         std::printf("depth has a camera of its own: both cameras are written\n");
     printConverted(settings, result, dataset.description().sensor_label);
-    if (const auto& images = dataset.description().images; images && !images->warning().empty())
-        std::printf("%s\n", images->warning().c_str());
+    if (const std::string lost = dataset.warning(); !lost.empty()) std::printf("%s\n", lost.c_str());
     if (truth)
         std::printf("ground truth: %s\n", truth_path.c_str());
     else

@@ -53,6 +53,7 @@ std::optional<int> parse(int argc, char** argv, ConversionSettings& settings) {
                  "Read the rawlog back before it gets its name and compare every depth value, time stamp, "
                  "image, inertial sample and the intrinsics");
     addTopicOptions(app, settings.dataset.topics);
+    addFolderOptions(app, settings.dataset.folder);
     app.add_flag("--skip-bad", settings.convert.skip_bad,
                  "Leave out frames whose images cannot be used, instead of failing");
     app.footer(kFooter);

@@ -32,9 +32,9 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
     EXPECT_EQ(csv.substr(0, csv.find('\n') + 5),
               "timestamp,status,reason,keyframe,edges,points,matched_ratio,inliers,sigma_t_m,sigma_r_deg,"
               "ms_decode,ms_edges,ms_coarse,ms_fine,ms_total,ms_mapping,ms_waiting,"
-              "map_correction_m,map_correction_deg,map_reason\n100.");
+              "map_correction_m,map_correction_deg,map_reason,segment\n100.");
     ASSERT_EQ(rows().size(), 40u);
-    for (const auto& row : rows()) EXPECT_EQ(row.size(), 20u);
+    for (const auto& row : rows()) EXPECT_EQ(row.size(), 21u);
     EXPECT_EQ(status(0), "initialised");
     EXPECT_EQ(readTumTrajectory(output() + "/trajectory.txt").size(), 40u);
     EXPECT_EQ(readTumTrajectory(output() + "/trajectory_live.txt").size(), 40u);

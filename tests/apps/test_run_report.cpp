@@ -62,6 +62,35 @@ TEST(RunReport, LossesAreCountedOnceEach) {
     EXPECT_EQ(report.losses().pieces, 1U);
 }
 
+TEST(RunReport, SegmentsAreThePiecesOfTheTrajectory) {
+    RunReport report = trackedReport();  // at 10, 11 and 12 s
+    const auto add = [&](FrameStatus status) -> FrameResult& {
+        report.frames.emplace_back();
+        report.frames.back().result.status = status;
+        report.frames.back().result.timestamp = 9 + static_cast<double>(report.frames.size());
+        return report.frames.back().result;
+    };
+    report.keyframes = {{0, 10, {}}, {1, 15, {}}, {2, 16, {}}};
+    add(FrameStatus::kPredicted);
+    add(FrameStatus::kRejected);
+    add(FrameStatus::kInitialised);  // at 15 s
+    add(FrameStatus::kOk);
+    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 2, 2}));
+    EXPECT_EQ(report.losses().pieces, 2U);
+    add(FrameStatus::kOk).found_at = 0;
+    add(FrameStatus::kOk).found_at = 1;
+    add(FrameStatus::kInitialised);
+    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 2, 2, 1, 2, 3}));
+    add(FrameStatus::kOk).joined_at = 2;
+    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 2, 2, 1, 2, 2, 2}));
+    report.frames[5].result.joined_at = 0;
+    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1}));
+    EXPECT_EQ(report.losses().pieces, 1U);
+    const std::string csv = framesCsv(report);
+    EXPECT_NE(csv.find("map_reason,segment\n"), std::string::npos);
+    EXPECT_EQ(csv.substr(csv.size() - 3), ",1\n");
+}
+
 TEST(RunReport, AMapIsOnePieceWithWhatWasRecognisedInIt) {
     RunReport report = trackedReport();
     report.map_in = LoadedMap{"room.map", 5, false};

@@ -236,6 +236,24 @@ TEST(MapFileErrors, AreSaidInOneLine) {
     EXPECT_NE(faultOfLoading(unable, map).find("loss.recognise"), std::string::npos);
 }
 
+TEST(MapFileLens, KeepsALensOfMoreTerms) {
+    const std::vector<std::pair<std::array<double, 3>, LensModel>> lenses = {
+        {{0.01, 0.02, 0.03}, LensModel::kBrownConrady}, {{}, LensModel::kKannalaBrandt}};
+    for (const auto& [denominator, lens] : lenses) {
+        PinholeCamera camera = yesterday().camera;
+        camera.denominator = denominator;
+        camera.lens = lens;
+        Odometry odometry(camera, {});
+        for (const RgbdFrame& frame : yesterday().frames) (void)odometry.processFrame(frame);
+        const std::string map = mapOf(odometry);
+        Odometry same(camera, {}), plain(yesterday().camera, {});
+        EXPECT_EQ(load(same, map), static_cast<int>(odometry.keyframes().size()));
+        EXPECT_TRUE(mapOf(same) == map);
+        const std::string fault = faultOfLoading(plain, map);
+        EXPECT_NE(fault.find("another camera"), std::string::npos) << fault;
+    }
+}
+
 TEST(MapFileErrors, AMapComesBeforeAllElse) {
     Odometry odometry(yesterday().camera, {});
     EXPECT_THROW(mapOf(odometry), std::runtime_error) << "there is none yet";

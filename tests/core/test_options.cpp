@@ -180,6 +180,16 @@ TEST(Options, ARightKeyInTheWrongSectionIsFound) {
     }
 }
 
+TEST(Options, ABeginningStandsForTheWhole) {
+    OdometryOptions options;
+    for (const auto& [typed, meant] : {std::pair("keyframe.max_rot", "keyframe.max_rotation_deg"),
+                                       std::pair("keyframe.max_trans", "keyframe.max_translation"),
+                                       std::pair("mapping.semi_dense", "mapping.semi_dense_points")}) {
+        const std::string fault = setOption(options, typed, "1");
+        EXPECT_TRUE(contains(fault, std::string("closest is '") + meant + "'")) << fault;
+    }
+}
+
 TEST(Options, EquallyCloseKeysAreAllNamed) {
     OdometryOptions options;
     const std::string fault = setOption(options, "max_points", "1000");

@@ -100,20 +100,114 @@ TEST(PinholeCamera, PyramidOfOddSizesStaysAligned) {
     EXPECT_NEAR(pyramid.level(1).at<std::uint8_t>(37, 49), 10 + 98.5 + 74.5, 1.01);
 }
 
-TEST(PinholeCamera, LensIsThatOfOpenCv) {
-    const cv::Matx33d K(kCamera.fx, 0, kCamera.cx, 0, kCamera.fy, kCamera.cy, 0, 0, 1);
-    const std::vector<double> lens(kCamera.distortion.begin(), kCamera.distortion.end());
-    std::mt19937 random(2);
-    std::vector<cv::Point3d> points;
-    for (int i = 0; i < 500; ++i) {
-        points.emplace_back(uniform(random, -0.6, 0.6), uniform(random, -0.5, 0.5), 1.0);
+struct Lens {
+    const char* name;
+    PinholeCamera camera;
+    double
+        widest;  ///< normalised radius up to which it is tried; beyond, the first is undone to 0.01 px only
+};
+
+// A Kinect v1; the colour and the wide depth camera of an Azure Kinect (rational, as one of them was
+// calibrated); two fish-eyes, one of them without any term.
+const Lens kLenses[] = {
+    {"five", kCamera, 0.6},
+    {"rational",
+     {1280,
+      720,
+      605.9,
+      605.7,
+      638.7,
+      367.1,
+      {0.5163, -2.6274, 0.0006, -0.0002, 1.5198},
+      {0.3963, -2.4500, 1.4470}},
+     1.2},
+    {"wide",
+     {1024, 1024, 251.9, 252.0, 511.8, 517.1, {5.0622, 3.2881, 3e-5, 1e-4, 0.1714}, {5.3935, 4.9083, 0.8766}},
+     1.6},
+    {"fisheye",
+     {848,
+      800,
+      286.2,
+      286.3,
+      420.1,
+      403.2,
+      {-0.0091, 0.0474, -0.0460, 0.0092, 0},
+      {},
+      LensModel::kKannalaBrandt},
+     3},
+    {"equidistant", {640, 480, 300, 301, 320, 240, {}, {}, LensModel::kKannalaBrandt}, 5}};
+
+class AnyLens : public ::testing::TestWithParam<Lens> {
+  protected:
+    AnyLens() {
+        std::mt19937 random(2);
+        for (int i = 0; i < 500; ++i) {
+            const double angle = uniform(random, 0, 6.3), r = uniform(random, 0, GetParam().widest);
+            rays_.emplace_back(r * std::cos(angle), r * std::sin(angle));
+        }
+        rays_.emplace_back(0, 0);
     }
+    const PinholeCamera camera_ = GetParam().camera;
+    const bool fisheye_ = camera_.lens == LensModel::kKannalaBrandt;
+    const cv::Matx33d K_{camera_.fx, 0, camera_.cx, 0, camera_.fy, camera_.cy, 0, 0, 1};
+    std::vector<cv::Point2d> rays_;
+
+    std::vector<double> terms() const {
+        std::vector<double> out(camera_.distortion.begin(), camera_.distortion.end());
+        if (fisheye_) return {out.begin(), out.begin() + 4};
+        out.insert(out.end(), camera_.denominator.begin(), camera_.denominator.end());
+        return out;
+    }
+    Eigen::Vector2d ideal(const cv::Point2d& ray) const { return camera_.project({ray.x, ray.y, 1}); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Lenses, AnyLens, ::testing::ValuesIn(kLenses),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_P(AnyLens, IsThatOfOpenCv) {
     std::vector<cv::Point2d> expected;
-    cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), K, lens, expected);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Eigen::Vector2d pixel =
-            kCamera.distortPixel(kCamera.project({points[i].x, points[i].y, points[i].z}));
-        EXPECT_LT(std::hypot(pixel.x() - expected[i].x, pixel.y() - expected[i].y), 1e-9);
+    if (fisheye_) {
+        cv::fisheye::distortPoints(rays_, expected, K_, terms());
+    } else {
+        std::vector<cv::Point3d> points;
+        for (const cv::Point2d& ray : rays_) points.emplace_back(ray.x, ray.y, 1);
+        cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), K_, terms(), expected);
+    }
+    EXPECT_TRUE(camera_.isDistorted());
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+        const Eigen::Vector2d pixel = camera_.distortPixel(ideal(rays_[i]));
+        EXPECT_LT(std::hypot(pixel.x() - expected[i].x, pixel.y() - expected[i].y), 1e-9) << rays_[i];
+    }
+}
+
+TEST_P(AnyLens, IsUndoneAsOpenCvDoes) {
+    std::vector<cv::Point2d> pixels, expected;
+    for (const cv::Point2d& ray : rays_) {
+        const Eigen::Vector2d pixel = camera_.distortPixel(ideal(ray));
+        EXPECT_LT((camera_.undistortPixel(pixel) - ideal(ray)).norm(), 1e-4) << ray;
+        pixels.emplace_back(pixel.x(), pixel.y());
+    }
+    const cv::TermCriteria exact(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 500, 1e-12);
+    if (fisheye_)
+        cv::fisheye::undistortPoints(pixels, expected, K_, terms(), cv::noArray(), K_);
+    else
+        cv::undistortPoints(pixels, expected, K_, terms(), cv::noArray(), K_, exact);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const Eigen::Vector2d back = camera_.undistortPixel({pixels[i].x, pixels[i].y});
+        EXPECT_LT(std::hypot(back.x() - expected[i].x, back.y() - expected[i].y), 1e-3) << rays_[i];
+    }
+}
+
+// What unfoldedRadiusSquared() says is where the numeric slope of the radius changes its sign.
+TEST_P(AnyLens, UnfoldedRadiusIsWhereTheImageTurnsBack) {
+    PinholeCamera centred = camera_;
+    centred.distortion[2] *= fisheye_;  // tangential terms have no part in it
+    centred.distortion[3] *= fisheye_;
+    const auto seen = [&](double r) { return centred.distortPixel(centred.project({r, 0, 1})).x(); };
+    const double limit = std::sqrt(centred.unfoldedRadiusSquared());
+    for (double r = 0.005; r < limit - 0.02; r += 0.005) ASSERT_GT(seen(r + 1e-5), seen(r - 1e-5)) << r;
+    if (limit < 9.9) {
+        EXPECT_LT(seen(limit + 0.02), seen(limit + 0.01)) << limit;
     }
 }
 
@@ -124,6 +218,13 @@ TEST(PinholeCamera, UndistortedHasAnIdealLensAndNothingElseChanged) {
     EXPECT_NE(ideal, kCamera);
     ideal.distortion = kCamera.distortion;
     EXPECT_EQ(ideal, kCamera);
+    for (const Lens& lens : kLenses) {
+        PinholeCamera changed = lens.camera.undistorted();
+        EXPECT_FALSE(changed.isDistorted());
+        changed.distortion = lens.camera.distortion;
+        changed.denominator = lens.camera.denominator;
+        EXPECT_EQ(changed == lens.camera, lens.camera.lens == LensModel::kBrownConrady) << lens.name;
+    }
 }
 
 TEST(PinholeCamera, CheckNamesWhatIsWrongAndItsValue) {

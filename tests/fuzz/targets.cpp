@@ -6,6 +6,9 @@ const std::vector<Target>& targets() {
     static const std::vector<Target> all = {
         {"dataset_folder", runDatasetFolder, datasetFolderSeeds},
         {"camera_file", runCameraFile, cameraFileSeeds},
+        {"calibration_file", runCalibrationFile, calibrationFileSeeds},
+        {"array", runArray, arraySeeds},
+        {"other_folder", runOtherFolder, otherFolderSeeds},
         {"options", runOptions, optionsSeeds},
         {"trajectory", runTrajectory, trajectorySeeds},
         {"rawlog", runRawlog, rawlogSeeds},

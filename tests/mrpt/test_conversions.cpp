@@ -1,4 +1,6 @@
 #include <gtest/gtest.h>
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/serialization/CArchive.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -144,14 +146,21 @@ TEST(CameraConversions, UntouchedCameraHasNoIntrinsics) {
     EXPECT_NE(error.find("colour camera"), std::string::npos) << error;
 }
 
-TEST(CameraConversions, RefusesLensesItCannotRepresent) {
-    PinholeCamera pinhole{640, 480, 500, 500, 320, 240, {}};
-    mrpt::img::TCamera camera = toMrptCamera(pinhole, "a");
-    camera.setDistortionKannalaBrandt(0.1, 0, 0, 0);
-    EXPECT_NE(errorOf([&] { fromMrptCamera(camera, "depth camera"); }).find("fish-eye"), std::string::npos);
-    camera.setDistortionPlumbBob(0.1, 0, 0, 0);
-    camera.k4(0.2);
-    EXPECT_NE(errorOf([&] { fromMrptCamera(camera, "depth camera"); }).find("rational"), std::string::npos);
+TEST(CameraConversions, OtherLensesRoundTripThroughAFile) {
+    const PinholeCamera rational{
+        640, 480, 500, 501, 320, 240, {0.5, -2.6, 6e-4, -2e-4, 1.5}, {0.4, -2.4, 1.4}};
+    const PinholeCamera fisheye{
+        640, 480, 290, 291, 320, 240, {-0.01, 0.04, -0.03, 0.009, 0}, {}, LensModel::kKannalaBrandt};
+    for (const PinholeCamera& camera : {rational, fisheye}) {
+        mrpt::io::CMemoryStream stream;
+        auto archive = mrpt::serialization::archiveFrom(stream);
+        archive << toMrptCamera(camera, "a");
+        stream.Seek(0);
+        mrpt::img::TCamera read;
+        archive >> read;
+        EXPECT_EQ(fromMrptCamera(read, "colour camera"), camera);
+        EXPECT_NE(fromMrptCamera(read, "colour camera"), camera.undistorted());
+    }
 }
 
 TEST(ImageConversions, DepthIsTheFloatProduct) {

@@ -219,6 +219,28 @@ TEST_F(Bag2Rawlog, ARationalLensWithoutItsLastTermsIsAPlumbBob) {
     EXPECT_EQ(colourCameraOf(*all[0]).distortion[4], 0.3);
 }
 
+TEST_F(Bag2Rawlog, OtherLensesAreKept) {
+    const auto cameraWith = [&](const std::string& model, const std::vector<double>& terms) {
+        write([&](BagWriter& bag) {
+            auto info = infoMessage("rgb_optical", stampOf(0));
+            info.distortion_model = model;
+            info.D = terms;
+            bag.add(kColourInfo, info);
+            bag.colour(0);
+            bag.depth(0);
+        });
+        const auto all = scans();
+        return all.size() == 1 ? colourCameraOf(*all[0]) : PinholeCamera();
+    };
+    const PinholeCamera rational =
+        cameraWith("rational_polynomial", {0.1, -0.2, 0.001, 0.002, 0.3, 0.01, 0.02, 0.03});
+    EXPECT_EQ(rational.distortion, (std::array<double, 5>{0.1, -0.2, 0.001, 0.002, 0.3}));
+    EXPECT_EQ(rational.denominator, (std::array<double, 3>{0.01, 0.02, 0.03}));
+    const PinholeCamera fisheye = cameraWith("equidistant", {0.01, 0.02, 0.03, 0.04});
+    EXPECT_EQ(fisheye.lens, LensModel::kKannalaBrandt);
+    EXPECT_EQ(fisheye.distortion, (std::array<double, 5>{0.01, 0.02, 0.03, 0.04, 0}));
+}
+
 TEST_F(Bag2Rawlog, ReadsCompressedBags) {
     for (const auto compression : {rosbag::compression::BZ2, rosbag::compression::LZ4}) {
         write([&](BagWriter& bag) {

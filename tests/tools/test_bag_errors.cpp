@@ -192,10 +192,12 @@ TEST_F(Bag2RawlogErrors, UnusableIntrinsics) {
     expectRefusal({kColourInfo, "not calibrated"});
     withInfo([](auto& info) { info.K[0] = std::nan(""); });
     expectRefusal({kColourInfo});
-    withInfo([](auto& info) { info.distortion_model = "equidistant", info.D.resize(4); });
-    expectRefusal({kColourInfo, "equidistant", "plumb_bob"});
-    withInfo([](auto& info) { info.distortion_model = "rational_polynomial", info.D.resize(8, 0.1); });
-    expectRefusal({kColourInfo, "rational_polynomial"});
+    withInfo([](auto& info) { info.distortion_model = "omnidirectional"; });
+    expectRefusal({kColourInfo, "omnidirectional", "plumb_bob", "equidistant"});
+    withInfo([](auto& info) { info.distortion_model = "equidistant"; });
+    expectRefusal({kColourInfo, "equidistant", "5 coefficients"});
+    withInfo([](auto& info) { info.distortion_model = "rational_polynomial", info.D.resize(12, 0.1); });
+    expectRefusal({kColourInfo, "rational_polynomial", "12 coefficients"});
     withInfo([](auto& info) { info.width = 640, info.height = 480; });
     expectRefusal({kColourTopic, "40x32", "640x480"});
 }

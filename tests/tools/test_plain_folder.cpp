@@ -38,6 +38,11 @@ TEST(PlainFolder, NamesTellTheTime) {
     EXPECT_EQ(timesWithNames({"1305031453359"}), (Times{1305031453.359}));
     EXPECT_EQ(timesWithNames({"1305031453359684"}), (Times{1305031453.359684}));
     EXPECT_EQ(timesWithNames({"1305031453359684123"}), (Times{1305031453.359684}));
+    EXPECT_EQ(timesWithNames({"1305031453_359684123", "1305031454-000684123"}),
+              (Times{1305031453.359684, 1305031454.000684}));
+    EXPECT_EQ(timesWithNames({"a_Color_5000.25", "a_Color_5033.5"}), (Times{5.00025, 5.0335})) << "ms";
+    EXPECT_EQ(timesWithNames({"0012.color", "0015.color"}), (Times{0.4, 0.5}));
+    EXPECT_EQ(timesWithNames({"1000000", "1033333"}), (Times{1, 1.033333})) << "us of a device's clock";
 }
 
 TEST(PlainFolder, AnAssumedRateIsSaid) {
@@ -61,6 +66,14 @@ TEST(PlainFolder, NamesThatTellNoTime) {
     EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "other7.png");
     folder.remove("depth/other7.png");
     EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "depth has no images in it");
+}
+
+TEST(PlainFolder, MayBeNamedFromWhereOneIs) {
+    const SmallDataset folder("plain");
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.parent().path());
+    EXPECT_EQ(errorOf([] { openDataset("dataset").readFrame(2); }), "");
+    fs::current_path(before);
 }
 
 TEST(PlainFolder, NoCameraFileIsAnErrorAndNeverADefault) {

@@ -10,7 +10,14 @@ mrpt::img::TCamera toMrptCamera(const PinholeCamera& camera, const std::string& 
     out.nrows = static_cast<std::uint32_t>(camera.height);
     out.setIntrinsicParamsFromValues(camera.fx, camera.fy, camera.cx, camera.cy);
     const auto& d = camera.distortion;
-    if (camera.isDistorted()) out.setDistortionPlumbBob(d[0], d[1], d[2], d[3], d[4]);
+    if (camera.lens == LensModel::kKannalaBrandt) {
+        out.setDistortionKannalaBrandt(d[0], d[1], d[2], d[3]);
+    } else if (camera.isDistorted()) {
+        out.setDistortionPlumbBob(d[0], d[1], d[2], d[3], d[4]);
+        out.k4(camera.denominator[0]);
+        out.k5(camera.denominator[1]);
+        out.k6(camera.denominator[2]);
+    }
     out.cameraName = name;
     return out;
 }
@@ -30,14 +37,11 @@ PinholeCamera fromMrptCamera(const mrpt::img::TCamera& camera, const std::string
     out.cy = camera.cy();
     using mrpt::img::DistortionModel;
     if (camera.distortion == DistortionModel::plumb_bob) {
-        if (camera.k4() != 0 || camera.k5() != 0 || camera.k6() != 0)
-            throw std::runtime_error("the " + what +
-                                     " uses the rational lens model (k4, k5, k6), which is not supported");
         out.distortion = {camera.k1(), camera.k2(), camera.p1(), camera.p2(), camera.k3()};
-    } else if (camera.distortion != DistortionModel::none) {
-        throw std::runtime_error(
-            "the " + what +
-            " uses a fish-eye lens model, which is not supported: undistort the images first");
+        out.denominator = {camera.k4(), camera.k5(), camera.k6()};
+    } else if (camera.distortion == DistortionModel::kannala_brandt) {
+        out.distortion = {camera.k1(), camera.k2(), camera.k3(), camera.k4(), 0};
+        out.lens = LensModel::kKannalaBrandt;
     }
     if (const std::string fault = out.check(); !fault.empty())
         throw std::runtime_error("the intrinsics of the " + what + " are unusable: " + fault);

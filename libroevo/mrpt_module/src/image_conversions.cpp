@@ -1,6 +1,7 @@
 #include "roevo_mrpt/image_conversions.h"
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 
 #include "checked_memory.h"
 #include "image_file.h"
+#include "npy.h"
 
 namespace roevo {
 namespace {
@@ -44,6 +46,40 @@ cv::Mat asDepth(const Bytes& bytes, const std::string& file) {
     return depth;
 }
 
+bool startsWith(const Bytes& bytes, std::string_view head) {
+    return bytes.size() >= head.size() && std::memcmp(bytes.data(), head.data(), head.size()) == 0;
+}
+
+/// OpenCV reads EXR only where this is set before its first image of that kind.
+void allowExr() {
+    static const bool once = [] { return setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0) == 0; }();
+    (void)once;
+}
+
+/// The depth of an image whose channels all say the same, as some programs write it.
+cv::Mat onlyChannel(const cv::Mat& image) {
+    if (image.channels() == 1) return image;
+    std::vector<cv::Mat> channels;
+    cv::split(image, channels);
+    for (std::size_t i = 1; i < std::min<std::size_t>(3, channels.size()); i++)
+        if (cv::norm(channels[0], channels[i], cv::NORM_INF) != 0) return image;
+    return channels[0];
+}
+
+cv::Mat asAnyDepth(const Bytes& bytes, const std::string& file) {
+    if (startsWith(bytes, kNpyHead)) return decodeNpy(bytes, file);
+    const bool exr = startsWith(bytes, "\x76\x2f\x31\x01");
+    const bool tiff =
+        startsWith(bytes, std::string_view("II*\0", 4)) || startsWith(bytes, std::string_view("MM\0*", 4));
+    if (!exr && !tiff) return asDepth(bytes, file);
+    if (exr) allowExr();
+    const cv::Mat depth = onlyChannel(decode(bytes, file, cv::IMREAD_UNCHANGED));
+    if (depth.type() == CV_16UC1 || depth.type() == CV_32FC1) return depth;
+    throw std::runtime_error("depth image must hold 16-bit numbers or floats in one channel, but has " +
+                             std::to_string(8 * depth.elemSize1()) + " bits and " +
+                             std::to_string(depth.channels()) + " channel(s): " + file);
+}
+
 cv::Mat asColour(const Bytes& bytes, const std::string& file) {
     return decode(bytes, file, cv::IMREAD_ANYCOLOR);
 }
@@ -56,6 +92,10 @@ cv::Mat readColourFile(const std::string& file) {
 
 cv::Mat readDepthFile(const std::string& file) {
     return asDepth(readImageFile(file), file);
+}
+
+cv::Mat readAnyDepthFile(const std::string& file) {
+    return asAnyDepth(readImageFile(file), file);
 }
 
 cv::Mat decodeColour(std::string_view bytes, const std::string& name) {

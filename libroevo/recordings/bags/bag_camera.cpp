@@ -7,30 +7,18 @@
 #include "input/excerpt.h"
 #include "recordings/bags/inverse_lens.h"
 #include "recordings/bags/topic_choice.h"
+#include "recordings/lens.h"
 
 namespace roevo {
 namespace {
 
-/// The five terms of our lens model. A rational model with zeros in the rest of its terms is one, too.
-/// @param ideal  the camera without it
-std::array<double, 5> distortionOf(const CameraInfoMessage& message, const PinholeCamera& ideal) {
-    const auto& d = message.D;
-    const auto zero = [](double x) { return x == 0; };
-    if (std::all_of(d.begin(), d.end(), zero)) return {};
-    const std::string& model = message.distortion_model;
-    if (model == "Inverse Brown Conrady") return distortionOfInverse(ideal, d);
-    const bool plumb_bob = model == "plumb_bob" || model == "Brown Conrady";  // RealSense's name for it
-    const bool known = plumb_bob || (model == "rational_polynomial" && d.size() >= 5 &&
-                                     std::all_of(d.begin() + 5, d.end(), zero));
-    if (!known || d.size() > (plumb_bob ? 5u : d.size()))
-        throw std::runtime_error(
-            "lens model '" + excerpt(model) + "' with " + std::to_string(d.size()) +
-            " coefficients is not supported, only plumb_bob with up to five: undistort the "
-            "images first (image_proc), or record the rectified topic");
-    std::array<double, 5> out{};
-    std::copy(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, d.size())),
-              out.begin());
-    return out;
+void setDistortion(const CameraInfoMessage& message, PinholeCamera& camera) {
+    const bool inverse = message.distortion_model == "Inverse Brown Conrady";  // of RealSense
+    const auto zero = [](double k) { return k == 0; };
+    if (!inverse)
+        setLens(message.distortion_model, message.D, camera);
+    else if (!std::all_of(message.D.begin(), message.D.end(), zero))
+        camera.distortion = distortionOfInverse(camera, message.D);
 }
 
 }  // namespace
@@ -45,7 +33,7 @@ PinholeCamera cameraOf(const CameraInfoMessage& message, bool rectified) {
     } else {
         const auto& K = message.K;
         camera.fx = K[0], camera.cx = K[2], camera.fy = K[4], camera.cy = K[5];
-        if (camera.check().empty()) camera.distortion = distortionOf(message, camera);
+        if (camera.check().empty()) setDistortion(message, camera);
     }
     if (camera.fx == 0 || camera.fy == 0)
         throw std::runtime_error(std::string("the camera is not calibrated: ") + (rectified ? "P" : "K") +

@@ -8,8 +8,8 @@ namespace roevo {
 
 /// The camera of a CameraInfo message.
 /// @param rectified  the images are undistorted: P counts, and there is no distortion; else K and D
-/// @throws std::runtime_error in one line: not calibrated, or a lens model other than none, plumb_bob or its
-/// inverse.
+/// @throws std::runtime_error in one line: not calibrated, or a lens model that setLens() does not know and
+/// that is not the inverse of plumb_bob.
 PinholeCamera cameraOf(const CameraInfoMessage& message, bool rectified);
 
 struct BagCamera {

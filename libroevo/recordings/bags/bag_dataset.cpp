@@ -13,6 +13,7 @@
 #include "recordings/bags/frame_tree.h"
 #include "recordings/bags/image_messages.h"
 #include "recordings/bags/realsense.h"
+#include "recordings/depth_scale.h"
 #include "recordings/image_lists.h"
 #include "recordings/sensor_files.h"
 
@@ -73,9 +74,7 @@ class BagImages : public ImageStore {
 
     std::string warning() const override {
         const std::size_t all = std::accumulate(too_far_.begin(), too_far_.end(), std::size_t{0});
-        return all == 0 ? std::string()
-                        : std::to_string(all) +
-                              " depth values beyond 13.107 m do not fit into 16 bits and are now unknown";
+        return all == 0 ? std::string() : tooFarText(all);
     }
 
   private:

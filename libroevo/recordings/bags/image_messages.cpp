@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "input/excerpt.h"
+#include "recordings/depth_scale.h"
 #include "roevo_mrpt/image_conversions.h"
 
 namespace roevo {
@@ -57,21 +58,6 @@ cv::Mat converted(const cv::Mat& image, int code) {
     return out;
 }
 
-cv::Mat unitsOf(const cv::Mat& metres, std::size_t& too_far) {
-    cv::Mat depth(metres.size(), CV_16UC1);
-    for (int v = 0; v < metres.rows; v++) {
-        const auto* from = metres.ptr<float>(v);
-        auto* to = depth.ptr<std::uint16_t>(v);
-        for (int u = 0; u < metres.cols; u++) {
-            const double units = std::round(from[u] * kUnitsPerMetre);
-            const bool fits = units <= 65535;
-            if (std::isfinite(units) && !fits) too_far++;
-            to[u] = units > 0 && fits ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
-        }
-    }
-    return depth;
-}
-
 /// What image_transport calls compressedDepth: the kind of compression and two numbers, then a PNG. Of 32FC1
 /// that holds a / depth + b, rounded; 0 where there is no depth.
 cv::Mat compressedDepth(const CompressedImageMessage& message, const std::string& encoding,
@@ -89,7 +75,7 @@ cv::Mat compressedDepth(const CompressedImageMessage& message, const std::string
             const auto value = stored.at<std::uint16_t>(v, u);
             metres.at<float>(v, u) = value == 0 ? 0.f : a / (static_cast<float>(value) - b);
         }
-    return unitsOf(metres, too_far);
+    return depthInUnits(metres, kUnitsPerMetre, too_far);
 }
 
 }  // namespace
@@ -153,7 +139,7 @@ cv::Mat BagImage::depth(std::size_t& too_far) const {
         return ordered(viewOf(raw_, CV_16UC1), raw_.big_endian);
     if (encoding_ != "32FC1")
         throw std::runtime_error("encoding " + excerpt(encoding_) + " is no depth image");
-    return unitsOf(ordered(viewOf(raw_, CV_32FC1), raw_.big_endian), too_far);
+    return depthInUnits(ordered(viewOf(raw_, CV_32FC1), raw_.big_endian), kUnitsPerMetre, too_far);
 }
 
 }  // namespace roevo

@@ -8,18 +8,13 @@
 namespace roevo {
 namespace {
 
-/// Ideal normalised coordinates of every pixel of a (possibly distorted) camera, as CV_32FC2. Inverts the
-/// lens by fixed-point iteration, which converges for any lens whose image does not fold over itself.
+/// Ideal normalised coordinates of every pixel of a (possibly distorted) camera, as CV_32FC2.
 cv::Mat normalisedRays(const PinholeCamera& camera) {
     cv::Mat rays(camera.height, camera.width, CV_32FC2);
-    const bool distorted = camera.isDistorted();
     for (int v = 0; v < camera.height; ++v) {
         auto* row = rays.ptr<cv::Vec2f>(v);
         for (int u = 0; u < camera.width; ++u) {
-            Eigen::Vector2d ideal(u, v);
-            for (int i = 0; distorted && i < 20; ++i) {
-                ideal += Eigen::Vector2d(u, v) - camera.distortPixel(ideal);
-            }
+            const Eigen::Vector2d ideal = camera.undistortPixel(Eigen::Vector2d(u, v));
             row[u] = cv::Vec2f(static_cast<float>((ideal.x() - camera.cx) / camera.fx),
                                static_cast<float>((ideal.y() - camera.cy) / camera.fy));
         }
@@ -36,16 +31,6 @@ const cv::Mat& raysOf(const PinholeCamera& camera) {
         known = camera;
     }
     return rays;
-}
-
-/// Square of the normalised radius up to which the lens maps outward points farther out. Beyond, its
-/// polynomial folds back into the image and would put what the lens cannot see at all into its middle.
-double unfoldedRadiusSquared(const PinholeCamera& camera) {
-    const auto& [k1, k2, p1, p2, k3] = camera.distortion;
-    constexpr double kStep = 0.01, kFarthest = 100;
-    double r2 = 0;
-    while (r2 < kFarthest && 1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3)) > 0) r2 += kStep;
-    return r2;
 }
 
 void requireDepth(const cv::Mat& depth, const PinholeCamera& camera) {
@@ -68,7 +53,7 @@ cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
     requireDepth(depth, depth_camera);
     const cv::Mat& rays = raysOf(depth_camera);
     const bool distorted = colour_camera.isDistorted();
-    const double farthest = unfoldedRadiusSquared(colour_camera);
+    const double farthest = colour_camera.unfoldedRadiusSquared();
     cv::Mat registered(colour_camera.height, colour_camera.width, CV_32FC1, cv::Scalar(0));
     for (int v = 0; v < depth.rows; ++v) {
         for (int u = 0; u < depth.cols; ++u) {

@@ -1,18 +1,44 @@
 #include "roevo/camera/pinhole_camera.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 namespace roevo {
 
+namespace {
+
+/// Angle on the image of a fish-eye, in focal lengths, for an angle to the axis.
+double fisheyeAngle(const std::array<double, 5>& k, double theta) {
+    const double t2 = theta * theta;
+    return theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+}
+
+double fisheyeSlope(const std::array<double, 5>& k, double theta) {
+    const double t2 = theta * theta;
+    return 1 + t2 * (3 * k[0] + t2 * (5 * k[1] + t2 * (7 * k[2] + t2 * 9 * k[3])));
+}
+
+/// 1 + k1 r2 + k2 r2^2 + k3 r2^3 and its derivative by r2.
+struct Cubic {
+    double value, slope;
+    Cubic(double k1, double k2, double k3, double r2)
+        : value(1 + r2 * (k1 + r2 * (k2 + r2 * k3))), slope(k1 + r2 * (2 * k2 + r2 * 3 * k3)) {}
+};
+
+}  // namespace
+
 bool PinholeCamera::isDistorted() const {
-    return std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0; });
+    return lens == LensModel::kKannalaBrandt || isRational() ||
+           std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0; });
 }
 
 PinholeCamera PinholeCamera::undistorted() const {
     PinholeCamera ideal = *this;
     ideal.distortion.fill(0);
+    ideal.denominator.fill(0);
+    ideal.lens = LensModel::kBrownConrady;
     return ideal;
 }
 
@@ -33,10 +59,62 @@ Eigen::Vector2d PinholeCamera::distortPixel(const Eigen::Vector2d& ideal) const 
     const auto& [k1, k2, p1, p2, k3] = distortion;
     const double x = (ideal.x() - cx) / fx, y = (ideal.y() - cy) / fy;
     const double r2 = x * x + y * y;
-    const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+    if (lens == LensModel::kKannalaBrandt) {
+        const double r = std::sqrt(r2);
+        const double scale = r > 0 ? fisheyeAngle(distortion, std::atan(r)) / r : 1;
+        return {fx * scale * x + cx, fy * scale * y + cy};
+    }
+    double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+    if (isRational()) radial /= Cubic(denominator[0], denominator[1], denominator[2], r2).value;
     const double xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x);
     const double yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y;
     return {fx * xd + cx, fy * yd + cy};
+}
+
+Eigen::Vector2d PinholeCamera::undistortPixel(const Eigen::Vector2d& real) const {
+    if (!isDistorted()) return real;
+    constexpr int kSteps = 20;
+    if (lens == LensModel::kKannalaBrandt) {
+        const Eigen::Vector2d seen((real.x() - cx) / fx, (real.y() - cy) / fy);
+        const double angle = seen.norm();
+        if (angle == 0) return real;
+        double theta = angle;
+        for (int i = 0; i < kSteps; ++i)
+            theta -= (fisheyeAngle(distortion, theta) - angle) / fisheyeSlope(distortion, theta);
+        // At a right angle and beyond there is no such pixel
+        const double scale = theta < M_PI_2 ? std::tan(theta) / angle : std::nan("");
+        return {fx * scale * seen.x() + cx, fy * scale * seen.y() + cy};
+    }
+    Eigen::Vector2d ideal = real;
+    for (int i = 0; i < kSteps; ++i) ideal += real - distortPixel(ideal);
+    if (!isRational()) return ideal;
+    // Such lenses reach so far out that the fixed point is slow to come
+    for (int i = 0; i < kSteps; ++i) {
+        Eigen::Matrix2d J;
+        for (int axis = 0; axis < 2; ++axis) {
+            const Eigen::Vector2d step = 1e-3 * Eigen::Vector2d::Unit(axis);
+            J.col(axis) = (distortPixel(ideal + step) - distortPixel(ideal - step)) / 2e-3;
+        }
+        ideal += J.inverse() * (real - distortPixel(ideal));
+    }
+    return ideal;
+}
+
+double PinholeCamera::unfoldedRadiusSquared() const {
+    const auto& [k1, k2, p1, p2, k3] = distortion;
+    const auto& [k4, k5, k6] = denominator;
+    constexpr double kStep = 0.01, kFarthest = 100;
+    const auto unfolded = [&](double r2) {
+        if (lens == LensModel::kKannalaBrandt) return fisheyeSlope(distortion, std::atan(std::sqrt(r2))) > 0;
+        if (!isRational()) return 1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3)) > 0;
+        const Cubic above(k1, k2, k3, r2), below(k4, k5, k6, r2);
+        return below.value > 0 &&
+               above.value * below.value + 2 * r2 * (above.slope * below.value - above.value * below.slope) >
+                   0;
+    };
+    double r2 = 0;
+    while (r2 < kFarthest && unfolded(r2)) r2 += kStep;
+    return r2;
 }
 
 std::string PinholeCamera::check() const {
@@ -50,16 +128,18 @@ std::string PinholeCamera::check() const {
         fault << "camera: principal point (" << cx << ", " << cy << ") is outside the " << width << "x"
               << height << " image";
     } else {
-        for (const double k : distortion) {
-            if (!std::isfinite(k)) fault << "camera: a distortion coefficient is not finite";
-        }
+        const auto finite = [](double k) { return std::isfinite(k); };
+        if (!std::all_of(distortion.begin(), distortion.end(), finite) ||
+            !std::all_of(denominator.begin(), denominator.end(), finite))
+            fault << "camera: a distortion coefficient is not finite";
     }
     return fault.str();
 }
 
 bool PinholeCamera::operator==(const PinholeCamera& other) const {
     return width == other.width && height == other.height && fx == other.fx && fy == other.fy &&
-           cx == other.cx && cy == other.cy && distortion == other.distortion;
+           cx == other.cx && cy == other.cy && distortion == other.distortion &&
+           denominator == other.denominator && lens == other.lens;
 }
 
 }  // namespace roevo

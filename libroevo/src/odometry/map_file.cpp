@@ -10,7 +10,7 @@ namespace roevo {
 namespace {
 
 constexpr std::array<char, 8> kMagic = {'R', 'O', 'E', 'V', 'O', 'M', 'A', 'P'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 1, kWithLens = 2;  // which is only written where it is needed
 
 struct Header {
     std::array<char, 8> magic = kMagic;
@@ -109,12 +109,35 @@ void transfer(Bytes& bytes, StoredMap& map) {
     bytes(map.camera, map.graph, map.places, map.edges, map.surfaces);
 }
 
+namespace {
+
+/// Terms that version 1 has no place for.
+bool hasOtherLens(const PinholeCamera& camera) {
+    return camera.isRational() || camera.lens != LensModel::kBrownConrady;
+}
+
+template <class Bytes>
+void transferOtherLens(Bytes& bytes, PinholeCamera& camera) {
+    int model = static_cast<int>(camera.lens);
+    bytes(camera.denominator, model);
+    camera.lens = static_cast<LensModel>(model);
+    if (model != static_cast<int>(LensModel::kBrownConrady) &&
+        model != static_cast<int>(LensModel::kKannalaBrandt))
+        throw std::runtime_error("its lens is of a kind that is not known");
+}
+
+}  // namespace
+
 void writeMap(StoredMap map, std::ostream& out) {
     if (const std::string fault = faultOf(map); !fault.empty())
         throw std::runtime_error("there is no map to keep: " + fault);
     ByteWriter contents, head;
-    contents(map);
     Header header;
+    contents(map);
+    if (hasOtherLens(map.camera)) {
+        header.version = kWithLens;
+        transferOtherLens(contents, map.camera);
+    }
     header.size = contents.bytes().size();
     header.checksum = checksumOf(contents.bytes());
     head(header);
@@ -127,9 +150,10 @@ StoredMap readMap(std::istream& in) {
     if (head.size() == Header::kSize) ByteReader{head}(header);
     if (head.size() != Header::kSize || header.magic != kMagic)
         throw std::runtime_error("this is no map of roevo");
-    if (header.version != kVersion)
+    if (header.version != kVersion && header.version != kWithLens)
         throw std::runtime_error("the map is of version " + std::to_string(header.version) +
-                                 ", and only version " + std::to_string(kVersion) + " can be read");
+                                 ", and only versions " + std::to_string(kVersion) + " and " +
+                                 std::to_string(kWithLens) + " can be read");
     const std::string contents = readBytes(in, header.size);
     if (contents.size() < header.size)
         throw std::runtime_error("the map is incomplete: it has " + std::to_string(contents.size()) + " of " +
@@ -143,6 +167,7 @@ StoredMap readMap(std::istream& in) {
     try {
         ByteReader reader(contents);
         reader(map);
+        if (header.version == kWithLens) transferOtherLens(reader, map.camera);
         fault = reader.atEnd() ? faultOf(map) : "there is more in it than belongs there";
     } catch (const std::runtime_error& error) {
         fault = error.what();

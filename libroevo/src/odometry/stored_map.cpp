@@ -153,7 +153,10 @@ std::string describe(const PinholeCamera& camera) {
          << camera.cx << ", cy " << camera.cy;
     if (!camera.isDistorted()) return text.str();
     text << ", lens";
+    if (camera.lens == LensModel::kKannalaBrandt) text << " (fish-eye)";
     for (const double k : camera.distortion) text << " " << k;
+    if (camera.isRational())
+        for (const double k : camera.denominator) text << " " << k;
     return text.str();
 }
 

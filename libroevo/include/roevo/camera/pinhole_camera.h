@@ -5,14 +5,25 @@
 
 namespace roevo {
 
-/// Pinhole camera with the Brown-Conrady lens of OpenCV and MRPT. Pixel centres are at integer coordinates.
+/// What the terms of a lens mean, as in OpenCV, ROS and MRPT.
+enum class LensModel {
+    kBrownConrady,   ///< radial and tangential: "plumb_bob", with k4 k5 k6 "rational_polynomial"
+    kKannalaBrandt,  ///< a fish-eye: "equidistant", where the angle to the axis counts and not its tangent
+};
+
+/// Pinhole camera with a lens. Pixel centres are at integer coordinates.
 /// Camera frame: x right, y down, z forward, metres.
 struct PinholeCamera {
     int width = 0, height = 0;              ///< pixels
     double fx = 0, fy = 0, cx = 0, cy = 0;  ///< pixels
-    std::array<double, 5> distortion{};     ///< k1 k2 p1 p2 k3, dimensionless
+    std::array<double, 5> distortion{};     ///< k1 k2 p1 p2 k3, dimensionless; of a fish-eye k1 k2 k3 k4 0
+    std::array<double, 3>
+        denominator{};  ///< k4 k5 k6 of a rational model, which the radial part is divided by
+    LensModel lens = LensModel::kBrownConrady;
 
     bool isDistorted() const;
+
+    bool isRational() const { return denominator != std::array<double, 3>{}; }
 
     /// The same camera with an ideal lens.
     PinholeCamera undistorted() const;
@@ -37,6 +48,14 @@ struct PinholeCamera {
 
     /// Where the real lens puts an ideally projected pixel; without distortion the pixel itself.
     Eigen::Vector2d distortPixel(const Eigen::Vector2d& ideal) const;
+
+    /// The ideal pixel that distortPixel() puts there, as far as the lens does not fold its image; else
+    /// anything, even no number.
+    Eigen::Vector2d undistortPixel(const Eigen::Vector2d& real) const;
+
+    /// Square of the normalised radius (tangent of the angle to the axis) up to which the lens maps outward
+    /// points farther out, at most 100. Beyond, its polynomial folds back into the image.
+    double unfoldedRadiusSquared() const;
 
     /// Empty when usable, else one line naming what is wrong and its value.
     std::string check() const;

@@ -18,7 +18,13 @@ cv::Mat readColourFile(const std::string& file);
 /// channel.
 cv::Mat readDepthFile(const std::string& file);
 
-/// The same for an image file's bytes that are elsewhere, with a name for errors.
+/// Decodes a depth image that holds 16-bit numbers (PNG, TIFF, PGM, NPY) or floats (TIFF, EXR, NPY), told by
+/// its bytes. @return CV_16UC1 or CV_32FC1, as stored
+/// @throws std::runtime_error as readDepthFile() does
+cv::Mat readAnyDepthFile(const std::string& file);
+
+/// What readColourFile() and readDepthFile() do for an image file's bytes that are elsewhere, with a name for
+/// errors.
 cv::Mat decodeColour(std::string_view bytes, const std::string& name);
 cv::Mat decodeDepth(std::string_view bytes, const std::string& name);
 

@@ -1,0 +1,106 @@
+#include "recordings/time_units.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "evaluation/association.h"
+#include "recordings/image_lists.h"
+#include "roevo_mrpt/time_conversions.h"
+
+namespace roevo {
+namespace {
+
+constexpr double kYear2100 = 4.1e9;  // s
+constexpr double kLongestStep = 10;  // s
+
+double medianStep(const std::vector<double>& ascending) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < ascending.size(); i++) steps.push_back(ascending[i] - ascending[i - 1]);
+    if (steps.empty()) return 0;
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return *middle;
+}
+
+/// Times of frames or poses, in some unit.
+struct Span {
+    double first, last, step;
+
+    explicit Span(const std::vector<double>& ascending)
+        : first(ascending.front()), last(ascending.back()), step(medianStep(ascending)) {}
+
+    Span dividedBy(double divisor) const {
+        Span out = *this;
+        for (double* time : {&out.first, &out.last, &out.step}) *time /= divisor;
+        return out;
+    }
+};
+
+/// Time that both cover, of what either covers; negative when there is none.
+double sharedPart(const Span& a, const Span& b) {
+    const double common = std::min(a.last, b.last) - std::max(a.first, b.first);
+    const double all = std::max(a.last, b.last) - std::min(a.first, b.first);
+    return all > 0 ? common / all : 1;
+}
+
+/// Whether `in_seconds` and the other, in another unit, are of one time, with a rate that there can be.
+bool fits(const Span& in_seconds, const Span& other) {
+    constexpr double kMostlyShared = 0.5, kShortestStep = 2e-4;  // s
+    return sharedPart(in_seconds, other) > kMostlyShared && other.step >= kShortestStep;
+}
+
+template <class Entry>
+void divideTimes(std::vector<Entry>& entries, double Entry::*time, double divisor) {
+    for (Entry& entry : entries) entry.*time = roundToMicroseconds(entry.*time / divisor);
+}
+
+std::string unitName(double divisor) {
+    return divisor == 1e3 ? "ms" : divisor == 1e6 ? "us" : "ns";
+}
+
+}  // namespace
+
+double unitOfStamps(std::vector<double> stamps) {
+    if (stamps.empty()) return 1;
+    std::sort(stamps.begin(), stamps.end());
+    const double step = medianStep(stamps), last = stamps.back();
+    double unit = 1;
+    while (last / unit > kYear2100 || step / unit > kLongestStep) unit *= 1000;
+    return unit;
+}
+
+void settleClock(DatasetDescription& dataset) {
+    auto& poses = dataset.ground_truth.poses;
+    if (poses.empty() || dataset.frames.empty()) return;
+    constexpr double kHardlyShared = 0.1;
+    const Span images(stampsOf(dataset.frames)), truth(stampsOf(poses));
+    const double shared = sharedPart(images, truth);
+    if (shared > kHardlyShared) return;
+    for (const double divisor : {1e3, 1e6, 1e9}) {
+        if (fits(images, truth.dividedBy(divisor))) {
+            divideTimes(poses, &StampedPose::timestamp, divisor);
+            dataset.ground_truth.copyable = false;
+            dataset.notes.push_back("times of the ground truth are in " + unitName(divisor));
+            return;
+        }
+        if (!dataset.images && fits(truth, images.dividedBy(divisor))) {
+            divideTimes(dataset.frames, &DatasetEntry::timestamp, divisor);
+            divideTimes(dataset.frames, &DatasetEntry::depth_timestamp, divisor);
+            finishFrames(dataset);
+            dataset.notes.push_back("times of the images are in " + unitName(divisor) +
+                                    ", as the ground truth tells");
+            return;
+        }
+    }
+    if (shared >= 0) return;
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "warning: the ground truth is of another time: images from %.3f to %.3f s, poses from %.3f to "
+        "%.3f s",
+        images.first, images.last, truth.first, truth.last);
+    dataset.notes.emplace_back(text);
+}
+
+}  // namespace roevo

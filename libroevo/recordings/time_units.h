@@ -1,0 +1,17 @@
+#pragma once
+#include <vector>
+
+#include "recordings/dataset_reader.h"
+
+namespace roevo {
+
+/// Units per second of stamps, as their size tells: 1, 1e3, 1e6, 1e9 …, the least by which none is after the
+/// year 2100 (since 1970) and frames follow each other within 10 s.
+/// @param stamps  of the images of a recording, in any order
+double unitOfStamps(std::vector<double> stamps);
+
+/// Where the ground truth's times have nothing in common with the images', and are in another unit of the
+/// same clock: brings both to seconds, and says so. Times that have nothing in common at all are said, too.
+void settleClock(DatasetDescription& dataset);
+
+}  // namespace roevo
