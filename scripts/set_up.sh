@@ -3,7 +3,7 @@
 roevo_packages="build-essential cmake ninja-build ccache git pkg-config libmrpt-dev mrpt-common mrpt-apps libopencv-dev
     libceres-dev libeigen3-dev libgtest-dev libbenchmark-dev libcli11-dev nlohmann-json3-dev zlib1g-dev libjpeg-dev
     libsqlite3-dev liblz4-dev libzstd-dev libbz2-dev
-    librosbag-storage-dev libsensor-msgs-dev libtf2-msgs-dev gnuplot-nox libjs-three python3-numpy"
+    librosbag-storage-dev libsensor-msgs-dev libtf2-msgs-dev gnuplot-nox libjs-three python3-numpy snakemake"
 
 say() { printf '\n== %s\n' "$*"; }
 

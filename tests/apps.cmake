@@ -55,8 +55,8 @@ roevo_test(test_compare
 add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog rawlog-simulate)
 
 roevo_test(test_batch
-  SOURCES apps/test_batch.cpp
-  LIBS roevo_compare roevo_programs roevo_test_support)
+  SOURCES apps/test_batch.cpp apps/test_batch_slurm.cpp
+  LIBS roevo_compare roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_batch roevo-compare roevo-odometry)
 
 # One ctest entry per method, since its cases share rendered frames.
@@ -72,7 +72,8 @@ endforeach()
 target_include_directories(test_compare_baselines PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 
 roevo_test(test_compare_report
-  SOURCES apps/test_compare_tables.cpp apps/test_compare_report.cpp apps/test_compare_numpy.cpp
+  SOURCES apps/test_compare_tables.cpp apps/test_compare_report.cpp apps/test_compare_many.cpp
+          apps/test_compare_numpy.cpp
   LIBS roevo_report roevo_evaluation roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_compare_report roevo-compare roevo-odometry roevo-render)
 

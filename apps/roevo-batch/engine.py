@@ -8,25 +8,30 @@ import shlex
 import signal
 import subprocess
 
-from messages import Fault, say
+from messages import Fault, Progress
 
 SHARE = os.path.dirname(os.path.realpath(__file__))
+JOBS_AT_ONCE = 1000  # given to Snakemake
+
+
+def side_by_side(args):
+    return args.jobs or (200 if args.profile else len(os.sched_getaffinity(0)))
 
 
 def engine(args, jobs):
     command = ["snakemake", "--snakefile", os.path.join(SHARE, "Snakefile"), "--nolock", "--ignore-incomplete",
                "--drop-metadata", "--keep-going", "--scheduler", "greedy", "--rerun-triggers", "mtime"]
     if args.profile != "slurm":
-        command += ["--cores", str(args.jobs or "all")]
         if args.profile:
-            return command + ["--profile", args.profile, "--jobs", str(args.jobs or 200)]
+            return command + ["--profile", args.profile, "--jobs", str(side_by_side(args))]
+        command += ["--cores", str(side_by_side(args))]
         memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e6
         # So many at a time as have their memory, but always one
         return command + ["--resources", f"mem_mb={round(max(0.9 * memory, jobs[0]['mem_mb']))}"]
     log = "--output=logs/{wildcards.sequence}/{wildcards.method}.slurm.log"
     submit = ["sbatch", "--parsable", f"--job-name={slurm_name(args)}", "--ntasks=1", "--cpus-per-task=1",
               "--mem={resources.mem_mb}M", "--time={resources.runtime}", log, "--open-mode=truncate"]
-    return command + ["--jobs", str(args.jobs or 200), "--latency-wait", "30", "--max-jobs-per-second", "50",
+    return command + ["--jobs", str(side_by_side(args)), "--latency-wait", "30", "--max-jobs-per-second", "50",
                       "--max-status-checks-per-second", "50", "--cluster-cancel", "scancel",
                       "--cluster-status", shlex.quote(os.path.join(SHARE, "slurm_status.sh")), "--cluster",
                       " ".join(submit + [shlex.quote(os.path.join(SHARE, "slurm_job.sh")), "{params.command:q} {log:q}"])]
@@ -48,12 +53,23 @@ def cancel_left_over(args):
         raise Fault(f"Slurm does not answer: {e}") from e
 
 
-def run_engine(args, jobs):
+def make_rows(args, jobs):
     """@return whether it was interrupted"""
-    with open("batch/jobs.json", "w", encoding="utf-8") as file:
-        json.dump(jobs, file)
     for job in jobs:
         os.makedirs(os.path.join("logs", job["sequence"]), exist_ok=True)
+    # Snakemake looks at all jobs that wait whenever one ends
+    most = max(JOBS_AT_ONCE, 20 * side_by_side(args))
+    progress = Progress(args, len(jobs))
+    interrupted = False
+    for begin in range(0, len(jobs), most):
+        interrupted = interrupted or run_engine(args, jobs[begin : begin + most], begin, progress)
+    progress.finish()
+    return interrupted
+
+
+def run_engine(args, jobs, before, progress):
+    with open("batch/jobs.json", "w", encoding="utf-8") as file:
+        json.dump(jobs, file)
     # Not in the group that Ctrl-C reaches, or it would be told twice
     process = subprocess.Popen(engine(args, jobs), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)
@@ -69,8 +85,8 @@ def run_engine(args, jobs):
         for line in process.stdout:
             log.write(line)
             log.flush()
-            if re.match(r"\d+ of \d+ steps", line):
-                say(args, line.strip(), over=True)
+            steps = re.match(r"(\d+) of \d+ steps", line)
+            if steps:
+                progress.update(before + min(int(steps[1]), len(jobs)))
     process.wait()
-    say(args, "", over=True)
     return bool(told)

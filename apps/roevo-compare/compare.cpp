@@ -132,6 +132,14 @@ SequenceComparison makeRun(const CompareSettings& settings, const SequenceInput&
     return row;
 }
 
+// What a program that was killed has left. For who has the lock of the folder.
+void removeHalfMade(const std::string& output) {
+    std::error_code none;
+    for (const auto& sequence : fs::directory_iterator(fs::path(output) / "runs", none))
+        for (const auto& run : fs::directory_iterator(sequence, none))
+            if (run.path().extension() == ".partial") fs::remove_all(run, none);
+}
+
 ComparisonReport writeReport(std::vector<SequenceComparison> sequences, const std::string& output,
                              const std::string& command, const std::vector<std::string>& notes = {},
                              const std::vector<SequenceComparison>& baseline = {}) {
@@ -156,12 +164,16 @@ ComparisonReport compare(const CompareSettings& settings) {
     std::vector<SequenceComparison> sequences = openAll(settings);
     prepareOutputFolder(settings.output);
     const FolderLock lock(settings.output);
+    removeHalfMade(settings.output);
     saveConfigFile((fs::path(settings.output) / "config_used.ini").string(), settings.options);
     for (std::size_t s = 0; s < sequences.size(); ++s)
         for (const MethodInfo& method : settings.methods) {
             if (!sequences[s].failure.empty()) continue;
             SequenceComparison row = makeRun(settings, settings.sequences[s], method);
-            if (row.runs[0].ok()) sequences[s].part = row.part;
+            if (row.runs[0].ok()) {  // as a report of rows finds them, to the last digit
+                sequences[s].part = row.part;
+                sequences[s].reference = row.reference;
+            }
             sequences[s].runs.push_back(std::move(row.runs[0]));
             sequences[s].run_folders.push_back(row.run_folders[0]);
         }

@@ -31,7 +31,7 @@ constexpr char kFooter[] =
 
 struct Arguments {
     std::vector<std::string> inputs, methods, sets, report, baseline;
-    std::string ground_truth, output, config, name, note, variant, key;
+    std::string ground_truth, output, config, name, note, variant, key, command;
     InputChoice choice;
     std::size_t first = 0, skip = 0;
     double timeout = kTimeout, memory = 0;
@@ -73,6 +73,8 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--paper-ate", a.paper_ate, "ATE of ROEVO-TR+BA on a single --input in the paper, cm");
     app.add_option("--variant", a.variant, "Name of this configuration, behind the methods' names in tables");
     app.add_option("--key", a.key, "Kept in each row: by it roevo-batch tells what a row was made of");
+    app.add_option("--command", a.command,
+                   "With --report: the command that it shows as its own (default: this)");
     app.add_flag("--quiet", a.quiet, "Print errors only");
     app.add_option("--run-method", a.run_method)->group("");  // how this program starts itself for a run
     app.add_option("--run-folder", a.run_folder)->group("");
@@ -220,7 +222,7 @@ int run(int argc, char** argv) {
     }
     checkUsage(a);
 
-    const std::string command = shellCommand({argv, argv + argc});
+    const std::string command = a.command.empty() ? shellCommand({argv, argv + argc}) : a.command;
     if (!a.report.empty()) {
         print(reportRows(a.report, a.baseline, a.output, command), a);
         return 0;

@@ -152,8 +152,8 @@ Json toJson(const SequenceComparison& sequence) {
               {"notes", sequence.notes},
               {"ground_truth", sequence.ground_truth},
               {"ground_truth_fault", sequence.ground_truth_fault}};
-    if (sequence.ground_truth_length_m)
-        json["ground_truth_length_m"] = finite(*sequence.ground_truth_length_m, "the ground truth's length");
+    if (!sequence.reference.empty())
+        json["ground_truth_length_m"] = finite(pathLength(sequence.reference), "the ground truth's length");
     if (sequence.paper_ate_cm) json["paper_ate_cm"] = *sequence.paper_ate_cm;
     return json;
 }
@@ -187,9 +187,11 @@ void load(SequenceComparison& row, const std::string& folder) {
                                  std::to_string(run.trajectory.size()) + " poses instead of " +
                                  std::to_string(run.poses));
     if (row.ground_truth_length_m) row.reference = readTumTrajectory(inFolder(folder, kTruthFile));
-    if (!run.scene.empty() && !fs::exists(inFolder(folder, run.scene.c_str())))
-        throw std::runtime_error(run.scene + " is missing");
     row.errors.clear();
+}
+
+bool sceneIsMissing(const MethodRun& run, const std::string& folder) {
+    return !run.scene.empty() && !fs::exists(inFolder(folder, run.scene.c_str()));
 }
 
 std::vector<std::string> rowFiles(const std::string& path) {
@@ -300,6 +302,7 @@ SequenceComparison readRow(const std::string& folder) {
     try {
         SequenceComparison row = toRow(Json::parse(in));
         load(row, folder);
+        if (sceneIsMissing(row.runs[0], folder)) throw std::runtime_error(row.runs[0].scene + " is missing");
         row.run_folders = {folder};
         return row;
     } catch (const std::exception& e) {
@@ -316,6 +319,7 @@ void loadTrajectories(SequenceComparison& sequence) {
         try {
             load(row, sequence.run_folders[i]);
             run = std::move(row.runs[0]);
+            if (sceneIsMissing(run, sequence.run_folders[i])) run.scene.clear();  // maps may be thrown away
             if (sequence.reference.empty()) sequence.reference = std::move(row.reference);
         } catch (const std::exception& e) {
             run.failure = "its files are not whole: " + firstLine(e.what());

@@ -22,7 +22,7 @@ void writeRow(const std::string& folder, const SequenceComparison& sequence);
 SequenceComparison readRow(const std::string& folder);
 
 /// Reads trajectories and ground truth of all runs from their folders. A run whose files are not whole is a
-/// failure then.
+/// failure then; its map may be missing.
 void loadTrajectories(SequenceComparison& sequence);
 
 /// Rows put together by recording.

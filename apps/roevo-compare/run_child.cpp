@@ -74,7 +74,7 @@ void runChild(const ChildSettings& settings) {
             row.part = partOf(settings.sequence, settings.sequence.skip + run.frames);
         writeRow(settings.folder, row);
     } catch (const std::exception& e) {
-        const std::string reason = isOutOfMemory(e) ? outOfMemory(settings) : firstLine(e.what());
+        const std::string reason = isOutOfMemory(e) ? outOfMemory(settings) : describe(e);
         keepFailure(settings, row, reason);
         throw;
     }

@@ -50,7 +50,6 @@ void setGroundTruth(SequenceComparison& out, const SequenceInput& sequence, cons
     out.ground_truth = truth.file;
     out.reference = std::move(truth.poses);
     if (!out.reference.empty()) {
-        out.ground_truth_length_m = pathLength(out.reference);
         if (!truth.note.empty()) out.notes.push_back("ground truth: " + truth.note);
         return;
     }
@@ -108,7 +107,7 @@ SequenceComparison openSequence(const SequenceInput& sequence) {
     } catch (const Interrupted&) {
         throw;
     } catch (const std::exception& e) {
-        out.failure = firstLine(e.what());
+        out.failure = describe(e);
     }
     return out;
 }

@@ -173,7 +173,7 @@ TEST_F(Batch, KilledItGoesOn) {
             std::vector<char*> argv{const_cast<char*>(program.c_str())};
             for (const std::string& word : all) argv.push_back(const_cast<char*>(word.c_str()));
             argv.push_back(nullptr);
-            freopen((folder / "err").c_str(), "w", stderr);
+            if (!freopen((folder / "err").c_str(), "w", stderr)) _exit(126);
             execv(program.c_str(), argv.data());
             _exit(127);
         }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "evaluation/error_statistics.h"
 #include "programs/text.h"

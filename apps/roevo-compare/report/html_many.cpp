@@ -50,6 +50,13 @@ std::string header(const std::vector<SequenceResults>& results, const Legend& le
     return html + "<a href=\"table.csv\">All figures of all recordings</a></nav>\n</header>\n";
 }
 
+bool anyHas(const Metric& metric, const std::vector<SequenceResults>& results) {
+    for (const SequenceResults& result : results)
+        for (std::size_t i = 0; i < result.evaluated.size(); ++i)
+            if (metricOf(metric, result, i)) return true;
+    return false;
+}
+
 // The methods' lines; they are the same in all plots.
 std::string legendOf(const Legend& legend) {
     std::string items;
@@ -64,6 +71,7 @@ std::string distributions(const std::vector<SequenceResults>& results, const Leg
     try {
         for (const std::size_t m : kDrawnMetrics) {
             const Metric& metric = shownMetrics()[m];
+            if (!anyHas(metric, results)) continue;  // of recordings shorter than 1 s
             html += "<div class=\"block\"><h3>" + htmlText(metric.title) + "</h3>\n" +
                     setFigure(boxFigure(metric, results, legend)) + legendOf(legend) +
                     setFigure(cumulativeFigure(metric, results, legend)) + "</div>\n";
