@@ -1,5 +1,6 @@
 """Snakemake, on this machine or with Slurm."""
 
+import ctypes
 import hashlib
 import json
 import os
@@ -67,12 +68,19 @@ def make_rows(args, jobs):
     return interrupted
 
 
+def end_with_parent():
+    """Snakemake starts no more jobs when roevo-batch is gone, whatever has ended that."""
+    pr_set_pdeathsig = 1
+    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGTERM)
+
+
 def run_engine(args, jobs, before, progress):
     with open("batch/jobs.json", "w", encoding="utf-8") as file:
         json.dump(jobs, file)
     # Not in the group that Ctrl-C reaches, or it would be told twice
     process = subprocess.Popen(engine(args, jobs), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                               stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)
+                               stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True,
+                               preexec_fn=end_with_parent)
     told = []
 
     def stop(*_):

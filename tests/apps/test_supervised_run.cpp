@@ -4,12 +4,15 @@
 
 #include <csignal>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 
 #include "compare_fakes.h"
 #include "processes.h"
 #include "programs/interrupt.h"
+#include "programs/process.h"
 #include "roevo-compare/core_claim.h"
 #include "roevo-compare/core_contention.h"
 #include "roevo-compare/rows.h"
