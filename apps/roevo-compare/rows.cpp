@@ -248,6 +248,7 @@ class RowCollector {
                                             }) -
                            sequence.runs.begin();
         MethodRun run = std::move(row.runs[0]);
+        nameAsKnown(run);
         const EvaluatedRun errors = std::move(row.errors[0]);
         // What failed may not know its recording
         if (is_first || (sequence.ground_truth.empty() && run.ok())) {
@@ -260,6 +261,16 @@ class RowCollector {
         sequence.errors.insert(sequence.errors.begin() + place, errors);
         sequence.run_folders.insert(sequence.run_folders.begin() + place,
                                     fs::path(file).parent_path().string());
+    }
+
+    // What has left no row of its own does not say how it is called.
+    void nameAsKnown(MethodRun& run) const {
+        const std::size_t index = orderOf(run.method).first;
+        if (!run.label.empty() || index == methods_.size()) return;
+        const std::size_t mark = run.method.find(kVariantMark);
+        run.label = methods_[index].label;
+        if (mark != std::string::npos) run.label += " (" + run.method.substr(mark + 1) + ")";
+        run.note = methods_[index].note;
     }
 
     // As in the tables of all methods; variants of a method by their names.

@@ -191,6 +191,11 @@ TEST_F(ManyRows, ArePutTogetherByRecordingInTheOrderOfAllMethods) {
     put("b", test::makeRun("roevo-ct", 0.02));
     put("a", test::makeRun("roevo-ba", 0.01));
     put("a", test::failedRun("difodo-240", "it died"));
+    writeFile(folder / "lacking.json",
+              R"({"sequence": {"name": "a"}, "method": "roevo-tr@x", "failure": "no row"})");
+    const MethodRun lacking = readRows({folder / "runs", folder / "lacking.json"}).sequences[0].runs[0];
+    EXPECT_EQ(lacking.label, "ROEVO TR (x)");
+    EXPECT_EQ(lacking.failure, "no row");
     fs::create_directories(folder / "runs/b/.roevo-tr.node.1.partial");
     writeFile(folder / "runs/b/.roevo-tr.node.1.partial/run.json", "{}");
     const Rows rows = read();

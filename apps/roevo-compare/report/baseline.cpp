@@ -69,7 +69,7 @@ TableCell cell(const std::string& text) {
 
 const char* MethodChange::verdict() const {
     if (pairs.size() < 6) return "too few to tell";  // their interval of 95 % has no bounds
-    return high < 1 ? "better" : low > 1 ? "worse" : "no difference beyond noise";
+    return high < 1 ? "better" : low > 1 ? "worse" : "no difference";
 }
 
 std::vector<MethodChange> changesSince(const std::vector<SequenceResults>& before,
@@ -101,22 +101,22 @@ Table changeTable(const std::vector<MethodChange>& changes) {
     Table table{
         "ATE RMSE against the earlier comparison",
         "Method",
-        {"Recordings", "Median change", "95 % interval", "Better", "Worse", "Failed before only",
-         "Fail now only", "Verdict"},
+        {"Recordings", "Median change (95 % interval)", "Better", "Worse", "Mended", "Broken", "Verdict"},
         {},
         "Change: the ratio of a recording's errors, now by before, less 1. Better and worse: recordings "
         "whose ratio is more than 3 robust standard deviations of all ratios away from their median, and "
-        "more than 5 % from 1. Verdict: whether the interval of the median leaves 1 out.",
+        "more than 5 % from 1. Mended and broken: those that failed before, or fail now. Verdict: whether "
+        "the interval of the median leaves 1 out.",
         true};
     for (const MethodChange& change : changes) {
         Table::Row row{change.method.label, isOurs(change.method.name), false, {}, {}};
-        const bool any = !change.pairs.empty();
-        const std::string interval = percent(change.low) + " to " + percent(change.high);
+        const std::string median =
+            percent(change.median) + " (" + percent(change.low) + " to " + percent(change.high) + ")";
         for (const std::string& text :
-             {std::to_string(change.pairs.size()), any ? percent(change.median) : kDash,
-              any ? interval : kDash, std::to_string(change.better.size()),
-              std::to_string(change.worse.size()), std::to_string(change.gained.size()),
-              std::to_string(change.lost.size()), std::string(change.verdict())})
+             {std::to_string(change.pairs.size()), change.pairs.empty() ? kDash : median,
+              std::to_string(change.better.size()), std::to_string(change.worse.size()),
+              std::to_string(change.gained.size()), std::to_string(change.lost.size()),
+              std::string(change.verdict())})
             row.cells.push_back(cell(text));
         table.rows.push_back(row);
     }

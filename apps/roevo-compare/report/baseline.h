@@ -22,7 +22,7 @@ struct MethodChange {
     double low = 1, high = 1;  ///< 95 % interval of the median (order statistics: no distribution assumed)
     std::vector<ErrorPair> better, worse;   ///< beyond noise: 3 robust sigmas from the median, and 5 %
     std::vector<std::string> lost, gained;  ///< recordings that have no error any more, or now
-    /// "better", "worse" or "no difference that is beyond noise".
+    /// "better", "worse", "no difference", or "too few to tell".
     const char* verdict() const;
 };
 
