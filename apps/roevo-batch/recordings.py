@@ -59,7 +59,7 @@ def recordings_of_json(file, data):
     made, missing = [], []
     for i, entry in enumerate(entries):
         where = f"{file}: sequence {i + 1} ('{entry.get('name')}')"
-        names = [name for folder in (entry["folder"], entry["name"]) if folder for name in (folder, folder + ".rawlog")]
+        names = [n for folder in dict.fromkeys((entry["folder"], entry["name"])) if folder for n in (folder, folder + ".rawlog")]
         found = next((os.path.join(data, n) for n in names if os.path.exists(os.path.join(data, n))), None)
         wanted = parts(entry, found or "", where)
         if found:
