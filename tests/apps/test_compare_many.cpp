@@ -70,16 +70,18 @@ TEST(ManyRecordings, ReasonsThatDifferInNumbersAreOne) {
     EXPECT_EQ(table.rows[0].cells[0].text, "3");
     EXPECT_EQ(table.rows[0].cells[1].text, "r01");
     EXPECT_TRUE(contains(table.rows[0].cells[2].text, "after 1 frames"));
-    EXPECT_EQ(table.rows[1].cells[2].text, "out of memory");
+    EXPECT_EQ(table.rows[1].cells[2].text, "failed: out of memory");
     EXPECT_TRUE(contains(reasonTable(evaluateAll(sequences), 1).protocol, "most frequent of 2"));
 }
 
 TEST(ManyRecordings, TheWorstAreThoseOfTheFullestMode) {
-    const auto results = evaluateAll(many(one));
+    const auto sequences = many(one);
+    const auto results = evaluateAll(sequences);
     const auto worst = worstRecordings(results, 3);
     EXPECT_EQ(worst, (std::vector<std::size_t>{kCount - 1, kCount - 2, kCount - 3}));
-    EXPECT_EQ(leadingMethod({{"icp", "", ""}, {"roevo-ba@thin", "", ""}, {"roevo-ct", "", ""}}).name,
-              "roevo-ba@thin");
+    const std::vector<TableMethod> methods{TableMethod{"icp", "", ""}, TableMethod{"roevo-ba@thin", "", ""},
+                                           TableMethod{"roevo-ct", "", ""}};
+    EXPECT_EQ(leadingMethod(methods).name, "roevo-ba@thin");
 }
 
 TEST(ManyRecordings, ReportShowsDistributionsAndNotEachRecording) {
