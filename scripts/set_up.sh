@@ -4,7 +4,7 @@ roevo_packages="build-essential cmake ninja-build ccache git pkg-config libmrpt-
     libceres-dev libeigen3-dev libgtest-dev libbenchmark-dev libcli11-dev nlohmann-json3-dev zlib1g-dev libjpeg-dev
     libsqlite3-dev libyaml-cpp-dev liblz4-dev libzstd-dev libbz2-dev
     librosbag-storage-dev libsensor-msgs-dev libtf2-msgs-dev gnuplot-nox libjs-three
-    python3-dev pybind11-dev python3-numpy python3-pil"
+    python3-dev pybind11-dev python3-numpy python3-pil snakemake"
 
 say() { printf '\n== %s\n' "$*"; }
 

@@ -50,11 +50,16 @@ roevo_test(test_study_ablation
 target_include_directories(test_study_ablation PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 
 roevo_test(test_compare
-  SOURCES apps/test_method_run.cpp apps/test_kept_run.cpp apps/test_process.cpp apps/test_run_queue.cpp
-          apps/test_compare_benchmark.cpp apps/test_compare_program.cpp apps/test_compare_resume.cpp
-          apps/test_compare_terminal.cpp apps/test_compare_ba_first.cpp
+  SOURCES apps/test_method_run.cpp apps/test_rows.cpp apps/test_process.cpp apps/test_supervised_run.cpp
+          apps/test_compare_sequences.cpp apps/test_compare_program.cpp apps/test_compare_terminal.cpp
+          apps/test_compare_ba_first.cpp
   LIBS roevo_compare roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog rawlog-simulate)
+
+roevo_test(test_batch
+  SOURCES apps/test_batch.cpp apps/test_batch_slurm.cpp
+  LIBS roevo_compare roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
+add_dependencies(test_batch roevo-compare roevo-odometry)
 
 # One ctest entry per method, since its cases share rendered frames.
 add_executable(test_compare_baselines apps/test_compare_baselines.cpp apps/test_depth_resampler.cpp)
@@ -69,7 +74,8 @@ endforeach()
 target_include_directories(test_compare_baselines PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 
 roevo_test(test_compare_report
-  SOURCES apps/test_compare_tables.cpp apps/test_compare_report.cpp apps/test_compare_numpy.cpp
+  SOURCES apps/test_compare_tables.cpp apps/test_compare_report.cpp apps/test_compare_many.cpp
+          apps/test_compare_numpy.cpp
   LIBS roevo_report roevo_evaluation roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_compare_report roevo-compare roevo-odometry roevo-render)
 

@@ -4,7 +4,7 @@ earlier, shorter run. What a program writes must be absent or whole, and what wa
 every file is, byte for byte, as it was or as a run that is not disturbed leaves it (those that hold times: as the
 end of such a file is). All files are old or all are new, but for SIGKILL, which may hit between two renames, and
 for roevo-study and roevo-compare, which write a folder file by file. Only SIGKILL may leave temporary files (.part
-and .partial in their names). A comparison that was ended goes on with --resume, whatever was left.
+and .partial in their names). A comparison that was ended is made by the same command, whatever was left.
 
 kill_at_random.py FOLDER_OF_PROGRAMS RECORDING [--kills 200] [--seed 1] [--only PROGRAM]"""
 import argparse
@@ -173,7 +173,7 @@ def kill_once(options, program, chosen, whole):
         after, temporary = snapshot(work)
         wrong = fault(program, chosen, before, after, temporary, whole)
         if wrong is None and program.name == "roevo-compare":
-            code = start(options, program, [*program.arguments, "--resume"], work).wait()
+            code = start(options, program, program.arguments, work).wait()
             names = set(snapshot(work)[0])
             if code != 0 or names != whole.names:
                 wrong = f"does not go on: exit code {code}, {sorted(whole.names ^ names)}"

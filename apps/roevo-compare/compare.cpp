@@ -5,24 +5,27 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <optional>
 #include <stdexcept>
 
 #include "comparison_notes.h"
 #include "machine_info.h"
 #include "programs/interrupt.h"
 #include "programs/output_folder.h"
+#include "programs/progress.h"
+#include "report/distributions.h"
 #include "roevo_mrpt/config_file.h"
-#include "runs.h"
+#include "rows.h"
+#include "supervised_run.h"
 
 namespace roevo {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Two programs at work in one folder would remove each other's runs.
+// Two programs at work in one folder would write over each other's reports.
 class FolderLock {
   public:
     explicit FolderLock(const std::string& folder)
@@ -60,53 +63,150 @@ std::vector<SequenceComparison> openAll(const CompareSettings& settings) {
                              (all.size() > 1 ? " (and no other recording can be used)" : ""));
 }
 
-void writeReport(const CompareSettings& settings, const CompareResult& result) {
-    const InterruptGuard guard;  // so that nothing is left in the temporary folder
+std::vector<std::string> childCommand(const CompareSettings& settings, const SequenceInput& sequence,
+                                      const std::string& method, const std::string& folder) {
+    const std::string config = (fs::path(folder) / "config_used.ini").string();
+    saveConfigFile(config, settings.options);
+    // Not the path of this program: it may be another one by now, had it been built anew
+    std::vector<std::string> command{"/proc/self/exe", "--run-method", method};
+    const auto add = [&](const std::string& option, const std::string& value) {
+        command.insert(command.end(), {option, value});
+    };
+    add("--run-folder", folder);
+    add("--input", sequence.input);
+    add("--name", sequence.name);
+    add("--config", config);
+    if (sequence.skip > 0) add("--skip", std::to_string(sequence.skip));
+    if (sequence.first > 0) add("--first", std::to_string(sequence.first));
+    if (settings.memory_mb > 0) add("--memory", std::to_string(settings.memory_mb));
+    if (!sequence.ground_truth.empty()) add("--ground-truth", sequence.ground_truth);
+    if (!sequence.note.empty()) add("--note", sequence.note);
+    if (sequence.paper_ate_cm) add("--paper-ate", std::to_string(*sequence.paper_ate_cm));
+    for (const auto& [option, value] : chosenOptions(sequence.choice)) add(option, value);
+    return command;
+}
+
+// A method that this build lacks.
+SequenceComparison skippedRow(const RunTask& task) {
+    SequenceComparison row;
+    row.name = task.sequence;
+    MethodRun run;
+    run.method = task.method.name;
+    run.label = task.method.label;
+    run.note = task.method.note;
+    run.input = task.input;
+    run.skipped = task.method.unavailable;
+    run.key = task.key;
+    row.runs = {run};
+    row.run_folders = {task.folder};
+    return row;
+}
+
+void tell(const SequenceComparison& row, double seconds) {
+    const MethodRun& run = row.runs[0];
+    char what[96];
+    std::snprintf(what, sizeof what, "%zu frames, %.1f ms per frame (median), ", run.frames,
+                  run.total.median);
+    std::fprintf(stderr, "%s, %s: %s\n", row.name.c_str(), run.method.c_str(),
+                 (run.failure.empty() ? what + durationText(seconds) : "FAILED: " + run.failure).c_str());
+    std::fflush(stderr);
+}
+
+SequenceComparison makeRun(const CompareSettings& settings, const SequenceInput& sequence,
+                           const MethodInfo& method) {
+    const std::string folder = (fs::path(settings.output) / "runs" / sequence.name / method.name).string();
+    const RunTask task{sequence.name, sequence.input, method, folder, settings.timeout_s, settings.key};
+    if (!method.unavailable.empty()) return skippedRow(task);
+    const auto start = std::chrono::steady_clock::now();
+    const auto command = [&](const std::string& partial) {
+        return childCommand(settings, sequence, method.name, partial);
+    };
+    SequenceComparison row;
+    {
+        Progress progress(sequence.name + ", " + method.name, 0, !settings.quiet && isatty(STDERR_FILENO));
+        row = supervisedRun(task, command,
+                            [&](const Advance& advance) { progress.update(advance.frames, advance.share); });
+    }
+    if (!settings.quiet)
+        tell(row, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    return row;
+}
+
+// What a program that was killed has left. For who has the lock of the folder.
+void removeHalfMade(const std::string& output) {
+    std::error_code none;
+    for (const auto& sequence : fs::directory_iterator(fs::path(output) / "runs", none))
+        for (const auto& run : fs::directory_iterator(sequence, none))
+            if (run.path().extension() == ".partial") fs::remove_all(run, none);
+}
+
+ComparisonReport writeReport(std::vector<SequenceComparison> sequences, const std::string& output,
+                             const std::string& command, const std::vector<std::string>& notes = {},
+                             const std::vector<SequenceComparison>& baseline = {}) {
+    ComparisonReport report{std::move(sequences), {command, utcNow(), machineText(), softwareVersions(), {}}};
+    report.info.notes = comparisonNotes(report.sequences);
+    report.info.notes.insert(report.info.notes.end(), notes.begin(), notes.end());
     try {
-        writeComparison(settings.output, result.sequences, result.info);
+        writeComparison(output, report.sequences, report.info, baseline);
     } catch (const Interrupted&) {
         throw Interrupted(
-            "interrupted while the report was being written: it was left as it was before; the runs are "
-            "kept, and the same command" +
-            std::string(settings.resume ? "" : " with --resume") + " writes it");
+            "interrupted while the report was being written: it was left as it was before; the "
+            "runs are kept, and --report " +
+            (fs::path(output) / "runs").string() + " --output " + output + " writes it");
     }
+    return report;
 }
 
 }  // namespace
 
-CompareResult compare(const CompareSettings& settings) {
-    CompareResult result;
-    std::optional<FolderLock> lock;
-    std::exception_ptr fault;
-    {
-        const InterruptGuard guard;  // another one for the report: a second Ctrl-C ends that
-        result.sequences = openAll(settings);
-        prepareOutputFolder(settings.output);
-        lock.emplace(settings.output);
-        const std::string config = (fs::path(settings.output) / "config_used.ini").string();
-        saveConfigFile(config, settings.options);
-
-        Runs runs(settings, result.sequences);
-        if (runs.reused() > 0 && !settings.quiet)
-            std::fprintf(stderr, "%zu of %zu runs are there already\n", runs.reused(), runs.total());
-        try {
-            runs.make(config);
-        } catch (const Interrupted&) {
-            result.interrupted = true;
-        } catch (const std::exception&) {
-            fault = std::current_exception();  // what is finished is reported first
+ComparisonReport compare(const CompareSettings& settings) {
+    const InterruptGuard guard;
+    std::vector<SequenceComparison> sequences = openAll(settings);
+    prepareOutputFolder(settings.output);
+    const FolderLock lock(settings.output);
+    removeHalfMade(settings.output);
+    saveConfigFile((fs::path(settings.output) / "config_used.ini").string(), settings.options);
+    for (std::size_t s = 0; s < sequences.size(); ++s)
+        for (const MethodInfo& method : settings.methods) {
+            if (!sequences[s].failure.empty()) continue;
+            SequenceComparison row = makeRun(settings, settings.sequences[s], method);
+            if (row.runs[0].ok()) {  // as a report of rows finds them, to the last digit
+                sequences[s].part = row.part;
+                sequences[s].reference = row.reference;
+            }
+            sequences[s].runs.push_back(std::move(row.runs[0]));
+            sequences[s].run_folders.push_back(row.run_folders[0]);
         }
-        result.runs = runs.count();
-        result.left = runs.left();
-        runs.deliver();
-    }
-    if (result.interrupted && result.runs == 0)
-        throw Interrupted("interrupted before any run was finished; no report was written");
-    result.info = {settings.command, utcNow(), machineText(), softwareVersions(),
-                   comparisonNotes(settings, result)};
-    writeReport(settings, result);
-    if (fault) std::rethrow_exception(fault);
-    return result;
+    return writeReport(std::move(sequences), settings.output, settings.command);
+}
+
+void makeRows(const CompareSettings& settings) {
+    const InterruptGuard guard;
+    prepareOutputFolder(settings.output);
+    for (const SequenceInput& sequence : settings.sequences)
+        for (const MethodInfo& method : settings.methods) {
+            const SequenceComparison row = makeRun(settings, sequence, method);
+            if (row.runs[0].skipped.empty()) continue;  // else it is kept already
+            fs::create_directories(row.run_folders[0]);
+            writeRow(row.run_folders[0], row);
+        }
+}
+
+ComparisonReport reportRows(const std::vector<std::string>& rows, const std::vector<std::string>& baseline,
+                            const std::string& output, const std::string& command) {
+    const InterruptGuard guard;
+    Rows read = readRows(rows);
+    std::vector<SequenceComparison> earlier;
+    if (!baseline.empty()) earlier = readRows(baseline).sequences;
+    // Trajectories of those that have a page or a part of the page
+    if (read.sequences.size() <= kManySequences)
+        for (SequenceComparison& sequence : read.sequences) loadTrajectories(sequence);
+    else
+        for (const std::size_t s : worstRecordings(evaluateAll(read.sequences), kWorstSequences))
+            loadTrajectories(read.sequences[s]);
+    prepareOutputFolder(output);
+    const FolderLock lock(output);
+    return writeReport(std::move(read.sequences), output, command, read.notes, earlier);
 }
 
 }  // namespace roevo

@@ -2,12 +2,12 @@
 #include <string>
 #include <vector>
 
-#include "compare.h"
+#include "report/comparison.h"
 
 namespace roevo {
 
-/// What a reader must know of how a comparison came about, a sentence each: a machine that was busy, runs
-/// that were not bound to a core or went on side by side, sequences that are not there, an interrupt.
-std::vector<std::string> comparisonNotes(const CompareSettings& settings, const CompareResult& result);
+/// What a reader must know of how the runs came about, a sentence each: a machine that was busy, runs that
+/// were not bound to a core.
+std::vector<std::string> comparisonNotes(const std::vector<SequenceComparison>& sequences);
 
 }  // namespace roevo

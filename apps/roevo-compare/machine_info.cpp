@@ -6,8 +6,6 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
-#include <functional>
-#include <iterator>
 #include <opencv2/core/version.hpp>
 
 #include "programs/process.h"
@@ -39,13 +37,13 @@ std::string compilerName() {
 #endif
 }
 
-}  // namespace
-
 std::string processorName() {
     std::string name = valueInFile("/proc/cpuinfo", "model name", " \t:");
     if (name.empty()) name = valueInFile("/proc/cpuinfo", "Model", " \t:");  // ARM boards
     return name.empty() ? "unknown processor" : name;
 }
+
+}  // namespace
 
 std::string machineText() {
     const std::size_t cores = allowedCores().size();
@@ -70,14 +68,6 @@ std::vector<std::pair<std::string, std::string>> softwareVersions() {
             {"OpenCV", CV_VERSION},
             {"Eigen", eigen},
             {"compiler", compilerName() + ", " ROEVO_BUILD_TYPE}};
-}
-
-std::string programState(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-    char hash[32];
-    std::snprintf(hash, sizeof hash, "%016zx", std::hash<std::string>()(bytes));
-    return std::string(versionText()) + " " + hash;
 }
 
 std::string shellCommand(const std::vector<std::string>& words) {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
-#include "benchmark_list.h"
 #include "compare.h"
 #include "machine_info.h"
 #include "programs/option_arguments.h"
@@ -23,18 +23,20 @@ constexpr char kFooter[] =
     "Examples:\n"
     "  roevo-compare --input office.rawlog --output comparison\n"
     "  roevo-compare --input rgbd_dataset_freiburg1_xyz --methods roevo-ba,roevo-tr --output comparison\n"
-    "  roevo-compare --benchmark datasets_readme/sequences.json --data data --output benchmark --jobs 2\n"
+    "  roevo-compare --report batch/runs --baseline last_week/runs --output report\n"
+    "Many recordings at once, on all cores or a cluster: roevo-batch.\n"
     "Written into the output folder: table.csv, table.md, report.html, config_used.ini, and in\n"
     "runs/SEQUENCE/METHOD/ what each method made of each recording: trajectory.txt (TUM format),\n"
-    "frames.csv, map.3Dscene for methods with a map, run.json.";
+    "frames.csv, map.3Dscene for methods with a map, and its row, run.json.";
 
 struct Arguments {
-    std::vector<std::string> inputs, methods, sets;
-    std::string benchmark, data, ground_truth, output, config;
+    std::vector<std::string> inputs, methods, sets, report, baseline;
+    std::string ground_truth, output, config, name, note, variant, key, command;
     InputChoice choice;
-    std::size_t first = 0, skip = 0, jobs = 1;
-    double timeout = kTimeout;
-    bool resume = false, list_methods = false, quiet = false;
+    std::size_t first = 0, skip = 0;
+    double timeout = kTimeout, memory = 0;
+    std::optional<double> paper_ate;
+    bool rows_only = false, list_methods = false, quiet = false;
     std::string run_method, run_folder;  // of a child
 };
 
@@ -42,10 +44,6 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--input", a.inputs, "Rawlogs, ROS bags or dataset folders, one or more");
     app.add_option("--ground-truth", a.ground_truth,
                    "TUM trajectory to compare with, for a single --input (default: what lies beside each)");
-    app.add_option("--benchmark", a.benchmark,
-                   "List of sequences (as datasets_readme/sequences.json) to run instead, those that are on "
-                   "disk; always with --resume, so that the same command goes on after an interrupt");
-    app.add_option("--data", a.data, "Folder below which the sequences of --benchmark lie");
     app.add_option("--methods", a.methods, "Names, separated by commas (default: all)")->delimiter(',');
     app.add_flag("--list-methods", a.list_methods, "Say what methods there are and end");
     app.add_option("--output", a.output, "Folder for the results; created when missing");
@@ -59,14 +57,24 @@ void addOptions(CLI::App& app, Arguments& a) {
     addInputOptions(app, a.choice);
     app.add_option("--timeout", a.timeout, "Seconds after which a run is ended as a failure")
         ->capture_default_str();
-    app.add_flag("--resume", a.resume,
-                 "Keep the runs in the output folder that were made with the same settings, a method's own "
-                 "failures, too; made anew are those that were killed from outside (signals 1, 2, 9, 15) and "
-                 "those whose core other programs had for more than 5 % of the time");
-    app.add_option("--jobs", a.jobs,
-                   "This many runs side by side, each on a core of its own (times are noisier then)")
+    app.add_option("--memory", a.memory,
+                   "MB that a run may have before it is ended as a failure (0: no limit)")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::NonNegativeNumber);
+    app.add_option("--report", a.report,
+                   "Make no run, but the report of rows: folders with run.json files anywhere below them, or "
+                   "such files");
+    app.add_option("--baseline", a.baseline, "With --report: rows of an earlier comparison, to compare with");
+    app.add_flag("--rows-only", a.rows_only,
+                 "Make the runs and their rows, but no report; several programs may do so in one folder, as "
+                 "roevo-batch has them");
+    app.add_option("--name", a.name, "Name of a single --input in tables (default: that of its file)");
+    app.add_option("--note", a.note, "What a reader must know of a single --input");
+    app.add_option("--paper-ate", a.paper_ate, "ATE of ROEVO-TR+BA on a single --input in the paper, cm");
+    app.add_option("--variant", a.variant, "Name of this configuration, behind the methods' names in tables");
+    app.add_option("--key", a.key, "Kept in each row: by it roevo-batch tells what a row was made of");
+    app.add_option("--command", a.command,
+                   "With --report: the command that it shows as its own (default: this)");
     app.add_flag("--quiet", a.quiet, "Print errors only");
     app.add_option("--run-method", a.run_method)->group("");  // how this program starts itself for a run
     app.add_option("--run-folder", a.run_folder)->group("");
@@ -100,24 +108,25 @@ std::vector<MethodInfo> chosenMethods(const std::vector<std::string>& names) {
     return chosen;
 }
 
-// One core for each job, the last ones: the first is often the busiest with the system's own work.
-std::vector<int> chosenCores(std::size_t jobs) {
-    std::vector<int> cores = allowedCores();
-    if (cores.empty()) cores = {-1};  // the system does not tell
-    if (jobs > cores.size())
-        throw UsageError("--jobs " + std::to_string(jobs) + ": each takes a core of its own, and there " +
-                         (cores.size() == 1 ? "is 1" : "are " + std::to_string(cores.size())));
-    return {cores.end() - static_cast<std::ptrdiff_t>(jobs), cores.end()};
+bool isNameOfAFolder(const std::string& name) {
+    return name.empty() || (name[0] != '.' && name.find('/') == std::string::npos);
 }
 
 void checkUsage(const Arguments& a) {
-    if (a.inputs.empty() && a.benchmark.empty()) throw UsageError("--input or --benchmark is required");
-    if (!a.inputs.empty() && !a.benchmark.empty())
-        throw UsageError("--input and --benchmark exclude each other");
-    if (a.benchmark.empty() != a.data.empty()) throw UsageError("--benchmark and --data go together");
+    if (a.inputs.empty() && a.report.empty()) throw UsageError("--input or --report is required");
+    if (!a.inputs.empty() && !a.report.empty()) throw UsageError("--input and --report exclude each other");
+    if (!a.baseline.empty() && a.report.empty()) throw UsageError("--baseline is for --report");
     if (a.output.empty()) throw UsageError("--output is required");
-    if (!a.ground_truth.empty() && a.inputs.size() != 1)
-        throw UsageError("--ground-truth is for a single --input");
+    const std::pair<const char*, bool> of_one[] = {{"--ground-truth", !a.ground_truth.empty()},
+                                                   {"--name", !a.name.empty()},
+                                                   {"--note", !a.note.empty()},
+                                                   {"--paper-ate", a.paper_ate.has_value()}};
+    for (const auto& [option, is_given] : of_one)
+        if (is_given && a.inputs.size() != 1)
+            throw UsageError(std::string(option) + " is for a single --input");
+    if (!isNameOfAFolder(a.name)) throw UsageError("--name " + a.name + ": it cannot be that of a folder");
+    if (!isNameOfAFolder(a.variant))
+        throw UsageError("--variant " + a.variant + ": it cannot be part of a folder's name");
     if (!(a.timeout > 0)) throw UsageError("--timeout must be more than 0 s");
     for (const std::string& set : a.sets)
         if (set.rfind("odometry.mode=", 0) == 0)
@@ -129,46 +138,36 @@ std::vector<SequenceInput> inputSequences(const Arguments& a) {
     const std::vector<std::string> names = sequenceNames(a.inputs);
     for (std::size_t i = 0; i < a.inputs.size(); ++i) {
         std::error_code ignored;
-        if (!std::filesystem::exists(a.inputs[i], ignored))
+        // With --rows-only that is for a row to say
+        if (!a.rows_only && a.run_method.empty() && !std::filesystem::exists(a.inputs[i], ignored))
             throw std::runtime_error("cannot read " + a.inputs[i] + ": there is no such file or folder");
         SequenceInput sequence;
-        sequence.name = names[i];
+        sequence.name = a.name.empty() ? names[i] : a.name;
         sequence.input = a.inputs[i];
         sequence.ground_truth = a.ground_truth;
+        sequence.choice = a.choice;
+        sequence.skip = a.skip;
+        sequence.first = a.first;
+        sequence.note = a.note;
+        sequence.paper_ate_cm = a.paper_ate;
         sequences.push_back(sequence);
     }
     return sequences;
 }
 
-// --skip and --first count within what a list leaves of a sequence.
-void restrictFrames(std::vector<SequenceInput>& sequences, const Arguments& a) {
-    for (SequenceInput& sequence : sequences) {
-        if (sequence.first > 0 && a.skip >= sequence.first)
-            throw UsageError("--skip " + std::to_string(a.skip) + " leaves nothing of " + sequence.name +
-                             ", of which the list takes " + std::to_string(sequence.first) + " frames");
-        if (sequence.first > 0) sequence.first -= a.skip;
-        sequence.skip += a.skip;
-        if (a.first > 0) sequence.first = sequence.first > 0 ? std::min(sequence.first, a.first) : a.first;
-        if (a.first > 0 || a.skip > 0) sequence.paper_ate_cm.reset();  // it is of all frames
-        sequence.choice = a.choice;
-    }
-}
-
-void report(const CompareResult& result, const CompareSettings& settings) {
-    if (settings.quiet) return;
-    std::printf("%s\n", terminalTable(result.sequences).c_str());
-    for (const std::string& note : result.info.notes) std::printf("%s\n", note.c_str());
-    std::printf("files       %s\n", (std::filesystem::path(settings.output) / "").c_str());
+void print(const ComparisonReport& report, const Arguments& a) {
+    if (a.quiet) return;
+    if (report.sequences.size() <= kManySequences)
+        std::printf("%s\n", terminalTable(report.sequences).c_str());
+    for (const std::string& note : report.info.notes) std::printf("%s\n", note.c_str());
+    std::printf("files       %s\n", (std::filesystem::path(a.output) / "").c_str());
 }
 
 // What makes the whole a failure although the report is written.
-std::string failureOf(const CompareResult& result, const Arguments& a, const CompareSettings& settings) {
-    if (result.interrupted)
-        return "interrupted: " + std::to_string(result.left) + (result.left == 1 ? " run is" : " runs are") +
-               " still to be made; the same command" + (settings.resume ? "" : " with --resume") + " goes on";
+std::string failureOf(const ComparisonReport& report, const Arguments& a) {
     std::string failure, no_evaluation;
     bool some_good = false, some_evaluated = false;
-    for (const SequenceComparison& sequence : result.sequences) {
+    for (const SequenceComparison& sequence : report.sequences) {
         const auto evaluated = evaluateRuns(sequence);
         for (std::size_t i = 0; i < sequence.runs.size(); ++i) {
             const MethodRun& run = sequence.runs[i];
@@ -191,10 +190,8 @@ int runAsChild(const Arguments& a) {
     ChildSettings child;
     child.method = a.run_method;
     child.folder = a.run_folder;
-    child.input = a.inputs.front();
-    child.choice = a.choice;
-    child.skip = a.skip;
-    child.first = a.first;
+    child.sequence = inputSequences(a).front();
+    child.memory_mb = a.memory;
     child.options = collectOptions(a.config, a.sets, "");
     runChild(child);
     return 0;
@@ -225,32 +222,33 @@ int run(int argc, char** argv) {
     }
     checkUsage(a);
 
+    const std::string command = a.command.empty() ? shellCommand({argv, argv + argc}) : a.command;
+    if (!a.report.empty()) {
+        print(reportRows(a.report, a.baseline, a.output, command), a);
+        return 0;
+    }
     CompareSettings settings;
     settings.methods = chosenMethods(a.methods);
-    settings.queue = {chosenCores(a.jobs), a.timeout};
+    if (!a.variant.empty())
+        for (MethodInfo& method : settings.methods) {
+            method.name += kVariantMark + a.variant;
+            method.label += " (" + a.variant + ")";
+        }
+    settings.sequences = inputSequences(a);
+    settings.timeout_s = a.timeout;
+    settings.memory_mb = a.memory;
     settings.options = methodOptions(a);
     settings.output = a.output;
-    settings.resume = a.resume || !a.benchmark.empty();
+    settings.key = a.key;
     settings.quiet = a.quiet;
-    settings.command = shellCommand({argv, argv + argc});
-    if (a.benchmark.empty()) {
-        settings.sequences = inputSequences(a);
-    } else {
-        BenchmarkList list = readBenchmarkList(a.benchmark, a.data);
-        settings.sequences = std::move(list.sequences);
-        settings.missing = std::move(list.missing);
-        for (const std::string& missing : settings.missing)
-            if (!a.quiet) std::fprintf(stderr, "skipped %s\n", missing.c_str());
-        if (settings.sequences.empty())
-            throw std::runtime_error("not one sequence of " + a.benchmark + " is in " + a.data + "; e.g. " +
-                                     settings.missing.front());
+    settings.command = command;
+    if (a.rows_only) {
+        makeRows(settings);
+        return 0;
     }
-    restrictFrames(settings.sequences, a);
-
-    const CompareResult result = compare(settings);
-    report(result, settings);
-    if (const std::string failure = failureOf(result, a, settings); !failure.empty())
-        throw std::runtime_error(failure);
+    const ComparisonReport report = compare(settings);
+    print(report, a);
+    if (const std::string failure = failureOf(report, a); !failure.empty()) throw std::runtime_error(failure);
     return 0;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstddef>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -14,9 +13,8 @@ struct StageStatistics {
     double median = 0, p95 = 0, mean = 0;
 };
 
-/// One method's run over one recording, as it is kept in a folder: run.json, trajectory.txt (TUM), frames.csv
-/// (timestamp,tracked,reason,ms_decode,ms_<stage>…,ms_total) and, for methods with a map, map.3Dscene. The
-/// method ran in a process of its own, on one core, so that its memory and its crashes are its own.
+/// One method's run over one recording, as it is kept in a folder (see rows.h). The method ran in a process
+/// of its own, on one core, so that its memory and its crashes are its own.
 struct MethodRun {
     std::string method, label, note;
     std::string input;    ///< as given on the command line
@@ -34,28 +32,20 @@ struct MethodRun {
     std::vector<StampedPose> trajectory;
     std::string scene;                  ///< file name of the 3-D scene in the folder, or empty
     std::vector<std::string> warnings;  ///< what is odd about the recording or the result, one line each
-    std::size_t jobs = 1;               ///< runs that went on side by side on the machine, this one included
     std::string not_pinned;             ///< why its process was not bound to one core; empty when it was
-    int signal = 0;                     ///< that ended its process; 0: none
-    double timeout_s = 0;               ///< after which it was ended; 0: it was not
-    /// All that the figures depend on: recording, frames, options, program, processor. A run is only taken
-    /// again, instead of made again, when these are the same.
-    std::map<std::string, std::string> settings;
+    std::string key;                    ///< by which roevo-batch tells what it was made of; else empty
+    std::size_t poses = 0;              ///< of the trajectory, where it is known but not at hand
 
     bool ok() const { return skipped.empty() && failure.empty(); }
 };
+
+/// Between a method's name and that of a configuration, where a method is run with several.
+constexpr char kVariantMark = '@';
 
 /// Other programs had the core of a run for longer than this share of its time: its times are in doubt.
 constexpr double kDisturbedShare = 0.05;
 inline bool isDisturbed(const MethodRun& run) {
     return run.core_lost > kDisturbedShare;
 }
-
-/// Writes all but map.3Dscene and frames.csv, run.json last: a folder with run.json is whole.
-/// @throws std::runtime_error
-void writeMethodRun(const std::string& folder, const MethodRun& run);
-
-/// @throws std::runtime_error in one line when it is not there or not whole
-MethodRun readMethodRun(const std::string& folder);
 
 }  // namespace roevo

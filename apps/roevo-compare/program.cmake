@@ -1,8 +1,7 @@
 # All of the program but its command line, for the tests' sake.
 add_library(roevo_compare STATIC
-  benchmark_list.cpp compare.cpp comparison_notes.cpp core_contention.cpp kept_run.cpp machine_info.cpp method_run.cpp
-  queue_display.cpp run_child.cpp run_method.cpp run_progress.cpp run_queue.cpp runs.cpp sequences.cpp
-  terminal_table.cpp)
+  compare.cpp comparison_notes.cpp core_claim.cpp core_contention.cpp machine_info.cpp rows.cpp run_child.cpp run_method.cpp
+  run_progress.cpp sequences.cpp supervised_run.cpp terminal_table.cpp)
 target_include_directories(roevo_compare PUBLIC ${PROJECT_SOURCE_DIR}/apps)
 target_compile_definitions(roevo_compare PRIVATE ROEVO_BUILD_TYPE="${CMAKE_BUILD_TYPE}")
 target_link_libraries(roevo_compare PUBLIC roevo_methods roevo_report roevo_recordings roevo_evaluation

@@ -1,54 +1,81 @@
 #include "run_child.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <new>
 #include <opencv2/core/utility.hpp>
 
 #include "programs/program.h"
 #include "recordings/frame_source.h"
+#include "rows.h"
 #include "run_method.h"
 #include "run_progress.h"
 
 namespace roevo {
 namespace {
 
-MethodInfo infoOf(const std::string& name) {
-    const auto methods = knownMethods();
-    const auto found =
-        std::find_if(methods.begin(), methods.end(), [&](const MethodInfo& m) { return m.name == name; });
-    return found == methods.end() ? MethodInfo() : *found;
+// What it allocates, not its address space: libraries reserve much more of that than they ever touch.
+void limitMemory(double mb) {
+    if (mb <= 0) return;
+    const auto bytes = static_cast<rlim_t>(mb * 1e6);
+    const rlimit limit{bytes, bytes};
+    if (setrlimit(RLIMIT_DATA, &limit) != 0)
+        throw std::runtime_error(std::string("cannot limit the memory: ") + std::strerror(errno));
 }
 
 MethodRun makeRun(const ChildSettings& settings, const RunProgress& progress) {
-    cv::setNumThreads(1);
-    const auto source = openSource(settings.input, settings.choice);
-    const auto method = makeMethod(settings.method, source->camera(), settings.options);
-    skipFrames(*source, settings.skip, settings.input);
-    return runMethod(*method, infoOf(settings.method), *source, settings.first, settings.folder, progress);
+    const std::string name = settings.method.substr(0, settings.method.find(kVariantMark));
+    const auto source = openSource(settings.sequence.input, settings.sequence.choice);
+    const auto method = makeMethod(name, source->camera(), settings.options);
+    skipFrames(*source, settings.sequence.skip, settings.sequence.input);
+    return runMethod(*method, {}, *source, settings.sequence.first, settings.folder, progress);
 }
 
-void keepFailure(const ChildSettings& settings, const std::string& reason) {
-    MethodRun run;
-    run.method = settings.method;
-    run.failure = reason;
+void keepFailure(const ChildSettings& settings, SequenceComparison row, const std::string& reason) {
+    row.name = settings.sequence.name;
+    row.runs.resize(1);
+    row.runs[0] = MethodRun();
+    row.runs[0].method = settings.method;
+    row.runs[0].failure = reason;
     try {
-        writeMethodRun(settings.folder, run);
+        writeRow(settings.folder, row);
     } catch (const std::exception&) {  // the reason is told all the same, as this process's last words
     }
+}
+
+std::string outOfMemory(const ChildSettings& settings) {
+    char text[64] = "out of memory";
+    if (settings.memory_mb > 0)
+        std::snprintf(text, sizeof text, "out of memory: more than %g MB", settings.memory_mb);
+    return text;
 }
 
 }  // namespace
 
 void runChild(const ChildSettings& settings) {
+    SequenceComparison row;
     try {
+        limitMemory(settings.memory_mb);
+        cv::setNumThreads(1);
+        row = openSequence(settings.sequence);
+        if (!row.failure.empty()) throw std::runtime_error(row.failure);
         const ProgressFile file(settings.folder);
         const auto tell = [&](std::size_t frames, double share) { file.write({frames, share}); };
-        writeMethodRun(settings.folder, makeRun(settings, tell));
-    } catch (const std::bad_alloc&) {
-        keepFailure(settings, "out of memory");
-        throw;
+        row.runs = {makeRun(settings, tell)};
+        MethodRun& run = row.runs[0];
+        run.method = settings.method;
+        run.poses = run.trajectory.size();
+        // A rawlog does not tell its length before its end
+        if (run.frames < settings.sequence.first)
+            row.part = partOf(settings.sequence, settings.sequence.skip + run.frames);
+        writeRow(settings.folder, row);
     } catch (const std::exception& e) {
-        keepFailure(settings, firstLine(e.what()));
+        const std::string reason = isOutOfMemory(e) ? outOfMemory(settings) : describe(e);
+        keepFailure(settings, row, reason);
         throw;
     }
 }

@@ -2,20 +2,21 @@
 #include <cstddef>
 #include <string>
 
-#include "recordings/input_choice.h"
 #include "roevo/options.h"
+#include "sequences.h"
 
 namespace roevo {
 
 /// One method's run over one recording, in the process that was started for it.
 struct ChildSettings {
-    std::string method, folder, input;
-    InputChoice choice;
-    std::size_t skip = 0, first = 0;
+    std::string method;  ///< with its variant
+    std::string folder;
+    SequenceInput sequence;
     OdometryOptions options;
+    double memory_mb = 0;  ///< that it may have; 0: no limit
 };
 
-/// Makes the run and keeps it in the folder, as runTasks() expects it of a process.
+/// Makes the run and keeps it in the folder, as supervisedRun() expects it of a process.
 /// @throws std::exception with the reason, which is kept there, too, when there is no result
 void runChild(const ChildSettings& settings);
 

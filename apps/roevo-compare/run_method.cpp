@@ -39,7 +39,7 @@ auto guarded(const std::string& where, const Work& work) {
     } catch (const std::bad_alloc&) {
         throw std::runtime_error(where + ": out of memory");
     } catch (const std::exception& e) {
-        throw std::runtime_error(where + ": " + firstLine(e.what()));
+        throw std::runtime_error(where + ": " + describe(e));
     } catch (...) {
         throw std::runtime_error(where + ": it threw something that is no std::exception");
     }

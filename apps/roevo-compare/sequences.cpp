@@ -1,10 +1,7 @@
 #include "sequences.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -57,31 +54,6 @@ void setGroundTruth(SequenceComparison& out, const SequenceInput& sequence, cons
         return;
     }
     out.ground_truth_fault = truth.note;
-    if (truth.note.empty() && !sequence.expected_ground_truth.empty())
-        out.ground_truth_fault = "there is no ground truth in " + sequence.input + " (the list says " +
-                                 sequence.expected_ground_truth + ")";
-}
-
-void addFile(const fs::path& file, const std::string& name, std::set<std::string>& files) {
-    struct stat state {};
-    if (stat(file.c_str(), &state) == 0)
-        files.insert(name + " " + std::to_string(state.st_size) + " " + std::to_string(state.st_mtim.tv_sec) +
-                     "." + std::to_string(state.st_mtim.tv_nsec));
-}
-
-// All files in the folder and those below it, but for the folder `left_out`.
-void addBelow(const fs::path& folder, const fs::path& left_out, std::set<std::string>& files) {
-    constexpr int kDeepest = 3;  // datasets need one or two; links can lead round in circles
-    constexpr auto kOptions =
-        fs::directory_options::skip_permission_denied | fs::directory_options::follow_directory_symlink;
-    std::error_code fault, ignored;
-    fs::recursive_directory_iterator at(folder, kOptions, fault);
-    for (; !fault && at != fs::recursive_directory_iterator(); at.increment(fault)) {
-        const bool is_folder = at->is_directory(ignored);
-        if (is_folder && (at.depth() >= kDeepest || wholePath(at->path().string()) == left_out))
-            at.disable_recursion_pending();
-        if (!is_folder) addFile(at->path(), at->path().lexically_relative(folder).string(), files);
-    }
 }
 
 }  // namespace
@@ -135,25 +107,9 @@ SequenceComparison openSequence(const SequenceInput& sequence) {
     } catch (const Interrupted&) {
         throw;
     } catch (const std::exception& e) {
-        out.failure = firstLine(e.what());
+        out.failure = describe(e);
     }
     return out;
-}
-
-std::string recordingState(const std::string& input, const std::string& output) {
-    const fs::path path = wholePath(input);
-    const fs::path images = fs::path(path).replace_filename(path.stem().string() + "_Images");
-    std::set<std::string> files;  // in an order that does not depend on the file system
-    std::error_code fault;
-    if (fs::is_directory(path, fault)) {
-        addBelow(path, wholePath(output), files);
-    } else {
-        addFile(path, path.filename().string(), files);
-        if (fs::is_directory(images, fault)) addBelow(images, wholePath(output), files);
-    }
-    std::string all;
-    for (const std::string& file : files) all += file + "\n";
-    return path.string() + " (state " + std::to_string(std::hash<std::string>()(all)) + ")";
 }
 
 }  // namespace roevo

@@ -15,7 +15,6 @@ struct SequenceInput {
     std::string input;                   ///< rawlog, bag or dataset folder, as given
     InputChoice choice;                  ///< of its frames
     std::string ground_truth;            ///< file to be taken; empty: what lies beside the recording
-    std::string expected_ground_truth;   ///< what a list says of it, for the message when there is none
     std::size_t skip = 0, first = 0;     ///< at most `first` frames (0: all) after leaving out `skip`
     std::optional<double> paper_ate_cm;  ///< the paper's figure for just these frames
     std::string note;                    ///< what a list says of it that a reader must know; may be empty
@@ -34,10 +33,5 @@ std::string partOf(const SequenceInput& sequence, std::size_t size);
 /// @throws UsageError for options that do not suit the recording; std::runtime_error for a ground truth that
 /// was named and cannot be read
 SequenceComparison openSequence(const SequenceInput& sequence);
-
-/// Changes when the recording's files on disk change: its path, and names, sizes and times of the rawlog and
-/// of all in its folder of images, or of all in the dataset's folder and those below it. Nothing is read.
-/// @param output  folder that is no part of it even if it lies inside
-std::string recordingState(const std::string& input, const std::string& output);
 
 }  // namespace roevo

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "roevo-compare/method_run.h"
+#include "roevo-compare/rows.h"
 #include "support/run_program.h"
 #include "support/tum_folder.h"
 
@@ -52,28 +52,7 @@ class CompareProgram : public testing::Test {
         return output() + "/runs/" + sequence + "/" + method;
     }
     MethodRun kept(const std::string& sequence, const std::string& method) const {
-        return readMethodRun(runFolder(sequence, method));
-    }
-    // Whatever else goes on on the machine of the test: a run whose core was taken would be made anew.
-    void pretendACalmMachine() const {
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(output())) {
-            if (entry.path().filename() != "run.json") continue;
-            const std::string folder_of_run = entry.path().parent_path().string();
-            MethodRun run = readMethodRun(folder_of_run);
-            if (run.core_lost <= 0) continue;
-            run.core_lost = 0;
-            writeMethodRun(folder_of_run, run);
-        }
-    }
-    auto madeAt(const std::string& sequence, const std::string& method) const {
-        return std::filesystem::last_write_time(runFolder(sequence, method) + "/run.json");
-    }
-    // Changes a run that was kept.
-    void changeRun(const std::string& sequence, const std::string& method,
-                   const std::function<void(MethodRun& run)>& change) const {
-        MethodRun run = kept(sequence, method);
-        change(run);
-        writeMethodRun(runFolder(sequence, method), run);
+        return readRow(runFolder(sequence, method)).runs[0];
     }
     std::string table() const { return readFile(output() + "/table.csv"); }
     void expectRow(const std::string& begin) const {

@@ -1,10 +1,13 @@
 // roevo-compare over recordings that are given one by one.
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 
 #include "compare_program.h"
-#include "programs/process.h"
 #include "roevo-compare/compare.h"
 #include "roevo-compare/terminal_table.h"
 
@@ -59,9 +62,9 @@ TEST_F(Compare, RunsEveryMethodAsRoevoOdometryWould) {
 
 TEST_F(Compare, OptionsAndFramesReachTheMethods) {
     const std::string input = clip("clip", 8);
-    const std::vector<std::string> more{"--methods", "roevo-tr", "--skip",    "2",
-                                        "--first",   "4",        "--set",     "edges.min_length=15",
-                                        "--jobs",    "1",        "--timeout", "100"};
+    const std::vector<std::string> more{"--methods", "roevo-tr", "--skip",   "2",
+                                        "--first",   "4",        "--set",    "edges.min_length=15",
+                                        "--timeout", "100",      "--memory", "3000"};
     ASSERT_EQ(run({input}, more).exit_code, 0);
     const auto alone = test::runProgram(
         "roevo-odometry", {"--input", input, "--output", folder / "alone", "--mode", "tr", "--skip", "2",
@@ -214,9 +217,13 @@ TEST_F(Compare, WrongUsage) {
     expectError(test::runProgram(kName, {"--output", output()}), 2, kName, {"required"});
     expectError(run({input}, {"--methods", "roevo-xy"}), 2, kName, {"roevo-xy", "roevo-ba"});
     expectError(run({input}, {"--methods", "roevo-ba,roevo-ba"}), 2, kName, {"twice"});
-    expectError(run({input}, {"--jobs", "0"}), 2, kName, {"--jobs"});
-    expectError(run({input}, {"--jobs", "100000"}), 2, kName, {"--jobs 100000", "core"});
-    expectError(run({input}, {"--jobs", "-1"}), 2, kName, {"--jobs"});
+    expectError(run({input}, {"--memory", "-1"}), 2, kName, {"--memory"});
+    for (const char* of_one : {"--name", "--note", "--ground-truth"})
+        expectError(run({input, input}, {of_one, "x"}), 2, kName, {of_one, "single --input"});
+    expectError(run({input}, {"--name", "../x"}), 2, kName, {"--name ../x"});
+    expectError(run({input}, {"--variant", "a/b"}), 2, kName, {"--variant a/b"});
+    expectError(run({input}, {"--baseline", input}), 2, kName, {"--baseline is for --report"});
+    expectError(run({input}, {"--report", input}), 2, kName, {"--input and --report"});
     expectError(run({input}, {"--timeout", "0"}), 2, kName, {"--timeout"});
     expectError(run({input}, {"--timeout", "nan"}), 2, kName, {"--timeout"});
     expectError(run({input}, {"--first", "-3"}), 2, kName, {"--first"});
@@ -255,8 +262,6 @@ TEST_F(Compare, RunsThatTakeTooLongAreFailuresInTheTable) {
     expectError(result, 1, kName, {"no method gave a result", "0.05 s"});
     expectRow("clip,roevo-tr,");
     EXPECT_NE(table().find("not done within 0.05 s"), std::string::npos) << table();
-    ASSERT_EQ(run({input}, {"--methods", "roevo-tr", "--resume"}).exit_code, 0) << "given more time";
-    EXPECT_TRUE(kept("clip", "roevo-tr").ok());
 }
 
 TEST_F(Compare, MethodsThatAreNotAvailableAreSkippedWithTheReason) {
@@ -271,9 +276,9 @@ TEST_F(Compare, MethodsThatAreNotAvailableAreSkippedWithTheReason) {
     method.unavailable = "this build has no such library";
     settings.methods = {method};
     settings.output = output();
-    settings.queue = {{-1}, 10};
+    settings.timeout_s = 10;
     settings.quiet = true;
-    const CompareResult result = compare(settings);
+    const ComparisonReport result = compare(settings);
     ASSERT_EQ(result.sequences.size(), 1u);
     ASSERT_EQ(result.sequences[0].runs.size(), 1u);
     EXPECT_EQ(result.sequences[0].runs[0].skipped, method.unavailable);
@@ -285,13 +290,103 @@ TEST_F(Compare, MethodsThatAreNotAvailableAreSkippedWithTheReason) {
     EXPECT_FALSE(fs::exists(runFolder("clip", "lacking")));
 }
 
-TEST_F(Compare, JobsAreToldInTheReport) {
-    if (allowedCores().size() < 2) GTEST_SKIP() << "one core only";
-    const auto result = run({clip("clip", 6)}, {"--methods", "roevo-ct,roevo-tr", "--jobs", "2"});
+TEST_F(Compare, RunsThatTakeTooMuchMemoryAreFailures) {
+    const std::string input = clip("clip", 4);
+    expectError(run({input}, {"--methods", "roevo-tr", "--memory", "20"}), 1, kName,
+                {"no method gave a result"});
+    EXPECT_NE(kept("clip", "roevo-tr").failure.find("memory"), std::string::npos)
+        << kept("clip", "roevo-tr").failure;
+}
+
+TEST_F(Compare, AMethodThatCrashesIsARowAndTheNextOneRuns) {
+    const std::string input = clip("clip", 80), myself = std::to_string(getpid());
+    const std::string children = "/proc/" + myself + "/task/" + myself + "/children";
+    if (!fs::exists(children)) GTEST_SKIP() << "no " << children;
+    const auto result =
+        runMeanwhile(arguments({input}, {"--methods", "roevo-tr,roevo-ct"}), [&](pid_t program) {
+            const std::string id = std::to_string(program);
+            std::string child;
+            for (int i = 0; i < 6000 && child.empty(); ++i) {
+                usleep(5'000);
+                child = readFile("/proc/" + id + "/task/" + id + "/children");
+                if (readFile("/proc/" + std::to_string(std::atoi(child.c_str())) + "/cmdline")
+                        .find("--run-method") == std::string::npos)
+                    child.clear();  // before its exec it still is this program
+            }
+            ASSERT_FALSE(child.empty());
+            kill(std::stoi(child), SIGSEGV);
+        });
     ASSERT_EQ(result.exit_code, 0) << result.all();
-    EXPECT_EQ(kept("clip", "roevo-ct").jobs, 2u);
-    EXPECT_NE(readFile(output() + "/table.md").find("side by side"), std::string::npos);
-    EXPECT_NE(result.out.find("side by side"), std::string::npos) << result.out;
+    expectRow("clip,roevo-tr,");
+    expectRow("clip,roevo-ct,");
+    EXPECT_NE(kept("clip", "roevo-tr").failure.find("signal 11"), std::string::npos)
+        << kept("clip", "roevo-tr").failure;
+    EXPECT_TRUE(kept("clip", "roevo-ct").ok());
+    EXPECT_NE(result.out.find("failed: it died of signal 11"), std::string::npos) << result.out;
+}
+
+// Interrupts the program as soon as the first run is there. The second takes long enough for that.
+TEST_F(Compare, AnInterruptKeepsWhatIsFinished) {
+    const std::string quick = clip("quick", 3), slow = clip("slow", 80);
+    fs::create_directories(output() + "/runs/quick/.roevo-tr.host.1.partial/deep");  // of one that was killed
+    const std::string first = runFolder("quick", "roevo-tr") + "/run.json";
+    const auto result = runMeanwhile(arguments({quick, slow}, {"--methods", "roevo-tr"}), [&](pid_t program) {
+        for (int i = 0; i < 6000 && !fs::exists(first); ++i) usleep(5'000);
+        kill(program, SIGINT);
+    });
+    expectError(result, 1, kName, {"interrupted"});
+    EXPECT_TRUE(kept("quick", "roevo-tr").ok());
+    EXPECT_FALSE(fs::exists(runFolder("slow", "roevo-tr")));
+    for (const auto& entry : fs::recursive_directory_iterator(output()))
+        EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+}
+
+TEST_F(Compare, TwoProgramsDoNotShareAnOutputFolder) {
+    const std::string input = clip("clip", 3);
+    fs::create_directory(output());
+    const int fd = open(output().c_str(), O_RDONLY | O_DIRECTORY);
+    ASSERT_EQ(flock(fd, LOCK_EX), 0);
+    expectError(run({input}, {"--methods", "roevo-ct"}), 1, kName, {"another roevo-compare", output()});
+    EXPECT_EQ(run({input}, {"--methods", "roevo-ct", "--rows-only"}).exit_code, 0) << "they may make rows";
+    close(fd);
+}
+
+TEST_F(Compare, AReportOfRowsIsThatOfTheirRuns) {
+    const std::string input = clip("clip", 5);
+    const auto whole = run({input}, {"--methods", "roevo-ct,distance-field"});
+    ASSERT_EQ(whole.exit_code, 0) << whole.all();
+    const std::string report = folder / "report";
+    const auto again = test::runProgram(kName, {"--report", output() + "/runs", "--output", report});
+    ASSERT_EQ(again.exit_code, 0) << again.all();
+    EXPECT_EQ(readFile(report + "/table.csv"), table());
+    const std::string one = readFile(output() + "/report.html"), other = readFile(report + "/report.html");
+    EXPECT_EQ(std::count(one.begin(), one.end(), '<'), std::count(other.begin(), other.end(), '<'));
+    EXPECT_NE(other.find("<svg class=\"plot\""), std::string::npos);
+    const auto compared = test::runProgram(kName, {"--report", output() + "/runs", "--baseline",
+                                                   output() + "/runs", "--output", report, "--quiet"});
+    ASSERT_EQ(compared.exit_code, 0) << compared.all();
+    EXPECT_NE(readFile(report + "/report.html").find("Against the earlier comparison"), std::string::npos);
+}
+
+TEST_F(Compare, RowsAreMadeEvenOfARecordingThatCannotBeUsed) {
+    fs::create_directories(folder / "broken");
+    const std::vector<std::string> more{"--methods", "roevo-ct", "--rows-only", "--variant", "thin",
+                                        "--key",     "k1",       "--name",      "other",     "--paper-ate",
+                                        "1.5",       "--note",   "mind this",   "--quiet"};
+    for (const std::string& input : {folder / "broken", folder / "none.rawlog"}) {
+        const auto result = run({input}, more);
+        ASSERT_EQ(result.exit_code, 0) << result.all();
+        EXPECT_NE(kept("other", "roevo-ct@thin").failure, "");
+        EXPECT_EQ(kept("other", "roevo-ct@thin").key, "k1");
+        EXPECT_FALSE(fs::exists(output() + "/table.csv"));
+    }
+    const auto good = run({clip("clip", 4)}, more);
+    ASSERT_EQ(good.exit_code, 0) << good.all();
+    const SequenceComparison row = readRow(runFolder("other", "roevo-ct@thin"));
+    EXPECT_EQ(row.runs[0].label.find("ROEVO CT"), 0u);
+    EXPECT_NE(row.runs[0].label.find("(thin)"), std::string::npos);
+    EXPECT_EQ(row.paper_ate_cm, 1.5);
+    EXPECT_EQ(row.notes.at(0), "mind this");
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include "report_fixture.h"
 #include "roevo-compare/comparison_notes.h"
-#include "roevo-compare/queue_display.h"
 #include "roevo-compare/terminal_table.h"
 
 namespace roevo {
@@ -52,59 +51,22 @@ TEST(TerminalTable, SaysWhatIsOddOnce) {
         EXPECT_EQ(count(text, words), 1u) << words << " in " << text;
 }
 
-TEST(QueueDisplay, WarnsOnceOfRunsThatAreNotPinned) {
-    RunTask task;
-    task.sequence = "s";
-    const std::vector<RunTask> tasks(3, task);
-    auto bound = makeRun("a", 0.01), free = makeRun("b", 0.01);
-    free.not_pinned = "core 1: it is not allowed";
-    for (const bool enabled : {true, false}) {
-        testing::internal::CaptureStderr();
-        {
-            QueueDisplay display(tasks, enabled);
-            display.finished(0, bound, 1);
-            for (const std::size_t i : {1u, 2u}) display.finished(i, free, 1);
-        }
-        const std::string text = testing::internal::GetCapturedStderr();
-        EXPECT_EQ(count(text, "warning: runs are not pinned to one core: core 1: it is not allowed\n"),
-                  enabled ? 1u : 0u)
-            << text;
-    }
-}
-
-CompareResult resultOf(const std::vector<MethodRun>& runs) {
-    CompareResult result;
-    result.sequences = {makeSequence("s", runs)};
-    result.runs = runs.size();
-    return result;
-}
-
 TEST(ComparisonNotes, NoneWhenAllWentWell) {
     auto fair = makeRun("a", 0.01);
     fair.core_lost = 0.04;
-    EXPECT_EQ(comparisonNotes({}, resultOf({fair, makeRun("b", 0.01)})), std::vector<std::string>());
+    EXPECT_EQ(comparisonNotes({makeSequence("s", {fair, makeRun("b", 0.01)})}), std::vector<std::string>());
 }
 
 TEST(ComparisonNotes, SayWhatCastsDoubtOnTheTimes) {
     auto disturbed = makeRun("a", 0.01), free = makeRun("b", 0.01);
     disturbed.core_lost = 0.31;
-    disturbed.jobs = 2;
     free.not_pinned = "core 1: it is not allowed";
-    CompareSettings settings;
-    settings.missing = {"gone: not in data (x, y)", "lost: not in data (z)"};
-    CompareResult result = resultOf({disturbed, free, makeRun("c", 0.01)});
-    result.interrupted = true;
-    result.left = 4;
-    const auto notes = comparisonNotes(settings, result);
-    ASSERT_EQ(notes.size(), 5u);
+    const auto notes = comparisonNotes({makeSequence("s", {disturbed, free, makeRun("c", 0.01)})});
+    ASSERT_EQ(notes.size(), 2u);
     EXPECT_TRUE(contains(notes[0], "in 1 of 3 runs")) << notes[0];
     EXPECT_TRUE(contains(notes[0], "more than 5 %") && contains(notes[0], "up to 31 %")) << notes[0];
-    EXPECT_TRUE(contains(notes[0], "--resume")) << notes[0];
     EXPECT_TRUE(contains(notes[1], "Not pinned: 1 of 3 runs")) << notes[1];
     EXPECT_TRUE(contains(notes[1], "core 1: it is not allowed")) << notes[1];
-    EXPECT_TRUE(contains(notes[2], "Up to 2 runs went on side by side")) << notes[2];
-    EXPECT_TRUE(contains(notes[3], "2 sequences") && contains(notes[3], "gone, lost.")) << notes[3];
-    EXPECT_TRUE(contains(notes[4], "4 runs are still to be made")) << notes[4];
 }
 
 }  // namespace

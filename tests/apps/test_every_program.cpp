@@ -32,7 +32,8 @@ TEST_P(EveryProgram, WrongUsageIsExitCode2) {
 
 INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram,
                          testing::Values("roevo-odometry", "roevo-eval", "roevo-render", "rgbd2rawlog",
-                                         "rawlog2rgbd", "rawlog-simulate", "roevo-compare", "roevo-study"),
+                                         "rawlog2rgbd", "rawlog-simulate", "roevo-compare", "roevo-batch",
+                                         "roevo-study"),
                          [](const auto& info) {
                              std::string name = info.param;
                              name.erase(std::remove(name.begin(), name.end(), '-'), name.end());

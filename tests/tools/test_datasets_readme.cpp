@@ -230,8 +230,8 @@ std::vector<std::string> wordsOf(const std::string& line) {
 
 // A command that was renamed, or an option that is gone, must not stay in the pages.
 TEST(DatasetsReadme, CommandsNameProgramsAndOptionsThatExist) {
-    const std::set<std::string> ours{"rgbd2rawlog", "bag2rawlog", "roevo-odometry", "roevo-eval",
-                                     "roevo-compare"};
+    const std::set<std::string> ours{"rgbd2rawlog", "bag2rawlog",    "roevo-odometry",
+                                     "roevo-eval",  "roevo-compare", "roevo-batch"};
     std::map<std::string, std::string> help;
     std::map<std::string, int> used;
     for (const std::string& page : pages())
@@ -262,6 +262,7 @@ TEST(DatasetsReadme, CommandsNameProgramsAndOptionsThatExist) {
     EXPECT_GE(used["rgbd2rawlog"], 6);
     EXPECT_GE(used["roevo-odometry"], 10);
     EXPECT_GE(used["roevo-eval"], 7);
+    EXPECT_GE(used["roevo-batch"], 1);
     EXPECT_GE(used["roevo-compare"], 1);
 }
 

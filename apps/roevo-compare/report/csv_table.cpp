@@ -55,7 +55,7 @@ void addStatistics(Row& row, const std::string& name, const std::string& unit, c
 }
 
 void addErrors(Row& row, const Evaluation* e) {
-    row.count("associated_poses", e ? std::optional<std::size_t>(e->pairs.size()) : std::nullopt);
+    row.count("associated_poses", e ? std::optional<std::size_t>(e->ate.translation.count) : std::nullopt);
     addStatistics(row, "ate", "m", e ? &e->ate.translation : nullptr);
     addStatistics(row, "rpe_second_translation", "m_per_s", e ? &e->rpe_second.translation : nullptr);
     addStatistics(row, "rpe_second_rotation", "deg_per_s", e ? &e->rpe_second.rotation : nullptr);
@@ -139,7 +139,9 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
     row.count("frames_rejected", counted(&MethodRun::rejected));
     row.count("frames_tracked", counted(&MethodRun::tracked));
     row.number("tracked_share", run ? trackedShare(*run) : std::nullopt);
-    row.count("poses", run && run->ok() ? std::optional<std::size_t>(run->trajectory.size()) : std::nullopt);
+    row.count("poses", run && run->ok()
+                           ? std::optional<std::size_t>(std::max(run->trajectory.size(), run->poses))
+                           : std::nullopt);
     addErrors(row, evaluated && evaluated->evaluation ? &*evaluated->evaluation : nullptr);
     static const char* const rank_names[] = {"rank_ate", "rank_rpe_second_translation",
                                              "rank_rpe_second_rotation", "rank_rpe_frame_translation",
@@ -150,7 +152,7 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
     }
     addCosts(row, run, stages);
     row.number("ground_truth_length_m", sequence.reference.empty()
-                                            ? std::nullopt
+                                            ? sequence.ground_truth_length_m
                                             : std::optional<double>(pathLength(sequence.reference)));
     row.number("paper_roevo_ba_ate_cm", sequence.paper_ate_cm);
     row.text("input", sequence.input);
@@ -160,7 +162,6 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
     row.text("sequence_part", sequence.part);
     row.text("sequence_note", joined(sequence.notes));
     row.text("warning", run ? joined(warningsOf(*run, *evaluated)) : "");
-    row.count("jobs_side_by_side", counted(&MethodRun::jobs));
     row.text("not_pinned", run ? run->not_pinned : "");
     row.text("protocol", errorProtocol() + " " + costProtocol(!run || run->not_pinned.empty()));
     return row;

@@ -14,8 +14,15 @@ std::string csvTable(const std::vector<SequenceResults>& results);
 std::string markdownTables(const std::vector<SequenceResults>& results, const ComparisonInfo& info);
 
 /// report.html, well-formed XML, with plots and pictures inside and nothing to be loaded.
-/// @param folder  where it will lie: links to the runs are relative to it
+/// @param folder    where it will lie: links to the runs are relative to it
+/// @param baseline  an earlier comparison; may be empty
 std::string htmlReport(const std::vector<SequenceResults>& results, const ComparisonInfo& info,
-                       const std::string& folder);
+                       const std::string& folder, const std::vector<SequenceResults>& baseline = {});
+
+/// Where a report of many has the page of one of its recordings: in its folder `pages`.
+std::string pageFile(const std::string& folder, const SequenceComparison& sequence);
+
+/// Whether there is something for such a page.
+bool hasTrajectories(const SequenceComparison& sequence);
 
 }  // namespace roevo

@@ -1,11 +1,10 @@
 #include <set>
 
-#include "programs/program.h"
 #include "programs/text.h"
 #include "roevo-compare/report/documents.h"
 #include "roevo-compare/report/html_parts.h"
+#include "roevo-compare/report/html_sections.h"
 #include "roevo-compare/report/html_sequence.h"
-#include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/remarks.h"
 
@@ -16,20 +15,12 @@ namespace {
 constexpr std::size_t kFewSequences = 2;  // so many let two tables stand side by side on a wide page
 constexpr std::size_t kSummaryMetrics[] = {0, 1, 2, 5, 6, 8};
 
-std::string count(std::size_t n, const std::string& what) {
-    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
-}
-
-std::string remark(const std::string& text) {
-    return "<p class=\"remark\">" + htmlText(text) + "</p>\n";
-}
-
 std::string header(const std::vector<SequenceResults>& results, const Legend& legend,
                    const ComparisonInfo& info) {
     std::string html = "<header>\n<h1>Comparison of RGB-D odometries</h1>\n<p class=\"subtitle\">" +
-                       count(legend.methods.size(), "method") + " on " + count(results.size(), "sequence") +
-                       " · " + htmlText(info.date) + "</p>\n<p class=\"verdict\">" +
-                       htmlText(verdict(results)) + "</p>\n";
+                       counted(legend.methods.size(), "method") + " on " +
+                       counted(results.size(), "sequence") + " · " + htmlText(info.date) +
+                       "</p>\n<p class=\"verdict\">" + htmlText(verdict(results)) + "</p>\n";
     for (const std::string& sentence : remarks(results)) html += remark(sentence);
     for (const std::string& note : info.notes) html += remark(note);
     html += "<nav>";
@@ -86,51 +77,21 @@ std::string ranking(const std::vector<SequenceResults>& results, const Legend& l
     return html + setTable(rankingTable(results, legend.methods), "rank_all", false) + "</section>\n";
 }
 
-std::string methodList(const Legend& legend) {
-    std::string html = "<section id=\"Methods\">\n<h2>Methods</h2>\n<dl class=\"methods\">\n";
-    for (std::size_t m = 0; m < legend.methods.size(); ++m)
-        html += "<dt>" + lineSample(legend.styles[m]) + htmlText(legend.methods[m].label) + "</dt>" +
-                element("dd", legend.methods[m].note) + "\n";
-    return html + "</dl>\n</section>\n";
-}
-
-std::string protocol(bool pinned) {
-    std::string html = "<section id=\"Protocol\">\n<h2>Protocol</h2>\n<ul class=\"lines\">\n";
-    for (const std::string& line : protocolLines(pinned)) html += element("li", line) + "\n";
-    return html + "</ul>\n</section>\n";
-}
-
-std::string repeating(const ComparisonInfo& info) {
-    std::string html = "<section id=\"Repeating\">\n<h2>Repeating it</h2>\n" + element("pre", info.command) +
-                       "\n<table>\n<tbody>\n";
-    const auto row = [&](const std::string& name, const std::string& value) {
-        html += "<tr><th scope=\"row\">" + htmlText(name) + "</th><td class=\"text\">" + htmlText(value) +
-                "</td></tr>\n";
-    };
-    row("Date", info.date);
-    row("Machine", info.machine);
-    for (const auto& [name, version] : info.versions) row(name, version);
-    return html + "</tbody></table>\n</section>\n";
-}
-
 }  // namespace
 
 std::string htmlReport(const std::vector<SequenceResults>& results, const ComparisonInfo& info,
-                       const std::string& folder) {
+                       const std::string& folder, const std::vector<SequenceResults>& baseline) {
     const auto methods = tableMethods(results);
     const Legend legend{methods, lineStyles(methods)};
+    if (results.size() > kManySequences) return htmlReportOfMany(results, legend, info, folder, baseline);
     SequenceWriter writer(legend, folder, results.size() > 1);
     std::string sequences;
     for (std::size_t s = 0; s < results.size(); ++s) sequences += writer.write(results[s], s + 1);
-    std::string html =
-        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta "
-        "charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-        "<title>Comparison of RGB-D odometries</title>\n<style>" +
-        std::string(pageStyle()) + "</style>\n</head>\n<body>\n" + header(results, legend, info);
+    std::string html = pageHead() + header(results, legend, info);
     if (!writer.plotFault().empty()) html += remark("No plots: " + writer.plotFault());
-    return html + "<main>\n" + summary(results, legend, folder) + sequences + ranking(results, legend) +
-           methodList(legend) + protocol(allPinned(results)) + repeating(info) +
-           "</main>\n</body>\n</html>\n";
+    return html + "<main>\n" + summary(results, legend, folder) + changesSection(results, baseline) +
+           sequences + ranking(results, legend) + methodList(legend) + protocolSection(allPinned(results)) +
+           repeating(info) + "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace roevo

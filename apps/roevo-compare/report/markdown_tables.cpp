@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "programs/text.h"
+#include "roevo-compare/report/distributions.h"
 #include "roevo-compare/report/documents.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
@@ -65,13 +66,10 @@ std::string recordings(const std::vector<SequenceResults>& results) {
     return text.empty() ? text : "\n## Recordings\n\n" + text;
 }
 
-}  // namespace
-
-std::string markdownTables(const std::vector<SequenceResults>& results, const ComparisonInfo& info) {
-    const auto methods = tableMethods(results);
-    Footnotes notes;
-    std::string text = "# Comparison of RGB-D odometries\n\n" + markdownText(verdict(results)) +
-                       " The best figures are bold.\n\n";
+// What a reader must know, and the figures of each sequence.
+std::string figures(const std::vector<SequenceResults>& results, const std::vector<TableMethod>& methods,
+                    Footnotes& notes) {
+    std::string text;
     const auto important = remarks(results);
     for (const std::string& remark : important) text += "- " + markdownText(remark) + "\n";
     if (!important.empty()) text += "\n";
@@ -85,6 +83,18 @@ std::string markdownTables(const std::vector<SequenceResults>& results, const Co
         table.title = result.sequence->name + ": " + table.title;
         text += setTable(table, notes);
     }
+    return text;
+}
+
+}  // namespace
+
+std::string markdownTables(const std::vector<SequenceResults>& results, const ComparisonInfo& info) {
+    const auto methods = tableMethods(results);
+    Footnotes notes;
+    std::string text = "# Comparison of RGB-D odometries\n\n" + markdownText(verdict(results)) +
+                       " The best figures are bold.\n\n";
+    text += results.size() > kManySequences ? setTable(distributionTable(results, methods), notes)
+                                            : figures(results, methods, notes);
     text +=
         "## Ranking\n\nNumber of sequences, as they were run here, on which a method is among the first 1, "
         "2, 3.\n\n";
@@ -97,7 +107,7 @@ std::string markdownTables(const std::vector<SequenceResults>& results, const Co
     text += notes.list() + "## Methods\n\n";
     for (const TableMethod& method : methods)
         text += "- **" + markdownText(method.label) + "**: " + markdownText(method.note) + "\n";
-    text += recordings(results) + "\n## Protocol\n\n";
+    text += (results.size() > kManySequences ? "" : recordings(results)) + "\n## Protocol\n\n";
     for (const std::string& line : protocolLines(allPinned(results))) text += "- " + line + "\n";
     for (const std::string& note : info.notes) text += "- " + markdownText(note) + "\n";
     text += "\n## Repeating it\n\n" + code(info.command) + "\n- Date: " + markdownText(info.date) +

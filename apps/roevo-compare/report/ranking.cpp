@@ -59,7 +59,7 @@ bool isOurs(const std::string& method) {
 
 int fullnessOf(const std::string& method) {
     static const std::vector<std::string> modes{"roevo-ct", "roevo-tr", "roevo-ba"};
-    const auto at = std::find(modes.begin(), modes.end(), method);
+    const auto at = std::find(modes.begin(), modes.end(), method.substr(0, method.find(kVariantMark)));
     return at == modes.end() ? 0 : 1 + static_cast<int>(at - modes.begin());
 }
 

@@ -55,8 +55,9 @@ EvaluatedRun evaluateRun(const SequenceComparison& sequence, const MethodRun& ru
 }  // namespace
 
 std::vector<EvaluatedRun> evaluateRuns(const SequenceComparison& sequence) {
-    std::vector<EvaluatedRun> results;
-    for (const MethodRun& run : sequence.runs) results.push_back(evaluateRun(sequence, run));
+    std::vector<EvaluatedRun> results = sequence.errors;
+    if (results.empty())
+        for (const MethodRun& run : sequence.runs) results.push_back(evaluateRun(sequence, run));
     // A wrong unit of depth misleads all methods alike; what only some of them show is their own drift
     const auto evaluated = std::count_if(results.begin(), results.end(),
                                          [](const EvaluatedRun& run) { return run.evaluation.has_value(); });

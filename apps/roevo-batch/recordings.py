@@ -1,0 +1,106 @@
+"""What a batch is made of: recordings of a folder, of a list, or of a list of sequences in JSON."""
+
+import json
+import os
+import re
+
+from messages import Fault, say
+
+ENDINGS = (".rawlog", ".bag", ".db3", ".mcap")
+PARTS_OF_A_RECORDING = ("rgb", "depth", "rgb.txt", "associations.txt", "metadata.yaml", "camera.txt")
+
+
+def recording(path, name=None, **more):
+    return {"input": os.path.abspath(path), "name": name, "skip": 0, "first": 0, **more}
+
+
+def recordings_in(folder):
+    entries = sorted(os.listdir(folder))
+    if any(entry in PARTS_OF_A_RECORDING for entry in entries):
+        return [recording(folder)]
+    return [recording(os.path.join(folder, e)) for e in entries if not e.startswith(".") and (
+        e.endswith(ENDINGS) or (os.path.isdir(os.path.join(folder, e)) and not e.endswith("_Images")))]
+
+
+def recordings_of_list(file):
+    with open(file, encoding="utf-8", errors="surrogateescape") as lines:
+        paths = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
+    return [recording(os.path.join(os.path.dirname(file), path)) for path in paths]
+
+
+def parts(entry, found, where):
+    """What of a sequence counts: all, a range of frames, or several, each as a recording of its own."""
+    ate = ((entry.get("paper") or {}).get("ate_cm") or {}).get("ROEVO-TR+BA")
+    truncation = entry["truncation"]
+    if truncation is None:
+        return [recording(found, entry["name"], paper_ate=ate)]
+    note, frames = truncation.get("note") or "", truncation["frames"]
+    if frames is None:
+        note = f"{note} The whole sequence was run; the paper's figure is not comparable.".strip()
+        return [recording(found, entry["name"], note=note)]
+    ranges = frames if frames and isinstance(frames[0], list) else [frames]
+    made = []
+    for begin, end in ranges:
+        if not 0 <= begin < end:
+            raise Fault(f"{where}: 'truncation.frames' has [{begin}, {end}], which is no range [begin, end)")
+        one = recording(found, entry["name"], note=note) | {"skip": begin, "first": end - begin}
+        if len(ranges) == 1:
+            one["paper_ate"] = ate
+        else:
+            one["name"] += f"_{begin}_{end}"
+        made.append(one)
+    return made
+
+
+def recordings_of_json(file, data):
+    """@return what is on this disk, and names of what is not"""
+    with open(file, encoding="utf-8") as text:
+        entries = json.load(text)["sequences"]
+    made, missing = [], []
+    for i, entry in enumerate(entries):
+        where = f"{file}: sequence {i + 1} ('{entry.get('name')}')"
+        names = [n for folder in dict.fromkeys((entry["folder"], entry["name"])) if folder for n in (folder, folder + ".rawlog")]
+        found = next((os.path.join(data, n) for n in names if os.path.exists(os.path.join(data, n))), None)
+        wanted = parts(entry, found or "", where)
+        if found:
+            made += wanted
+        else:
+            missing.append(f"{entry['name']}: not in {data} ({', '.join(names)})")
+    return made, missing
+
+
+def recordings(args):
+    missing = []
+    try:
+        if args.data:
+            if not os.path.isdir(args.data):
+                raise Fault(f"--data {args.data}: there is no such folder")
+            found, missing = recordings_of_json(args.input, args.data)
+        else:
+            found = (recordings_in if os.path.isdir(args.input) else recordings_of_list)(args.input)
+    except OSError as e:
+        raise Fault(f"cannot read {args.input}: {e.strerror}") from e
+    except (ValueError, TypeError, AttributeError, IndexError) as e:
+        raise Fault(f"{args.input} is no list of sequences: {e}") from e
+    except KeyError as e:
+        raise Fault(f"{args.input} is no list of sequences: the key {e} is missing") from e
+    for line in missing:
+        say(args, f"skipped {line}")
+    if not found:
+        raise Fault(f"there is no recording in {args.input}" + (f"; e.g. {missing[0]}" if missing else ""))
+    return named(found)
+
+
+def named(found):
+    """Names that are unique and good for folders, whatever the files are called."""
+    taken = set()
+    for one in found:
+        stem = os.path.basename(one["input"])
+        stem = os.path.splitext(stem)[0] if stem.endswith(ENDINGS) else stem
+        name = re.sub(r"[^A-Za-z0-9._+-]", "_", one["name"] or stem).lstrip(".") or "recording"
+        unique, i = name, 2
+        while unique in taken:
+            unique, i = f"{name}_{i}", i + 1
+        taken.add(unique)
+        one["name"] = unique
+    return found
