@@ -81,10 +81,11 @@ class Ahead {
 
   private:
     using Lock = std::unique_lock<std::mutex>;
-    static constexpr std::size_t kMade = 4, kFinished = 2;  ///< that wait, at most
+    /// Items that wait, at most.
+    static constexpr std::size_t kMade = 4, kMadeToFinish = 2, kFinished = 2;
 
     std::deque<Item>& ready() { return finish_ ? finished_ : made_; }
-    bool canMake() const { return !making_ && !ended_ && made_.size() < kMade; }
+    bool canMake() const { return !making_ && !ended_ && made_.size() < (finish_ ? kMadeToFinish : kMade); }
     bool canFinish() const {
         return finish_ && !finishing_ && !made_.empty() && finished_.size() < kFinished;
     }
