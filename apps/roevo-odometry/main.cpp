@@ -78,6 +78,12 @@ int run(int argc, char** argv) {
     app.add_flag("--realtime", settings.realtime,
                  "Frames arrive by the clock and are dropped when tracking is behind; the tracker takes what "
                  "mapping has ready (results differ from run to run)");
+    int threads = 0;
+    const CLI::Option* threads_given =
+        app.add_option("--threads", threads,
+                       "Threads that decode, find edges and track at the same time (default: one per "
+                       "processor; 1: all in one, mapping too); results are the same")
+            ->check(CLI::Range(1, 256));
     bool profile = false;
     app.add_flag("--profile", profile,
                  "Print the time of each stage of a frame, ms, and relative to decoding");
@@ -99,6 +105,7 @@ int run(int argc, char** argv) {
     if (settings.simple_map_images && settings.simple_map.empty())
         throw UsageError("--simplemap-images needs --simplemap");
     settings.options = collectOptions(config_file, sets, mode);
+    if (threads_given->count() > 0) settings.options.threads = threads;
     if (!settings.options.loss.recognise && !(settings.map_in + settings.map_out).empty())
         throw UsageError("maps need loss.recognise=true: without, no places are remembered or looked for");
     if (settings.realtime) settings.options.mapping.deterministic = false;

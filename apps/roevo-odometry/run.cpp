@@ -15,6 +15,7 @@
 #include "evaluation/trajectory_io.h"
 #include "input/regular_file.h"
 #include "mrpt_outputs.h"
+#include "programs/ahead.h"
 #include "programs/atomic_file.h"
 #include "programs/interrupt.h"
 #include "programs/output_folder.h"
@@ -114,19 +115,45 @@ class FrameClock {
     double first_ = 0, last_ = 0;  // s
 };
 
-// Feeds every frame to the odometry; the report gets one record for each.
+// On its way from the input to the tracker.
+struct FrameAhead {
+    SourceFrame source;      // without its images once they are prepared
+    PreparedFrame prepared;  // where it is not a fault, and not to come by the clock
+};
+
+FrameResult track(Odometry& odometry, FrameAhead& frame, bool prepared) {
+    if (!frame.source.fault.empty()) return rejected(frame.source);
+    return prepared ? odometry.processFrame(std::move(frame.prepared))
+                    : odometry.processFrame(frame.source.frame);
+}
+
+// Feeds every frame to the odometry; the report gets one record for each. Decoding, edges and tracking go on
+// at the same time, each of another frame.
 void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& settings, RunReport& report) {
     Progress progress("tracking", expectedFrames(source, settings), !settings.quiet);
     DepthScaleCheck depth_scale;
     FrameClock clock;
-    for (SourceFrame frame; source.next(frame);) {
-        if (const std::string fault = depth_scale.faultOf(frame); !fault.empty())
+    const auto decode = [&, read = std::size_t{0}]() mutable -> std::optional<FrameAhead> {
+        FrameAhead ahead;
+        if ((settings.first > 0 && read++ == settings.first) || !source.next(ahead.source))
+            return std::nullopt;
+        return ahead;
+    };
+    const auto findEdges = [&](FrameAhead& ahead) {
+        if (const std::string fault = depth_scale.faultOf(ahead.source); !fault.empty())
             throw std::runtime_error(settings.input + ": " + fault);
+        if (settings.realtime || !ahead.source.fault.empty()) return;
+        ahead.prepared = odometry.prepareFrame(ahead.source.frame);
+        ahead.source.frame = RgbdFrame();
+    };
+    Ahead<FrameAhead> frames(decode, findEdges, threadCount(settings.options.threads));
+    while (auto ahead = frames.next()) {
+        SourceFrame& frame = ahead->source;
         if (settings.realtime && frame.fault.empty() && !clock.await(frame.timestamp)) {
             frame.fault = "dropped: the one before was not done in time";
             ++report.dropped;
         }
-        const FrameResult result = frame.fault.empty() ? odometry.processFrame(frame.frame) : rejected(frame);
+        const FrameResult result = track(odometry, *ahead, !settings.realtime);
         report.frames.push_back({result, frame.ms_decode});
         if (frame.camera_on_robot && result.hasPose()) {
             report.camera_on_robot.push_back({frame.timestamp, *frame.camera_on_robot});
@@ -136,7 +163,6 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
         const double of_first =
             settings.first > 0 ? static_cast<double>(done) / static_cast<double>(settings.first) : 0;
         progress.update(done, std::max(frame.progress, of_first));
-        if (done == settings.first) break;
     }
     progress.finish();
 }
@@ -245,7 +271,7 @@ SceneContent finishMap(Odometry& odometry, RunReport& report) {
 RunReport runOdometry(const RunSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
     checkNames(settings);
-    auto source = prefetch(openSource(settings.input, settings.choice));
+    auto source = openSource(settings.input, settings.choice);
     RunReport report = reportOn(*source, settings);
     Odometry odometry(source->camera(), settings.options);
     if (!settings.map_in.empty()) loadMap(settings, odometry, report);

@@ -56,15 +56,17 @@ std::vector<double> stageTimes(const RunReport& report, const Stage& stage) {
 }
 
 // Times of mapping over the frames with which a keyframe's map took effect, ms.
-std::vector<double> mappingTimes(const RunReport& report) {
+std::vector<double> mappingTimes(const RunReport& report, double StageTimes::*time = &StageTimes::mapping) {
     std::vector<double> times;
     for (const FrameRecord& f : report.frames)
-        if (f.result.ms.mapping > 0) times.push_back(f.result.ms.mapping);
+        if (f.result.ms.mapping > 0) times.push_back(f.result.ms.*time);
     return times;
 }
 
-double sumOf(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0);
+double meanOf(const std::vector<double>& values) {
+    return values.empty()
+               ? 0
+               : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 // Reasons of the frames that were not tracked, with how often each occurred.
@@ -135,7 +137,7 @@ Json timingsJson(const RunReport& report) {
 // What mapping took per keyframe, beside tracking, and how long tracking waited for it.
 Json mappingJson(const RunReport& report) {
     if (report.mode != Mode::kBundleAdjustment) return nullptr;
-    const auto times = mappingTimes(report);
+    const auto times = mappingTimes(report), cpu_times = mappingTimes(report, &StageTimes::mapping_cpu);
     double longest_wait = 0, largest_correction = 0, largest_turn = 0;
     Json reasons = Json::object(), final_reasons = Json::object();
     const auto count = [](const std::vector<MapRefusal>& refusals, Json& kinds) {
@@ -152,8 +154,10 @@ Json mappingJson(const RunReport& report) {
         count(f.result.map_refusals, reasons);
     }
     return {{"keyframes", times.size()},
-            {"mean_ms", times.empty() ? 0 : sumOf(times) / static_cast<double>(times.size())},
+            {"mean_ms", meanOf(times)},
             {"max_ms", percentile(times, 1)},
+            {"mean_cpu_ms", meanOf(cpu_times)},
+            {"max_cpu_ms", percentile(cpu_times, 1)},
             {"final_s", report.final_seconds},
             {"longest_wait_ms", longest_wait},
             {"largest_correction_m", largest_correction},
@@ -284,7 +288,7 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
     if (const auto times = mappingTimes(report); !times.empty())
         std::printf(
             "mapping     %.1f ms per keyframe (mean), beside tracking; all together at the end %.1f s\n",
-            sumOf(times) / static_cast<double>(times.size()), report.final_seconds);
+            meanOf(times), report.final_seconds);
     if (report.dropped > 0)
         std::printf("dropped     %zu frames came while tracking was busy\n", report.dropped);
     std::printf("path        %.2f m\n", pathLength(report.trajectory));
@@ -304,7 +308,7 @@ void printProfile(const RunReport& report) {
         if (times.empty()) return;
         const double median = percentile(times, 0.5);
         std::printf("  %-22s %8.2f %8.2f %8.2f", name.c_str(), median, percentile(times, 0.95),
-                    sumOf(times) / static_cast<double>(times.size()));
+                    meanOf(times));
         std::printf(decode > 0 ? " %10.2f\n" : "          -\n", median / decode);
     };
     std::printf("profile     ms per frame       median     95 %%     mean  by decode\n");
@@ -315,6 +319,7 @@ void printProfile(const RunReport& report) {
     print("  with a new keyframe", stageTimes(report, kTotal, isNew));
     print("  without", stageTimes(report, kTotal, [&](const FrameRecord& f) { return !isNew(f); }));
     print("mapping, a keyframe", mappingTimes(report));
+    print("  processor time", mappingTimes(report, &StageTimes::mapping_cpu));
 }
 
 }  // namespace roevo

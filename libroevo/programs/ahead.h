@@ -1,8 +1,9 @@
 #pragma once
-/// A pipeline of two: one thread makes items, the caller works on them.
+/// A pipeline: other threads make items, the caller works on them.
 
 #include <sched.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -11,88 +12,150 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace roevo {
 
-/// Whether this process may use a second processor. On one, a thread would only take time from the work that
-/// is being timed.
-inline bool hasSecondProcessor() {
+/// Processors that this process may use.
+inline int processorCount() {
     cpu_set_t allowed;
-    return sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) > 1;
+    return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : 2;
 }
 
-/// Items made ahead in a thread of its own, a few at most, handed out in order; made when they are asked for
-/// where there is one processor only.
+/// Items made ahead by other threads, a few at most, and handed out in order. An item may take two steps:
+/// each is done to one item after the other, by one thread at a time, but both go on at once. With one thread
+/// all is done by the caller, when it asks.
 template <class Item>
 class Ahead {
   public:
-    /// @param make  gives items until it gives none; called from one thread only, which starts here. What it
-    /// throws ends the items, too: next() throws it after the items before it.
-    explicit Ahead(std::function<std::optional<Item>()> make) : make_(std::move(make)) {
-        if (hasSecondProcessor()) thread_ = std::thread([this] { makeAll(); });
+    using Make = std::function<std::optional<Item>()>;
+    using Finish = std::function<void(Item&)>;
+
+    /// @param make     gives items until it gives none
+    /// @param finish   what is left to do to each; none: nothing. What either throws ends the items, too:
+    ///                 next() throws it after the items before it
+    /// @param threads  that work at a time, the caller's among them. On a single processor more would only
+    /// take
+    ///                 time from the work that is being timed
+    explicit Ahead(Make make, Finish finish = nullptr, int threads = processorCount())
+        : make_(std::move(make)), finish_(std::move(finish)) {
+        const int useful = finish_ ? 2 : 1;
+        for (int i = 0; i < std::min(threads - 1, useful); ++i) workers_.emplace_back([this] { work(); });
     }
-    /// Does not wait for items that nobody asked for, but for the one that is being made.
+    /// Does not wait for items that nobody asked for, but for those that are being made.
     ~Ahead() {
         {
             const std::lock_guard<std::mutex> lock(mutex_);
             stop_ = true;
         }
-        room_.notify_all();
-        if (thread_.joinable()) thread_.join();
+        changed_.notify_all();
+        for (std::thread& worker : workers_) worker.join();
     }
     Ahead(const Ahead&) = delete;
     Ahead& operator=(const Ahead&) = delete;
 
     std::optional<Item> next() {
-        if (!thread_.joinable()) return make_();
-        std::unique_lock<std::mutex> lock(mutex_);
-        news_.wait(lock, [this] { return !queue_.empty() || ended_; });
-        if (queue_.empty()) {
-            if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-            return std::nullopt;
+        Lock lock(mutex_);
+        while (ready().empty()) {
+            if (canFinish())
+                finishOne(lock);  // it is the one that is waited for
+            else if (workers_.empty() && canMake())
+                makeOne(lock);
+            else if (isOver())
+                return end();
+            else
+                changed_.wait(lock);
         }
-        std::optional<Item> item(std::move(queue_.front()));
-        queue_.pop_front();
+        std::optional<Item> item(std::move(ready().front()));
+        ready().pop_front();
         lock.unlock();
-        room_.notify_one();
+        changed_.notify_all();
         return item;
     }
 
-    /// Whether the thread is making items: hands off what make() uses.
+    /// Whether a thread may be making items: hands off what make() uses.
     bool isBusy() const {
         const std::lock_guard<std::mutex> lock(mutex_);
-        return thread_.joinable() && !ended_;
+        return !workers_.empty() && !(ended_ && !making_);
     }
 
   private:
-    static constexpr std::size_t kLength = 4;
+    using Lock = std::unique_lock<std::mutex>;
+    /// Items that wait, at most.
+    static constexpr std::size_t kMade = 4, kMadeToFinish = 2, kFinished = 2;
 
-    void makeAll() {
-        try {
-            while (std::optional<Item> item = make_()) {
-                std::unique_lock<std::mutex> lock(mutex_);
-                room_.wait(lock, [this] { return queue_.size() < kLength || stop_; });
-                if (stop_) break;
-                queue_.push_back(std::move(*item));
-                lock.unlock();
-                news_.notify_one();
-            }
-        } catch (...) {
-            const std::lock_guard<std::mutex> lock(mutex_);
-            failure_ = std::current_exception();
-        }
-        const std::lock_guard<std::mutex> lock(mutex_);
-        ended_ = true;
-        news_.notify_all();
+    std::deque<Item>& ready() { return finish_ ? finished_ : made_; }
+    bool canMake() const { return !making_ && !ended_ && made_.size() < (finish_ ? kMadeToFinish : kMade); }
+    bool canFinish() const {
+        return finish_ && !finishing_ && !made_.empty() && finished_.size() < kFinished;
+    }
+    bool isOver() const { return ended_ && !making_ && !finishing_ && made_.empty(); }
+
+    std::optional<Item> end() {
+        if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+        return std::nullopt;
     }
 
-    std::function<std::optional<Item>()> make_;
+    // Making comes first: it is what takes long where finishing must wait, and the caller can finish itself.
+    void work() {
+        Lock lock(mutex_);
+        while (true) {
+            changed_.wait(lock, [this] { return stop_ || canMake() || canFinish() || isOver(); });
+            if (stop_ || isOver()) return;
+            if (canMake())
+                makeOne(lock);
+            else
+                finishOne(lock);
+        }
+    }
+
+    void makeOne(Lock& lock) {
+        making_ = true;
+        lock.unlock();
+        try {
+            std::optional<Item> item = make_();
+            lock.lock();
+            if (!item)
+                ended_ = true;
+            else if (!ended_)
+                made_.push_back(std::move(*item));
+        } catch (...) {
+            if (!lock.owns_lock()) lock.lock();
+            // Else it is of an item after one whose finishing failed
+            if (!ended_) failure_ = std::current_exception();
+            ended_ = true;
+        }
+        making_ = false;
+        changed_.notify_all();
+    }
+
+    void finishOne(Lock& lock) {
+        finishing_ = true;
+        Item item = std::move(made_.front());
+        made_.pop_front();
+        lock.unlock();
+        try {
+            finish_(item);
+            lock.lock();
+            finished_.push_back(std::move(item));
+        } catch (...) {
+            if (!lock.owns_lock()) lock.lock();
+            failure_ = std::current_exception();
+            ended_ = true;
+            made_.clear();
+        }
+        finishing_ = false;
+        changed_.notify_all();
+    }
+
+    Make make_;
+    Finish finish_;
     mutable std::mutex mutex_;
-    std::condition_variable news_, room_;
-    std::deque<Item> queue_;
+    std::condition_variable changed_;
+    std::deque<Item> made_, finished_;
     std::exception_ptr failure_;
-    bool ended_ = false, stop_ = false;
-    std::thread thread_;  // last: it uses all of the above
+    bool making_ = false, finishing_ = false, ended_ = false, stop_ = false;
+    std::vector<std::thread> workers_;  // last: they use all of the above
 };
 
 }  // namespace roevo

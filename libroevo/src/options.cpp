@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <thread>
 
 #include "input/excerpt.h"
 
@@ -84,6 +85,10 @@ const char* toString(Mode mode) {
     return mode == Mode::kCoarse ? "ct" : mode == Mode::kTracking ? "tr" : "ba";
 }
 
+int threadCount(int threads) {
+    return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 std::string OptionField::toText() const {
     if (const auto* number = std::get_if<double*>(&value)) return numberToText(**number);
     if (const auto* whole = std::get_if<int*>(&value)) return std::to_string(**whole);
@@ -147,6 +152,9 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
     return {
         {"odometry", "mode", "", "ct: coarse tracking only; tr: coarse and fine; ba: with local mapping", 0,
          0, &o.mode},
+        {"odometry", "threads", "threads",
+         "1: all in the caller's thread; 0: as many as there are processors; results are the same", 0, 256,
+         &o.threads},
         {"sensor", "depth_weight_k", "1/m", "k of the depth weight, Eq. (20)", 0, 10, &s.depth_weight_k},
         {"sensor", "min_depth", "m", "d_min of Eq. (20); nearer depths are not used", 0.01, 10, &s.min_depth},
         {"sensor", "max_depth", "m", "d_max of Eq. (20)", 0.1, 100, &s.max_depth},

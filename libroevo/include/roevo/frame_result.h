@@ -20,8 +20,9 @@ const char* toString(FrameStatus status);
 /// Milliseconds spent in each stage of one frame.
 struct StageTimes {
     double edges = 0, coarse = 0, fine = 0, total = 0;
-    double mapping = 0;  ///< of the keyframe whose map took effect with this frame, in its own thread
-    double waiting = 0;  ///< for mapping to finish; part of the total
+    double mapping = 0;      ///< of the keyframe whose map took effect with this frame, in its own thread
+    double mapping_cpu = 0;  ///< the same as processor time of that thread
+    double waiting = 0;      ///< for mapping to finish; part of the total
 };
 
 /// What became of one frame.

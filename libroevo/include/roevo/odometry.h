@@ -19,8 +19,23 @@ enum class MapUse {
     kLocalise  ///< it stays as it is
 };
 
+/// A frame whose edges have been found, on its way from Odometry::prepareFrame() to processFrame().
+class PreparedFrame {
+  public:
+    PreparedFrame();  ///< nothing
+    ~PreparedFrame();
+    PreparedFrame(PreparedFrame&&) noexcept;
+    PreparedFrame& operator=(PreparedFrame&&) noexcept;
+
+    struct Content;
+
+  private:
+    friend class Odometry;
+    std::unique_ptr<Content> content_;
+};
+
 /// RGB-D visual odometry from organized edges (Liu et al., ROEVO). Feed frames in time order; not
-/// thread-safe.
+/// thread-safe, but for prepareFrame().
 class Odometry {
   public:
     /// @throws std::invalid_argument when the camera or an option is unusable (one line that names it).
@@ -53,6 +68,14 @@ class Odometry {
 
     /// Tracks one frame. Never throws for bad frames: they come back kRejected with a reason.
     [[nodiscard]] FrameResult processFrame(const RgbdFrame& frame);
+
+    /// The two halves of processFrame(), for a pipeline of two threads: what needs no pose, and the rest. One
+    /// thread at a time may prepare the next frames while another one uses everything else. Frames are
+    /// prepared in time order and processed in the same order, each once; what comes out is the same to the
+    /// bit. FrameResult::ms counts both halves.
+    [[nodiscard]] PreparedFrame prepareFrame(const RgbdFrame& frame);
+    /// @throws std::logic_error where there is nothing in it
+    [[nodiscard]] FrameResult processFrame(PreparedFrame frame);
 
     /// Brings the map into agreement, at the end of a recording or whenever there is time: what is still
     /// being mapped takes effect, and in mode ba all keyframes are refined together (mapping.final_rounds).

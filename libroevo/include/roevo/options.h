@@ -120,6 +120,7 @@ struct MappingOptions {
 
 struct OdometryOptions {
     Mode mode = Mode::kBundleAdjustment;
+    int threads = 0;  ///< 1: all in the caller's; 0: as many as there are processors. Results are the same
     SensorOptions sensor;
     EdgeOptions edges;
     CoarseOptions coarse;
@@ -156,6 +157,9 @@ std::string setOption(OdometryOptions& options, const std::string& name, const s
 
 /// Empty when all options are in range, else the first fault in one line.
 std::string checkOptions(const OdometryOptions& options);
+
+/// OdometryOptions::threads, and where that is 0 the processors that this process may use; at least 1.
+int threadCount(int threads);
 
 const char* toString(Mode mode);
 

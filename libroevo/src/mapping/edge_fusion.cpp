@@ -27,21 +27,28 @@ void FusedEdges::clear() {
 void EdgeFuser::fuse(const std::vector<WindowKeyframe>& window, const std::vector<std::vector<int>>& clusters,
                      FusedEdges& out) {
     out.clear();
-    int count = 0;
+    first_member_.assign(1, 0);
     for (const auto& of_edges : clusters) {
-        for (const int cluster : of_edges) count = std::max(count, cluster + 1);
+        for (const int cluster : of_edges) {
+            const auto place = static_cast<std::size_t>(cluster) + 1;
+            if (place >= first_member_.size()) first_member_.resize(place + 1, 0);
+            ++first_member_[place];
+        }
     }
-    std::vector<std::vector<Member>> members(static_cast<std::size_t>(count));
+    for (std::size_t k = 1; k < first_member_.size(); ++k) first_member_[k] += first_member_[k - 1];
+    members_.resize(first_member_.back());
+    std::vector<std::size_t> next(first_member_.begin(), first_member_.end() - 1);
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
         for (std::size_t e = 0; e < clusters[slot].size(); ++e) {
             const IndexRange own = window[slot].keyframe->image.pointsOf(e);
-            members[static_cast<std::size_t>(clusters[slot][e])].push_back(
-                {static_cast<std::int32_t>(slot), static_cast<std::int32_t>(own.first),
-                 static_cast<std::int32_t>(own.size())});
+            members_[next[static_cast<std::size_t>(clusters[slot][e])]++] = {
+                static_cast<std::int32_t>(slot), static_cast<std::int32_t>(own.first),
+                static_cast<std::int32_t>(own.size())};
         }
     }
-    for (int cluster = 0; cluster < count; ++cluster) {
-        fuseCluster(window, cluster, members[static_cast<std::size_t>(cluster)], out);
+    for (std::size_t cluster = 0; cluster + 1 < first_member_.size(); ++cluster) {
+        rest_.assign(members_.data() + first_member_[cluster], members_.data() + first_member_[cluster + 1]);
+        fuseCluster(window, static_cast<int>(cluster), out);
     }
 }
 
@@ -50,32 +57,31 @@ void EdgeFuser::observe(std::size_t node, Observation observation) {
     chain_[node].first_observation = static_cast<std::int32_t>(observations_.size()) - 1;
 }
 
-void EdgeFuser::fuseCluster(const std::vector<WindowKeyframe>& window, int cluster,
-                            const std::vector<Member>& members, FusedEdges& out) {
-    rest_ = members;
+void EdgeFuser::fuseCluster(const std::vector<WindowKeyframe>& window, int cluster, FusedEdges& out) {
     while (!rest_.empty()) {
-        std::vector<Member> apart;
+        apart_.swap(rest_);
+        rest_.clear();
         chain_.clear();
         observations_.clear();
         // The longest is the reference; among equals the first
-        std::stable_sort(rest_.begin(), rest_.end(),
-                         [](const Member& a, const Member& b) { return a.length > b.length; });
-        apart.swap(rest_);
-        for (const Member& member : apart) merge(window, member);
+        if (apart_.size() > 1)
+            std::stable_sort(apart_.begin(), apart_.end(),
+                             [](const Member& a, const Member& b) { return a.length > b.length; });
+        for (const Member& member : apart_) merge(window, member);
         keepChain(window.size(), cluster, out);
     }
 }
 
 void EdgeFuser::keepChain(std::size_t slots, int cluster, FusedEdges& out) {
     int views = 0;
-    std::vector<char> seen(slots, 0);
+    seen_.assign(slots, 0);
     for (const Node& node : chain_) {
         out.points.push_back(node.position);
         for (std::int32_t k = node.first_observation; k >= 0;
              k = observations_[static_cast<std::size_t>(k)].next) {
             const Observation& observation = observations_[static_cast<std::size_t>(k)].observation;
             out.observations.push_back(observation);
-            char& flag = seen[static_cast<std::size_t>(observation.slot)];
+            char& flag = seen_[static_cast<std::size_t>(observation.slot)];
             views += flag == 0 ? 1 : 0;
             flag = 1;
         }
@@ -90,20 +96,29 @@ void EdgeFuser::keepChain(std::size_t slots, int cluster, FusedEdges& out) {
 std::size_t EdgeFuser::nearest(const Eigen::Vector3d& p, std::size_t from, bool search_all) const {
     std::size_t best = from;
     double best_squared = (chain_[from].position - p).squaredNorm();
-    const auto look = [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i <= last; ++i) {
+    const auto look = [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) {
             const double squared = (chain_[i].position - p).squaredNorm();
             if (!(squared < best_squared)) continue;
             best_squared = squared;
             best = i;
         }
     };
-    if (search_all) look(0, chain_.size() - 1);
+    if (search_all) {
+        look(0, chain_.size());
+        return best;
+    }
     // Both edges are in order: the next point's neighbour is near the last one's
     constexpr std::size_t kLook = 4;
-    for (std::size_t centre = chain_.size(); !search_all && centre != best;) {
-        centre = best;
-        look(centre > kLook ? centre - kLook : 0, std::min(chain_.size() - 1, centre + kLook));
+    std::size_t looked_from = from, looked_to = from + 1;
+    while (true) {
+        const std::size_t first = best > kLook ? best - kLook : 0;
+        const std::size_t end = std::min(chain_.size(), best + kLook + 1);
+        if (first >= looked_from && end <= looked_to) break;
+        look(first, looked_from);
+        look(looked_to, end);
+        looked_from = std::min(looked_from, first);
+        looked_to = std::max(looked_to, end);
     }
     return best;
 }
@@ -201,19 +216,19 @@ bool EdgeFuser::stitch(const Member& member, std::size_t from, std::size_t to) {
     const auto anchor = static_cast<std::size_t>(assigned_[joint]);
     const bool at_front = anchor < kMinRun, at_back = anchor + kMinRun >= chain_.size();
     if (at_front == at_back) return false;
-    std::vector<Node> run;
+    run_.clear();
     for (std::size_t i = from; i < to; ++i) {
         observations_.push_back({{member.slot, member.first + static_cast<std::int32_t>(i)}, -1});
-        run.push_back({points_[i], static_cast<std::int32_t>(observations_.size()) - 1});
+        run_.push_back({points_[i], static_cast<std::int32_t>(observations_.size()) - 1});
     }
-    if (at_front == follows) std::reverse(run.begin(), run.end());
+    if (at_front == follows) std::reverse(run_.begin(), run_.end());
     if (at_back) {
-        chain_.insert(chain_.end(), run.begin(), run.end());
+        chain_.insert(chain_.end(), run_.begin(), run_.end());
         return true;
     }
-    chain_.insert(chain_.begin(), run.begin(), run.end());
+    chain_.insert(chain_.begin(), run_.begin(), run_.end());
     for (std::int32_t& node : assigned_) {
-        if (node >= 0) node += static_cast<std::int32_t>(run.size());
+        if (node >= 0) node += static_cast<std::int32_t>(run_.size());
     }
     return true;
 }

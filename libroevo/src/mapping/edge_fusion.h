@@ -68,8 +68,8 @@ class EdgeFuser {
         Observation observation;
         std::int32_t next = -1;
     };
-    void fuseCluster(const std::vector<WindowKeyframe>& window, int cluster,
-                     const std::vector<Member>& members, FusedEdges& out);
+    /// Of the members in `rest_`.
+    void fuseCluster(const std::vector<WindowKeyframe>& window, int cluster, FusedEdges& out);
     void observe(std::size_t node, Observation observation);
     void keepChain(std::size_t slots, int cluster, FusedEdges& out);
     void merge(const std::vector<WindowKeyframe>& window, const Member& member);
@@ -81,8 +81,10 @@ class EdgeFuser {
     std::size_t nearest(const Eigen::Vector3d& p, std::size_t from, bool search_all) const;
 
     SensorOptions sensor_;
-    std::vector<Member> rest_;
-    std::vector<Node> chain_;
+    std::vector<Member> members_, apart_, rest_;
+    std::vector<std::size_t> first_member_;
+    std::vector<char> seen_;  ///< of each slot
+    std::vector<Node> chain_, run_;
     std::vector<Chained> observations_;
     std::vector<Eigen::Vector3d> points_;
     std::vector<std::int32_t> assigned_;

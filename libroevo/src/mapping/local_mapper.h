@@ -25,8 +25,8 @@ struct MapUpdate {
     int reused = 0;                      ///< old keyframes that took part
     RefinementResult refinement;
     std::vector<MapRefusal> refusals;
-    std::optional<WindowPosterior> posterior;  ///< where older keyframes took part
-    double milliseconds = 0;                   ///< of work on it
+    std::optional<WindowPosterior> posterior;       ///< where older keyframes took part
+    double milliseconds = 0, cpu_milliseconds = 0;  ///< of work on it
 };
 
 /// How keyframes move when a place is recognised: a whole track to where it belongs, or each as a loop wants.

@@ -60,12 +60,6 @@ void compact(MapKeyframe& keyframe) {
     }
 }
 
-std::vector<Rgb> coloursOf(const EdgeMap& edges) {
-    std::vector<Rgb> colours;
-    for (const MapEdge& edge : edges) colours.insert(colours.end(), edge.colours.begin(), edge.colours.end());
-    return colours;
-}
-
 MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,
                           const PinholeCamera& camera, int max_points) {
     MapKeyframe out;

@@ -42,9 +42,6 @@ void setRowMotion(MapKeyframe& keyframe, const RowMotion& rows, const PinholeCam
 /// Drops what only a new keyframe needs: image gradients.
 void compact(MapKeyframe& keyframe);
 
-/// The colours of all points, edge after edge.
-std::vector<Rgb> coloursOf(const EdgeMap& edges);
-
 /// @param colours  one per point of the keyframe's edges
 /// @param max_points  points are thinned evenly along the edges until there are no more than these
 MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,

@@ -20,12 +20,18 @@ class CollectingMapper : public Mapper {
         : camera_(camera), sensor_(sensor) {}
 
     void load(const std::vector<KeyframeInfo>& poses, std::vector<KeptKeyframe> keyframes) override;
-    std::vector<KeptKeyframe> kept() const override { return loaded_; }
+    std::vector<KeptKeyframe> kept() override { return loaded_; }
     void insert(NewKeyframe fresh, double) override {
         const Eigen::Isometry3f T = fresh.T_world_camera.cast<float>();
-        for (MapEdge& edge : fresh.edges) {
-            for (Eigen::Vector3f& point : edge.points) point = T * point;
+        const EdgePoints3D& edges = fresh.keyframe.edges;
+        for (int e = 0; e < edges.image.numEdges(); ++e) {
+            MapEdge edge;
+            edge.keyframe_id = fresh.keyframe.id;
             edge.cluster = static_cast<int>(map_.size());
+            const auto [first, end] = edges.image.pointsOf(e);
+            for (std::size_t i = first; i < end; ++i)
+                edge.points.push_back(T * edges.points.at(i).cast<float>());
+            edge.colours.assign(fresh.colours.data() + first, fresh.colours.data() + end);
             map_.push_back(std::move(edge));
         }
     }
@@ -37,8 +43,8 @@ class CollectingMapper : public Mapper {
     std::vector<MapUpdate> due(double, double&) override { return {}; }
     const std::deque<MapUpdate>& outstanding() override { return none_; }
     std::vector<MapUpdate> refineAll() override { return {}; }
-    EdgeMap fusedMap() const override { return map_; }
-    EdgeMap keyframeEdges() const override { return map_; }
+    EdgeMap fusedMap() override { return map_; }
+    EdgeMap keyframeEdges() override { return map_; }
 
   private:
     PinholeCamera camera_;
@@ -72,8 +78,14 @@ void CollectingMapper::load(const std::vector<KeyframeInfo>& poses, std::vector<
 class RefiningMapper : public Mapper {
   public:
     RefiningMapper(const PinholeCamera& camera, const OdometryOptions& options)
-        : camera_(camera), options_(options.mapping), mapper_(camera, options), worker_([this] { work(); }) {}
+        : camera_(camera), options_(options.mapping), mapper_(camera, options) {
+        // Without a thread of its own it works when its results are asked for. Who does not wait for these
+        // never asks
+        if (threadCount(options.threads) > 1 || !options_.deterministic)
+            worker_ = std::thread([this] { work(); });
+    }
     ~RefiningMapper() override {
+        if (!worker_.joinable()) return;
         {
             const std::lock_guard<std::mutex> lock(mutex_);
             stop_ = true;
@@ -85,14 +97,14 @@ class RefiningMapper : public Mapper {
     void load(const std::vector<KeyframeInfo>& poses, std::vector<KeptKeyframe> keyframes) override {
         for (std::size_t k = 0; k < keyframes.size(); ++k) mapper_.load(poses[k], std::move(keyframes[k]));
     }
-    std::vector<KeptKeyframe> kept() const override { return finished().kept(); }
+    std::vector<KeptKeyframe> kept() override { return finish().kept(); }
     void insert(NewKeyframe fresh, double timestamp) override;
     void correct(const Correction& correction) override;
     std::vector<MapUpdate> due(double timestamp, double& waited_ms) override;
     const std::deque<MapUpdate>& outstanding() override;
     std::vector<MapUpdate> refineAll() override;
-    EdgeMap fusedMap() const override { return finished().fusedMap(); }
-    EdgeMap keyframeEdges() const override { return finished().keyframeEdges(); }
+    EdgeMap fusedMap() override { return finish().fusedMap(); }
+    EdgeMap keyframeEdges() override { return finish().keyframeEdges(); }
 
   private:
     /// A keyframe to be inserted, or a correction of those that were.
@@ -104,12 +116,16 @@ class RefiningMapper : public Mapper {
         RowMotion previous_rows;
         double seconds_per_row = 0;
     };
+    using Lock = std::unique_lock<std::mutex>;
     void work();
+    void runNext(Lock& lock);
+    template <class Condition>
+    void waitFor(Lock& lock, const Condition& condition);
     void push(Job job);
     MapUpdate run(Job job);
     MapUpdate take();
     bool ready() const;
-    const LocalMapper& finished() const;
+    LocalMapper& finish();
 
     PinholeCamera camera_;
     MappingOptions options_;
@@ -118,17 +134,17 @@ class RefiningMapper : public Mapper {
 
     LocalMapper mapper_;  // touched by the worker only, or by the caller while the worker is idle
     mutable std::mutex mutex_;
-    mutable std::condition_variable changed_;
+    std::condition_variable changed_;
     std::deque<Job> jobs_;
     std::deque<MapUpdate> updates_;
     std::exception_ptr failure_;
     bool busy_ = false, stop_ = false;
-    std::thread worker_;  // last: starts when all else is there
+    std::thread worker_;  // last: it uses all of the above
 };
 
 void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
     Job job;
-    job.keyframe = toMapKeyframe(fresh.keyframe, coloursOf(fresh.edges), camera_, options_.max_points);
+    job.keyframe = toMapKeyframe(fresh.keyframe, fresh.colours, camera_, options_.max_points);
     job.keyframe.T_world_camera = fresh.T_world_camera;
     job.keyframe.parent = fresh.tracked.keyframe;
     job.keyframe.T_parent_camera = fresh.tracked.T_keyframe_camera;
@@ -153,8 +169,8 @@ void RefiningMapper::correct(const Correction& correction) {
 }
 
 void RefiningMapper::push(Job job) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [&] { return jobs_.size() < kMostWaiting; });
+    Lock lock(mutex_);
+    waitFor(lock, [&] { return jobs_.size() < kMostWaiting; });
     jobs_.push_back(std::move(job));
     changed_.notify_all();
 }
@@ -182,17 +198,18 @@ const std::deque<MapUpdate>& RefiningMapper::outstanding() {
 
 std::vector<MapUpdate> RefiningMapper::refineAll() {
     (void)outstanding();
-    (void)finished();
+    LocalMapper& mapper = finish();
     std::vector<MapUpdate> updates(std::make_move_iterator(taken_.begin()),
                                    std::make_move_iterator(taken_.end()));
     taken_.clear();
     due_.clear();
-    updates.push_back(mapper_.refineAll());
+    updates.push_back(mapper.refineAll());
     return updates;
 }
 
 MapUpdate RefiningMapper::run(Job job) {
     const Stopwatch watch;
+    const CpuStopwatch cpu_watch;
     if (job.previous >= 0) {
         mapper_.setFound(job.previous, std::move(job.found));
         mapper_.setRowMotion(job.previous, job.previous_rows);
@@ -200,35 +217,52 @@ MapUpdate RefiningMapper::run(Job job) {
     mapper_.setReadout(job.seconds_per_row);
     MapUpdate update = mapper_.insert(std::move(job.keyframe));
     update.milliseconds = watch.milliseconds();
+    update.cpu_milliseconds = cpu_watch.milliseconds();
     return update;
 }
 
 void RefiningMapper::work() {
-    std::unique_lock<std::mutex> lock(mutex_);
+    Lock lock(mutex_);
     while (true) {
         changed_.wait(lock, [&] { return stop_ || !jobs_.empty(); });
         if (stop_) return;
-        Job job = std::move(jobs_.front());
-        jobs_.pop_front();
-        busy_ = true;
-        lock.unlock();
-        const bool corrects = !job.correction.keyframes.empty();
-        MapUpdate update;
-        std::exception_ptr thrown;
-        try {
-            if (corrects)
-                mapper_.correct(job.correction);
-            else
-                update = run(std::move(job));
-        } catch (...) {
-            thrown = std::current_exception();
-        }
-        lock.lock();
-        busy_ = false;
-        if (thrown) failure_ = thrown;
-        if (!corrects || thrown) updates_.push_back(std::move(update));
-        changed_.notify_all();
+        runNext(lock);
     }
+}
+
+/// Until the worker has come so far; without one, by doing its work.
+template <class Condition>
+void RefiningMapper::waitFor(Lock& lock, const Condition& condition) {
+    while (!condition()) {
+        if (worker_.joinable())
+            changed_.wait(lock);
+        else
+            runNext(lock);
+    }
+}
+
+/// @param lock  let go meanwhile
+void RefiningMapper::runNext(Lock& lock) {
+    Job job = std::move(jobs_.front());
+    jobs_.pop_front();
+    busy_ = true;
+    lock.unlock();
+    const bool corrects = !job.correction.keyframes.empty();
+    MapUpdate update;
+    std::exception_ptr thrown;
+    try {
+        if (corrects)
+            mapper_.correct(job.correction);
+        else
+            update = run(std::move(job));
+    } catch (...) {
+        thrown = std::current_exception();
+    }
+    lock.lock();
+    busy_ = false;
+    if (thrown) failure_ = thrown;
+    if (!corrects || thrown) updates_.push_back(std::move(update));
+    changed_.notify_all();
 }
 
 bool RefiningMapper::ready() const {
@@ -237,17 +271,17 @@ bool RefiningMapper::ready() const {
 }
 
 MapUpdate RefiningMapper::take() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [&] { return !updates_.empty(); });
+    Lock lock(mutex_);
+    waitFor(lock, [&] { return !updates_.empty(); });
     if (failure_) std::rethrow_exception(failure_);
     MapUpdate update = std::move(updates_.front());
     updates_.pop_front();
     return update;
 }
 
-const LocalMapper& RefiningMapper::finished() const {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [&] { return jobs_.empty() && !busy_; });
+LocalMapper& RefiningMapper::finish() {
+    Lock lock(mutex_);
+    waitFor(lock, [&] { return jobs_.empty() && !busy_; });
     if (failure_) std::rethrow_exception(failure_);
     return mapper_;
 }

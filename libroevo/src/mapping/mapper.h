@@ -12,7 +12,7 @@ namespace roevo {
 /// A keyframe on its way into the map.
 struct NewKeyframe {
     const Keyframe& keyframe;
-    EdgeMap edges;  ///< its own, coloured, in its own frame
+    std::vector<Rgb> colours;  ///< of its points
     Pose T_world_camera = Pose::Identity();
     RelativePose tracked;                ///< from keyframe -1: from none
     const Keyframe* previous = nullptr;  ///< that was tracked against until now, as it is known by now
@@ -28,7 +28,7 @@ class Mapper {
     /// Begins with the keyframes of a map, which are one track; before anything is inserted.
     virtual void load(const std::vector<KeyframeInfo>& poses, std::vector<KeptKeyframe> keyframes) = 0;
     /// The keyframes so far or, where nothing is refined, those that were loaded; waits.
-    [[nodiscard]] virtual std::vector<KeptKeyframe> kept() const = 0;
+    [[nodiscard]] virtual std::vector<KeptKeyframe> kept() = 0;
 
     /// @param timestamp  s, of the frame at work
     virtual void insert(NewKeyframe keyframe, double timestamp) = 0;
@@ -48,8 +48,8 @@ class Mapper {
 
     /// The edges in the world: fused, and as each keyframe saw them. Of all keyframes that were inserted;
     /// waits.
-    virtual EdgeMap fusedMap() const = 0;
-    virtual EdgeMap keyframeEdges() const = 0;
+    virtual EdgeMap fusedMap() = 0;
+    virtual EdgeMap keyframeEdges() = 0;
 };
 
 /// In mode ba one that refines, in a thread of its own; else one that only collects.

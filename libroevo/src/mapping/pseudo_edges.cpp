@@ -50,53 +50,58 @@ double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, cons
     return std::sqrt(sum / static_cast<double>(end - first - 1));
 }
 
-bool PseudoEdgeJudge::project(std::size_t slot, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const {
-    constexpr double kMargin = 5;
-    const Eigen::Vector3d q = T_camera_world_[slot] * point;
-    if (!(q.z() > sensor_.min_depth)) return false;
-    const double inverse = 1 / q.z();
-    const double u = camera_.fx * q.x() * inverse + camera_.cx, v = camera_.fy * q.y() * inverse + camera_.cy;
-    pixel = {static_cast<float>(u), static_cast<float>(v)};
-    return u >= kMargin && v >= kMargin && u <= camera_.width - 1 - kMargin &&
-           v <= camera_.height - 1 - kMargin;
+bool PseudoEdgeJudge::isInside(const Eigen::Vector3d& in_camera) const {
+    constexpr double kMargin = 5;  // px
+    const double z = in_camera.z(), x = camera_.fx * in_camera.x(), y = camera_.fy * in_camera.y();
+    return z > sensor_.min_depth && x >= (kMargin - camera_.cx) * z && y >= (kMargin - camera_.cy) * z &&
+           x <= (camera_.width - 1 - kMargin - camera_.cx) * z &&
+           y <= (camera_.height - 1 - kMargin - camera_.cy) * z;
 }
 
-PseudoEdgeJudge::Looks PseudoEdgeJudge::countLooks(const std::vector<WindowKeyframe>& window,
-                                                   const FusedEdges& edges, std::size_t edge) const {
+bool PseudoEdgeJudge::project(std::size_t slot, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const {
+    const Eigen::Vector3d q = T_camera_world_[slot] * point;
+    if (!(q.z() > sensor_.min_depth)) return false;
+    pixel = camera_.project(q).cast<float>();
+    return isInside(q);
+}
+
+void PseudoEdgeJudge::countLooks(const FusedEdges& edges, std::size_t edge, Looks& looks) {
     const auto [first, end] = edges.pointsOf(edge);
-    Looks looks;
-    Eigen::Vector2f pixel;
-    const std::size_t stride = 1 + (end - first) / kMostLooks;
-    const double count = static_cast<double>((end - first + stride - 1) / stride);
-    for (std::size_t slot = 0; slot < window.size(); ++slot) {
-        int inside = 0, observed = 0;
-        for (std::size_t p = first; p < end; p += stride) {
-            if (!project(slot, edges.points[p], pixel)) continue;
-            ++inside;
-            const IndexRange range = edges.observationsOf(p);
-            bool sees = false;
-            for (std::size_t k = range.first; k < range.end && !sees; ++k)
-                sees = edges.observations[k].slot == static_cast<std::int32_t>(slot);
-            observed += sees ? 1 : 0;
-        }
-        if (inside < kLookShare * count) continue;
-        ++looks.looked;
-        if (observed >= kSeeShare * inside) {
-            ++looks.seen;
-        } else {
-            looks.missed.push_back(static_cast<int>(slot));
+    const std::size_t slots = T_camera_world_.size(), stride = 1 + (end - first) / kMostLooks;
+    inside_.assign(slots, 0);
+    observed_.assign(slots, 0);
+    for (std::size_t p = first; p < end; p += stride) {
+        const IndexRange range = edges.observationsOf(p);
+        for (std::size_t k = range.first; k < range.end; ++k)
+            observer_of_[static_cast<std::size_t>(edges.observations[k].slot)] = p;
+        for (std::size_t slot = 0; slot < slots; ++slot) {
+            if (!isInside(T_camera_world_[slot] * edges.points[p])) continue;
+            ++inside_[slot];
+            observed_[slot] += observer_of_[slot] == p ? 1 : 0;
         }
     }
-    return looks;
+    const double count = static_cast<double>((end - first + stride - 1) / stride);
+    looks = {0, 0, std::move(looks.missed)};
+    looks.missed.clear();
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+        if (inside_[slot] < kLookShare * count) continue;
+        ++looks.looked;
+        if (observed_[slot] >= kSeeShare * inside_[slot])
+            ++looks.seen;
+        else
+            looks.missed.push_back(static_cast<int>(slot));
+    }
 }
 
 bool PseudoEdgeJudge::isInImage(std::size_t slot, const OrganizedEdges& image, const FusedEdges& edges,
                                 std::size_t edge) const {
     const auto [first, end] = edges.pointsOf(edge);
     int inside = 0, found = 0;
+    const std::size_t stride = 1 + (end - first) / kMostLooks;
+    const double enough = kImageShare * static_cast<double>((end - first + stride - 1) / stride);
     const auto radius = std::max(1.0F, static_cast<float>(camera_.pixelScale())) * kLookRadius;
     Eigen::Vector2f pixel, before, after;
-    for (std::size_t p = first; p < end; p += 1 + (end - first) / kMostLooks) {
+    for (std::size_t p = first; p < end && found < enough && inside - found <= enough; p += stride) {
         if (!project(slot, edges.points[p], pixel)) continue;
         ++inside;
         before = after = pixel;  // where a neighbour is behind the camera
@@ -115,7 +120,9 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
     suspects_.clear();
     T_camera_world_.clear();
     for (const WindowKeyframe& view : window) T_camera_world_.push_back(view.T_world_camera.inverse());
+    observer_of_.assign(window.size(), edges.points.size());
     std::vector<double> spreads;
+    Looks looks;
     for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
         EdgeVerdict& verdict = edges.verdicts[edge];
         verdict = edges.views[edge] > 1 ? EdgeVerdict::kTrue : EdgeVerdict::kUnconfirmed;
@@ -128,7 +135,7 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
             verdict = EdgeVerdict::kSpread;
             continue;
         }
-        const Looks looks = countLooks(window, edges, edge);
+        countLooks(edges, edge, looks);
         const double found = foundShare(window, edges, edge);
         if (isVanishing(looks, found)) suspects_.push_back({edge, looks, found, 0});
     }

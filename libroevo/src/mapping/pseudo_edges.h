@@ -36,12 +36,13 @@ class PseudoEdgeJudge {
         std::size_t asked = 0;  ///< of looks.missed, whose images were asked
     };
 
-    Looks countLooks(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
-                     std::size_t edge) const;
+    void countLooks(const FusedEdges& edges, std::size_t edge, Looks& looks);
     /// Whether a keyframe's image has an edge in the place of a fused one, associated or not.
     bool isInImage(std::size_t slot, const OrganizedEdges& image, const FusedEdges& edges,
                    std::size_t edge) const;
     bool isVanishing(const Looks& looks, double found) const;
+    /// Whether a point of the camera frame is in the image.
+    bool isInside(const Eigen::Vector3d& in_camera) const;
     /// Whether a point is in a keyframe's image, and where.
     bool project(std::size_t slot, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const;
     /// Share of the frames after a keyframe that found an edge, mean over its keyframes; < 0: not known.
@@ -53,6 +54,8 @@ class PseudoEdgeJudge {
     PinholeCamera camera_;
     std::vector<Pose> T_camera_world_;  ///< of the window
     std::vector<Suspect> suspects_;
+    std::vector<std::size_t> observer_of_;  ///< of each slot: the last point that it was seen to observe
+    std::vector<int> inside_, observed_;    ///< of each slot
     std::unique_ptr<PointBuckets> buckets_;
 };
 

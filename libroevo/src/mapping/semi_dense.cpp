@@ -15,11 +15,13 @@ int halfWidth(int radius, int dy) {
 /// Ideal pixels within `radius` of an edge point: not 0.
 cv::Mat1b maskAround(const OrganizedEdges& edges, const PinholeCamera& camera, int radius) {
     cv::Mat1b mask(camera.height, camera.width, std::uint8_t{0});
+    std::vector<int> reaches;
+    for (int dy = -radius; dy <= radius; ++dy) reaches.push_back(halfWidth(radius, dy));
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const auto u = static_cast<int>(std::lround(edges.x[i])),
                    v = static_cast<int>(std::lround(edges.y[i]));
         for (int dy = -radius; dy <= radius; ++dy) {
-            const int reach = halfWidth(radius, dy);
+            const int reach = reaches[static_cast<std::size_t>(dy + radius)];
             const int from = std::max(0, u - reach), to = std::min(camera.width - 1, u + reach);
             if (v + dy < 0 || v + dy >= camera.height || from > to) continue;
             std::fill(mask[v + dy] + from, mask[v + dy] + to + 1, std::uint8_t{1});
@@ -28,19 +30,36 @@ cv::Mat1b maskAround(const OrganizedEdges& edges, const PinholeCamera& camera, i
     return mask;
 }
 
-/// The pixel (u, v) of the ideal camera with the nearest pixel of the real one; false where that has no
-/// depth.
-bool sample(const RgbdFrame& frame, const PinholeCamera& camera, int u, int v, ColouredPoint& out) {
-    const Eigen::Vector2d real = camera.distortPixel(Eigen::Vector2d(u, v));
-    if (!(real.x() > -0.5 && real.x() < camera.width - 0.5 && real.y() > -0.5 &&
-          real.y() < camera.height - 0.5))
-        return false;
-    const auto ru = static_cast<int>(std::lround(real.x())), rv = static_cast<int>(std::lround(real.y()));
-    const float depth = frame.depth.at<float>(rv, ru);
-    if (!(depth > 0) || !std::isfinite(depth)) return false;
-    out.position = camera.backProject(u, v, static_cast<double>(depth)).cast<float>();
-    out.colour = colourAt(frame, ru, rv);
-    return true;
+/// A pixel of the ideal camera, and the nearest one of the real camera.
+struct Sample {
+    int u, v, real_u, real_v;
+};
+
+/// The nearest pixel; of two that are as near, that away from 0.
+int nearest(double coordinate) {
+    return static_cast<int>(coordinate + (coordinate < 0 ? -0.5 : 0.5));
+}
+
+/// False where the real camera has no depth.
+bool hasDepth(const cv::Mat& depth, const PinholeCamera& camera, Sample& sample) {
+    sample.real_u = sample.u;
+    sample.real_v = sample.v;
+    if (camera.isDistorted()) {
+        const Eigen::Vector2d real = camera.distortPixel(Eigen::Vector2d(sample.u, sample.v));
+        if (!(real.x() > -0.5 && real.x() < camera.width - 0.5 && real.y() > -0.5 &&
+              real.y() < camera.height - 0.5))
+            return false;
+        sample.real_u = nearest(real.x());
+        sample.real_v = nearest(real.y());
+    }
+    const float z = depth.ptr<float>(sample.real_v)[sample.real_u];
+    return z > 0 && std::isfinite(z);
+}
+
+ColouredPoint pointAt(const RgbdFrame& frame, const PinholeCamera& camera, const Sample& sample) {
+    const float depth = frame.depth.ptr<float>(sample.real_v)[sample.real_u];
+    return {camera.backProject(sample.u, sample.v, static_cast<double>(depth)).cast<float>(),
+            colourAt(frame, sample.real_u, sample.real_v)};
 }
 
 }  // namespace
@@ -59,14 +78,18 @@ std::vector<ColouredPoint> sampleSemiDense(const OrganizedEdges& edges, const Rg
     std::vector<ColouredPoint> points;
     if (frame.depth.empty() || max_points <= 0) return points;
     const cv::Mat1b mask = maskAround(edges, camera, radius_px);
-    ColouredPoint point;
-    for (int v = 0; v < mask.rows; ++v)
-        for (int u = 0; u < mask.cols; ++u)
-            if (mask(v, u) != 0 && sample(frame, camera, u, v, point)) points.push_back(point);
-    const std::size_t all = points.size(), wanted = static_cast<std::size_t>(max_points);
-    if (all <= wanted) return points;
-    for (std::size_t k = 0; k < wanted; ++k) points[k] = points[k * all / wanted];
-    points.resize(wanted);
+    std::vector<Sample> samples;
+    for (int v = 0; v < mask.rows; ++v) {
+        const std::uint8_t* row = mask[v];
+        for (int u = 0; u < mask.cols; ++u) {
+            Sample sample{u, v, 0, 0};
+            if (row[u] != 0 && hasDepth(frame.depth, camera, sample)) samples.push_back(sample);
+        }
+    }
+    const std::size_t all = samples.size(), wanted = std::min(all, static_cast<std::size_t>(max_points));
+    points.reserve(wanted);
+    for (std::size_t k = 0; k < wanted; ++k)
+        points.push_back(pointAt(frame, camera, samples[k * all / wanted]));
     return points;
 }
 

@@ -54,22 +54,18 @@ void numberEdges(Keyframe& keyframe, const Keyframe* before, const EdgeMatches& 
     }
 }
 
-EdgeMap ownEdges(const Keyframe& kf, const RgbdFrame& frame, const PinholeCamera& camera) {
-    EdgeMap edges;
-    for (int e = 0; e < kf.edges.image.numEdges(); ++e) {
-        MapEdge edge;
-        edge.keyframe_id = kf.id;
-        const auto [first, end] = kf.edges.image.pointsOf(e);
-        for (std::size_t i = first; i < end; ++i) {
-            edge.points.push_back(kf.edges.points.at(i).cast<float>());
-            const Eigen::Vector2d pixel = camera.distortPixel({kf.edges.image.x[i], kf.edges.image.y[i]});
-            const int u = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, camera.width - 1);
-            const int v = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, camera.height - 1);
-            edge.colours.push_back(colourAt(frame, u, v));
-        }
-        edges.push_back(std::move(edge));
+std::vector<Rgb> coloursOf(const OrganizedEdges& edges, const RgbdFrame& frame, const PinholeCamera& camera) {
+    std::vector<Rgb> colours;
+    colours.reserve(edges.size());
+    const auto nearest = [](double coordinate, int size) {
+        return std::clamp(static_cast<int>(coordinate + 0.5), 0, size - 1);
+    };
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const Eigen::Vector2d pixel = camera.distortPixel({edges.x[i], edges.y[i]});
+        colours.push_back(
+            colourAt(frame, nearest(pixel.x(), camera.width), nearest(pixel.y(), camera.height)));
     }
-    return edges;
+    return colours;
 }
 
 }  // namespace roevo

@@ -20,7 +20,8 @@ namespace roevo {
 /// @param next     next number that is free
 void numberEdges(Keyframe& keyframe, const Keyframe* before, const EdgeMatches& matches, std::int32_t& next);
 
-/// The keyframe's edges in its own frame, coloured from its image.
-EdgeMap ownEdges(const Keyframe& keyframe, const RgbdFrame& frame, const PinholeCamera& camera);
+/// The colours of all points of a frame's edges.
+/// @param camera  with its lens
+std::vector<Rgb> coloursOf(const OrganizedEdges& edges, const RgbdFrame& frame, const PinholeCamera& camera);
 
 }  // namespace roevo

@@ -8,6 +8,11 @@
 
 namespace roevo {
 
+PreparedFrame::PreparedFrame() = default;
+PreparedFrame::~PreparedFrame() = default;
+PreparedFrame::PreparedFrame(PreparedFrame&&) noexcept = default;
+PreparedFrame& PreparedFrame::operator=(PreparedFrame&&) noexcept = default;
+
 Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start)
     : Odometry(camera, options, T_world_start, nullptr) {}
 Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, const Pose& T_world_start,
@@ -39,9 +44,19 @@ int Odometry::saveMap(std::ostream& out) const {
 }
 
 FrameResult Odometry::processFrame(const RgbdFrame& images) {
+    return processFrame(prepareFrame(images));
+}
+PreparedFrame Odometry::prepareFrame(const RgbdFrame& images) {
+    PreparedFrame prepared;
+    prepared.content_ = std::make_unique<PreparedFrame::Content>(impl_->preparer.prepare(images));
+    return prepared;
+}
+FrameResult Odometry::processFrame(PreparedFrame prepared) {
+    if (!prepared.content_) throw std::logic_error("there is nothing in this prepared frame");
     const Stopwatch watch;
-    FrameResult result = impl_->processFrame(images);
-    result.ms.total = watch.milliseconds();
+    const double milliseconds = prepared.content_->milliseconds;
+    FrameResult result = impl_->processFrame(std::move(*prepared.content_));
+    result.ms.total = milliseconds + watch.milliseconds();
     return result;
 }
 

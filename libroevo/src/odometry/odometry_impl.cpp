@@ -1,20 +1,21 @@
 #include "odometry_impl.h"
 
-#include "stopwatch.h"
+#include <utility>
+
 #include "tracking/se3.h"
 
 namespace roevo {
 
 /// The paper's pipeline figure.
-FrameResult Odometry::Impl::processFrame(const RgbdFrame& images) {
-    if (const Fault fault = inputFault(images, camera, last_timestamp))
-        return rejected(images.timestamp, fault);
-    if (const Fault fault = world.empty() ? Fault() : leaps.check(images.timestamp, last_timestamp))
-        return rejected(images.timestamp, fault);
-    if (isFrozen(images)) return report(frozen(images.timestamp));
-    prepare(images);  // Sec. IV
+FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // Sec. IV
+    if (prepared.fault) return rejected(prepared.timestamp, prepared.fault);
+    if (prepared.timestamp <= last_timestamp)
+        return rejected(prepared.timestamp, {Fault::Kind::kTimeBackward, {}});
+    edges_ms = prepared.milliseconds;
+    if (isFrozen(*prepared.frame)) return report(frozen(std::move(prepared.frame)));
+    take(std::move(prepared.frame));
     if (world.empty()) return report(start());
-    const Prediction prediction = motion.predict(images.timestamp);
+    const Prediction prediction = motion.predict(frame->timestamp());
     Tracking tracking = track(prediction);  // Sec. V
     if (tracking.lost()) return report(findAgain(std::move(tracking), prediction.since_measured));
 
@@ -37,13 +38,10 @@ void Odometry::Impl::expect(double timestamp) {
     world.advance(timestamp, motion.secondsPerRow());
 }
 
-void Odometry::Impl::prepare(const RgbdFrame& images) {
+void Odometry::Impl::take(std::unique_ptr<Frame> fresh) {
     is_frozen = false;
-    expect(images.timestamp);
-    const Stopwatch watch;
-    std::swap(frame, frame_before);
-    front_end.process(images, *frame);
-    edges_ms = watch.milliseconds();
+    expect(fresh->timestamp());
+    preparer.giveBack(std::exchange(frame_before, std::exchange(frame, std::move(fresh))));
 }
 
 Tracking Odometry::Impl::track(const Prediction& prediction) {
@@ -56,21 +54,22 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
 }
 
 /// Whether a camera that moves shows the same image once more. One at rest may, where nothing makes noise.
-bool Odometry::Impl::isFrozen(const RgbdFrame& images) {
+bool Odometry::Impl::isFrozen(const Frame& fresh) {
     constexpr double kAtRest = 0.5;  // px of image motion
-    if (!measured || !sameBytes(images.grey, frame->images.grey)) return false;
+    if (!measured || !sameBytes(fresh.images.grey, frame->images.grey)) return false;
     if (is_frozen) return true;
-    const Prediction prediction = motion.predict(images.timestamp);
+    const Prediction prediction = motion.predict(fresh.timestamp());
     return imageMotion(prediction.T_reference_camera.inverse(), prediction.T_reference_last.inverse(),
                        camera.fx, world.reference().typicalDepth()) > kAtRest;
 }
 
 /// What the camera has seen before tells nothing of where it is now, and is not tracked: it would be taken
 /// for standing still.
-Outcome Odometry::Impl::frozen(double timestamp) {
+Outcome Odometry::Impl::frozen(std::unique_ptr<Frame> fresh) {
     is_frozen = true;
+    const double timestamp = fresh->timestamp();
+    preparer.giveBack(std::move(fresh));
     expect(timestamp);
-    edges_ms = 0;
     const Prediction prediction = motion.predict(timestamp);
     Outcome outcome;
     outcome.status = FrameStatus::kPredicted;

@@ -3,8 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "front_end.h"
-#include "input_check.h"
+#include "frame_preparer.h"
 #include "outcome.h"
 #include "roevo/odometry.h"
 #include "tracking/camera_scale.h"
@@ -19,7 +18,7 @@ struct Odometry::Impl {
         : camera(raw),
           options(opts),
           T_world_start(start),
-          front_end(raw, scaledTo(raw, opts)),
+          preparer(raw, scaledTo(raw, opts)),
           tracker(std::move(own_tracker)),
           motion(opts.motion, opts.sensor, raw.height),
           world(raw, opts) {}
@@ -27,26 +26,25 @@ struct Odometry::Impl {
     PinholeCamera camera;
     OdometryOptions options;  // as given
     Pose T_world_start;
-    FrontEnd front_end;
+    FramePreparer preparer;
     std::unique_ptr<Tracker> tracker;
     MotionModel motion;  // relative to the reference, as all but the world
     World world;
 
-    std::unique_ptr<Frame> frame = std::make_unique<Frame>(), frame_before = std::make_unique<Frame>();
+    std::unique_ptr<Frame> frame, frame_before;
     std::optional<Tracking> candidate;  // of the frame before, if it can still become a keyframe
     double last_timestamp = -std::numeric_limits<double>::infinity();
-    LeapCheck leaps;
     double edges_ms = 0;
     bool measured = false;   // the pose of what is in `frame` was
     bool is_frozen = false;  // images since then are the same
     int lost_frames = 0;
     double lost_since = 0;  // s
 
-    FrameResult processFrame(const RgbdFrame& images);
+    FrameResult processFrame(PreparedFrame::Content prepared);
     void expect(double timestamp);
-    void prepare(const RgbdFrame& images);
-    bool isFrozen(const RgbdFrame& images);
-    Outcome frozen(double timestamp);
+    void take(std::unique_ptr<Frame> fresh);
+    bool isFrozen(const Frame& fresh);
+    Outcome frozen(std::unique_ptr<Frame> fresh);
     Outcome start();
     Tracking track(const Prediction& prediction);
     Tracking confirmed(Tracking tracking, const Prediction& prediction);

@@ -65,6 +65,7 @@ void fill(FrameResult& result, const Outcome& outcome, const WorldChange& change
     result.ms.coarse = tracking.ms_coarse;
     result.ms.fine = tracking.ms_fine;
     result.ms.mapping = change.mapping_ms;
+    result.ms.mapping_cpu = change.mapping_cpu_ms;
     result.ms.waiting = change.waiting_ms;
 }
 

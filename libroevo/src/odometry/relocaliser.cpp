@@ -65,10 +65,10 @@ void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<
         seen->images.depth = frame.images.depth.clone();
     }
     seen->pyramid.build(frame.pyramid.level(0).clone(), 1);
-    at_work_ = std::async(std::launch::async, [this, copy = std::move(copy), seen = std::move(seen),
-                                               colours = std::move(colours), begin, end]() mutable {
-        return describe(std::move(copy), std::move(seen), colours, begin, end);
-    });
+    const auto launch = threadCount(options_.threads) > 1 ? std::launch::async : std::launch::deferred;
+    at_work_ = std::async(
+        launch, [this, copy = std::move(copy), seen = std::move(seen), colours = std::move(colours), begin,
+                 end]() mutable { return describe(std::move(copy), std::move(seen), colours, begin, end); });
 }
 
 Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<Frame> frame,

@@ -54,7 +54,7 @@ class Relocaliser {
     /// Of all keyframes, by their ids; waits for the thread.
     const std::vector<KnownPlace>& places();
 
-    /// In a thread of its own.
+    /// In a thread of its own, or when it is asked for where there is but one.
     /// @param frame    that the keyframe was made of
     /// @param colours  of the keyframe's points
     /// @param begin    of the keyframe's track

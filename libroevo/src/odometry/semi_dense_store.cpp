@@ -83,7 +83,7 @@ void SemiDenseStore::add(const OrganizedEdges& edges, const Frame& frame, const 
     frame.images.depth.copyTo(job.frame.depth);
     frame.images.colour.copyTo(job.frame.colour);
     job.rows = rows;
-    sampling_.push_back(std::async(std::launch::async, &SemiDenseStore::sample, this, std::move(job)));
+    sampling_.push_back(std::async(launch_, &SemiDenseStore::sample, this, std::move(job)));
 }
 
 void SemiDenseStore::collect(std::size_t most_sampling) {

@@ -40,14 +40,16 @@ class PackedPoints {
 };
 
 /// The surface next to the edges of every keyframe, kept in the keyframes' own frames so that it follows
-/// their poses. It is sampled beside tracking, in threads of its own; what comes out does not depend on them.
+/// their poses. It is sampled beside tracking, in threads of its own if there are any; what comes out does
+/// not depend on them.
 class SemiDenseStore {
   public:
     SemiDenseStore(const PinholeCamera& camera, const OdometryOptions& options)
         : camera_(camera),
           sensor_(options.sensor),
           depth_jump_(options.edges.depth_jump),
-          max_points_(options.mapping.semi_dense_points) {}
+          max_points_(options.mapping.semi_dense_points),
+          launch_(threadCount(options.threads) > 1 ? std::launch::async : std::launch::deferred) {}
 
     SemiDenseStore(const SemiDenseStore&) = delete;  // the threads point to it
     SemiDenseStore& operator=(const SemiDenseStore&) = delete;
@@ -81,6 +83,7 @@ class SemiDenseStore {
     SensorOptions sensor_;
     double depth_jump_;
     int max_points_;
+    std::launch launch_;
     std::vector<PackedPoints> keyframes_;
     std::vector<Job> spare_;                 // their images are written into again
     std::deque<std::future<Job>> sampling_;  // of the newest keyframes, in order; last: waits for the threads

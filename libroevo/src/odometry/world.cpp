@@ -118,6 +118,7 @@ void World::takeUpdate(const MapUpdate& update) {
     trajectory_.apply(update);
     noteMotion(before);
     change_.mapping_ms += update.milliseconds;
+    change_.mapping_cpu_ms += update.cpu_milliseconds;
     change_.refusals.insert(change_.refusals.end(), update.refusals.begin(), update.refusals.end());
     pseudo_clusters_.judge(update.verdicts, update.clusters);
     weakenPseudoEdges();
@@ -151,17 +152,17 @@ Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Trac
 
 void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
     const bool closes = closesLoops();
-    EdgeMap edges = ownEdges(*fresh, of.images, camera_);
+    std::vector<Rgb> colours = coloursOf(fresh->edges.image, of.images, camera_);
     if (remembersPlaces()) {
         const int begin = trajectory_.beginOfTrack(fresh->id);
-        relocaliser_.add(*fresh, of, coloursOf(edges), begin,
+        relocaliser_.add(*fresh, of, colours, begin,
                          closes ? std::max(begin, fresh->id - kStillInView) : begin);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
     }
     semi_dense_.add(fresh->edges.image, of, fresh->row_motion);
-    mapper_->insert({*fresh, std::move(edges), trajectory_.keyframePose(fresh->id), tracked, reference_.get(),
-                     seconds_per_row_},
+    mapper_->insert({*fresh, std::move(colours), trajectory_.keyframePose(fresh->id), tracked,
+                     reference_.get(), seconds_per_row_},
                     timestamp_);
     reference_ = std::move(fresh);
     weakenPseudoEdges();

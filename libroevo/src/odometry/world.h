@@ -14,8 +14,8 @@ namespace roevo {
 
 /// What became of the keyframes before a frame was tracked, or while it was.
 struct WorldChange {
-    double moved = 0, turned = 0;           ///< m, rad: the camera, with the keyframes
-    double mapping_ms = 0, waiting_ms = 0;  ///< see StageTimes
+    double moved = 0, turned = 0;                               ///< m, rad: the camera, with the keyframes
+    double mapping_ms = 0, mapping_cpu_ms = 0, waiting_ms = 0;  ///< see StageTimes
     std::vector<MapRefusal> refusals;
     int joined_at = -1, closed_at = -1;  ///< see FrameResult
 };

@@ -1,0 +1,81 @@
+#include "frame_preparer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "stopwatch.h"
+
+namespace roevo {
+namespace {
+
+/// Pixels per edge point, at least: twice as many points as in a cluttered office. An image of noise has
+/// more, and no use for them.
+constexpr std::size_t kPixelsPerPoint = 12;
+
+}  // namespace
+
+void keepLongest(OrganizedEdges& edges, std::size_t most_points) {
+    if (edges.size() <= most_points) return;
+    std::vector<std::size_t> order(static_cast<std::size_t>(edges.numEdges()));
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return edges.pointsOf(a).size() > edges.pointsOf(b).size();
+    });
+    std::size_t points = 0, kept = 0;
+    while (kept < order.size() && points + edges.pointsOf(order[kept]).size() <= most_points)
+        points += edges.pointsOf(order[kept++]).size();
+    std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept));
+    OrganizedEdges out;
+    out.clear();
+    for (std::size_t k = 0; k < kept; ++k) {
+        const IndexRange own = edges.pointsOf(order[k]);
+        for (std::size_t i = own.first; i < own.end; ++i) {
+            out.addPoint(edges.x[i], edges.y[i], edges.gradient_x[i], edges.gradient_y[i], edges.strength[i]);
+            out.normal_x.push_back(edges.normal_x[i]);
+            out.normal_y.push_back(edges.normal_y[i]);
+        }
+        out.finishEdge();
+    }
+    edges = std::move(out);
+}
+
+Fault FramePreparer::faultOf(const RgbdFrame& images) {
+    if (const Fault fault = inputFault(images, camera_, last_timestamp_)) return fault;
+    return std::isfinite(last_timestamp_) ? leaps_.check(images.timestamp, last_timestamp_) : Fault();
+}
+
+PreparedFrame::Content FramePreparer::prepare(const RgbdFrame& images) {
+    const Stopwatch watch;
+    PreparedFrame::Content out;
+    out.timestamp = images.timestamp;
+    out.fault = faultOf(images);
+    if (out.fault) return out;
+    last_timestamp_ = images.timestamp;
+    out.frame = take();
+    Frame& frame = *out.frame;
+    front_end_.process(images, frame);
+    const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
+    if (frame.edges.size() * kPixelsPerPoint > pixels) {
+        keepLongest(frame.edges, pixels / kPixelsPerPoint);
+        frame.grid.build(frame.edges, camera_.width, camera_.height);
+    }
+    out.milliseconds = watch.milliseconds();
+    return out;
+}
+
+std::unique_ptr<Frame> FramePreparer::take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (spare_.empty()) return std::make_unique<Frame>();
+    std::unique_ptr<Frame> frame = std::move(spare_.back());
+    spare_.pop_back();
+    return frame;
+}
+
+void FramePreparer::giveBack(std::unique_ptr<Frame> frame) {
+    if (!frame) return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    spare_.push_back(std::move(frame));
+}
+
+}  // namespace roevo
