@@ -60,7 +60,7 @@ int EdgeTerm::narrowed() const {
 bool EdgeTerm::linearise(const Linearisation& at, PoseSystem& system) {
     const double share = std::min(1.0, static_cast<double>(at.iteration) / narrowed());
     const double radius = options_.search_radius + share * (options_.final_radius - options_.search_radius);
-    if (free_readout_ || isAssociated(at.T_current_keyframe, share < 1 ? options_.search_radius : radius)) {
+    if (free_readout_ || isAssociated(at.T_current_keyframe, radius)) {
         projectMatched(at.T_current_keyframe, at.rows);
         follow();
     } else {
