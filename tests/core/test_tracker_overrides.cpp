@@ -76,7 +76,8 @@ class OwnAlignment : public Tracker {
     CoarseResult align(const Keyframe& reference, const Frame& frame, const RollingShutter& shutter,
                        const std::vector<Pose>& guesses, const Brightness& brightness) override {
         ++calls_;
-        return coarse_.track(reference, frame.pyramid, ideal_, shutter, guesses, brightness);
+        constexpr int kFinest = 1;  // as Tracker has it but in mode ct
+        return coarse_.track(reference, frame.pyramid, ideal_, shutter, guesses, brightness, kFinest);
     }
 
   private:
