@@ -76,8 +76,8 @@ class OwnAlignment : public Tracker {
     CoarseResult align(const Keyframe& reference, const Frame& frame, const RollingShutter& shutter,
                        const std::vector<Pose>& guesses, const Brightness& brightness) override {
         ++calls_;
-        constexpr int kFinest = 1;  // as Tracker has it but in mode ct
-        return coarse_.track(reference, frame.pyramid, ideal_, shutter, guesses, brightness, kFinest);
+        const int finest = options_.mode == Mode::kCoarse ? 0 : 1;  // as Tracker has it
+        return coarse_.track(reference, frame.pyramid, ideal_, shutter, guesses, brightness, finest);
     }
 
   private:
