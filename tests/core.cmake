@@ -2,12 +2,12 @@ roevo_test(test_core_camera
   SOURCES core/test_pinhole_camera.cpp core/test_undistorter.cpp core/test_depth_registration.cpp
   LIBS roevo_internal opencv_calib3d)
 roevo_test(test_core_edges
-  SOURCES core/test_pixel_kernels.cpp core/test_gradient.cpp core/test_canny.cpp core/test_adjacency.cpp core/test_organize.cpp
+  SOURCES core/test_pixel_kernels.cpp core/test_edge_kernels.cpp core/test_gradient.cpp core/test_canny.cpp core/test_adjacency.cpp core/test_organize.cpp
           core/test_organize_trees.cpp core/test_normals.cpp core/test_edge_grid.cpp core/test_edge_depth.cpp
           core/test_edge_sides.cpp
   LIBS roevo_internal)
 roevo_test(test_core_tracking
-  SOURCES core/test_kernels.cpp core/test_photometric.cpp core/test_fine_jacobians.cpp core/test_gauss_newton.cpp
+  SOURCES core/test_kernels.cpp core/test_residual_kernels.cpp core/test_photometric.cpp core/test_fine_jacobians.cpp core/test_gauss_newton.cpp
           core/test_se3.cpp core/test_motion_model.cpp core/test_edge_association.cpp core/test_rolling_shutter.cpp core/test_motion_blur.cpp core/test_edge_points.cpp core/test_options.cpp
           core/test_relative_pose.cpp core/test_edge_clusters.cpp core/test_fault.cpp
   LIBS roevo_internal)

@@ -170,36 +170,6 @@ TEST(EdgeAssociation, AStrideSpreadsOverTheEdgesAndKeepsTheRatio) {
     for (const auto& [edge, points] : count) EXPECT_NEAR(points, 53.0 / 9, 1) << edge;
 }
 
-TEST(EdgeAssociation, FollowedMatchesMoveAlongTheirEdgesToTheNearestPoint) {
-    // A bent edge, a short one, and another edge nearer by than the one that was matched
-    OrganizedEdges edges = none();
-    for (int i = 0; i < 60; ++i)
-        edges.addPoint(static_cast<float>(40 + i), static_cast<float>(60 + 0.01 * i * i), 0, 1, 20);
-    edges.finishEdge();
-    addLine(edges, 120, 100, 4);
-    addLine(edges, 70, 64.5, 60);
-    EdgeMatches matches;
-    matches.reference.resize(edges.size());
-    std::iota(matches.reference.begin(), matches.reference.end(), 0);
-    matches.current = matches.reference;
-    const std::vector<std::int32_t> before = matches.current;
-    for (const auto& [du, dv] : {std::pair{2.6F, 0.3F}, {-2.6F, -0.8F}, {400.0F, 0.0F}, {0.0F, 0.0F}}) {
-        std::vector<float> u = edges.x, v = edges.y;
-        for (auto& value : u) value += du;
-        for (auto& value : v) value += dv;
-        EdgeAssociator::follow(u.data(), v.data(), edges, matches);
-        for (std::size_t k = 0; k < matches.size(); ++k) {
-            const auto i = static_cast<std::size_t>(matches.reference[k]);
-            const auto far = [&](std::size_t p) { return std::hypot(edges.x[p] - u[i], edges.y[p] - v[i]); };
-            const auto found = static_cast<std::size_t>(matches.current[k]);
-            const IndexRange own = edges.pointsOf(edges.edge_of[i]);
-            EXPECT_EQ(edges.edge_of[found], edges.edge_of[i]);
-            for (std::size_t p = own.first; p < own.end; ++p) EXPECT_LE(far(found), far(p)) << i << ' ' << p;
-        }
-    }
-    EXPECT_EQ(matches.current, before) << "there and back";
-}
-
 TEST(EdgeAssociation, OnlyPointsInsideTheImageCount) {
     const OrganizedEdges edges = line(100, 60, 80);
     const EdgeMatches half = match(edges, edges, FineOptions(), {-96.5F, 0});  // x = -36 ... 43

@@ -50,6 +50,9 @@ TEST(EdgeGrid, NearestIsThatOfBruteForce) {
                 expected = static_cast<int>(i);
             }
             ASSERT_EQ(grid.nearest(u, v, radius, accept), expected);
+            const auto guess = static_cast<int>(random() % edges.size());
+            ASSERT_EQ(grid.nearest(u, v, radius, accept, guess), expected) << "whatever the guess";
+            ASSERT_EQ(grid.nearest(u, v, radius, accept, expected), expected);
             if (expected >= 0) ++found;
         }
     }

@@ -100,10 +100,18 @@ TEST(PixelKernels, RidgesAreThoseOfPlainInterpolation) {
             for (int y = 4; y < height - 4; ++y) {
                 for (const int count : {1, 7, 8, 37, 63, 64}) {
                     std::vector<std::uint64_t> bits;
-                    for (const auto* table : tables())
-                        bits.push_back(table->ridges(g.magnitude.ptr<float>(y) + 4, stride,
-                                                     g.gx.ptr<std::int16_t>(y) + 4,
-                                                     g.gy.ptr<std::int16_t>(y) + 4, count, low));
+                    const float high = 1.5F * low;
+                    for (const auto* table : tables()) {
+                        const auto ridges = table->ridges(g.magnitude.ptr<float>(y) + 4, stride,
+                                                          g.gx.ptr<std::int16_t>(y) + 4,
+                                                          g.gy.ptr<std::int16_t>(y) + 4, count, low, high);
+                        bits.push_back(ridges.all);
+                        for (int i = 0; i < 64; ++i) {
+                            const bool strong =
+                                (ridges.all >> i & 1) != 0 && g.magnitude.at<float>(y, 4 + i) >= high;
+                            ASSERT_EQ(ridges.strong >> i & 1, strong ? 1U : 0U) << i << ' ' << y;
+                        }
+                    }
                     ASSERT_EQ(bits.front(), bits.back());
                     for (int i = 0; i < 64; ++i) {
                         const int bit = static_cast<int>(bits[0] >> i & 1);

@@ -76,7 +76,8 @@ class OwnAlignment : public Tracker {
     CoarseResult align(const Keyframe& reference, const Frame& frame, const RollingShutter& shutter,
                        const std::vector<Pose>& guesses, const Brightness& brightness) override {
         ++calls_;
-        return coarse_.track(reference, frame.pyramid, ideal_, shutter, guesses, brightness);
+        const int finest = options_.mode == Mode::kCoarse ? 0 : 1;  // as Tracker has it
+        return coarse_.track(reference, frame.pyramid, ideal_, shutter, guesses, brightness, finest);
     }
 
   private:

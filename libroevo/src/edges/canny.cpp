@@ -1,120 +1,137 @@
 #include "edges/canny.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
 
 #include "pixels/pixel_kernels.h"
 
 namespace roevo {
 namespace {
 
-constexpr std::uint8_t kNone = 0, kEdge = 1, kWeak = 2;
+constexpr int kBits = 64;
 
-/// Magnitudes one step before and after (x, y) along the gradient, interpolated between the two neighbours
-/// that the gradient line passes, and that step in pixels.
-struct Neighbours {
-    float before, after;
-    float step_x, step_y;
+/// Where the bits of an image's pixels are: rows of words, with an empty word before and after them.
+struct BitRows {
+    int columns, rows;  ///< px, within the border
+    std::size_t words;  ///< of a row
+    explicit BitRows(const cv::Size& size)
+        : columns(size.width - 2 * EdgeMask::kBorder),
+          rows(size.height - 2 * EdgeMask::kBorder),
+          words(static_cast<std::size_t>((columns + kBits - 1) / kBits + 2)) {}
+    /// There is an empty row above and below.
+    std::size_t size() const { return words * static_cast<std::size_t>(rows + 2); }
+    std::size_t firstWord(int row) const { return words * static_cast<std::size_t>(row + 1) + 1; }
 };
 
-inline Neighbours alongGradient(const float* magnitude, std::ptrdiff_t stride, int gx, int gy) {
-    const bool by_column = std::abs(gx) >= std::abs(gy);
-    const auto x = static_cast<float>(gx), y = static_cast<float>(gy);
-    const float slope = by_column ? y / x : x / y, share = std::abs(slope);
-    const std::ptrdiff_t step = by_column ? 1 : stride, across = by_column ? stride : 1;
-    const std::ptrdiff_t side = slope >= 0 ? across : -across;
-    const float after = magnitude[step] + share * (magnitude[step + side] - magnitude[step]);
-    const float before = magnitude[-step] + share * (magnitude[-step - side] - magnitude[-step]);
-    return by_column ? Neighbours{before, after, 1, slope} : Neighbours{before, after, slope, 1};
-}
-
-/// Marks ridges of at least `low` in the mask, strong ones from `high` on as edges, and lists these.
-void markRidges(const Gradient& gradient, float low, float high, EdgeMask& out) {
+/// Sets a bit of `weak` for each ridge of at least `low`, or of `strong` from `high` on.
+void markRidges(const Gradient& gradient, float low, float high, const BitRows& bits, EdgeMask& out) {
     constexpr int kBorder = EdgeMask::kBorder;
-    const int width = gradient.magnitude.cols, height = gradient.magnitude.rows;
+    static_assert(kBits == pixels::kMostRidges);
     const auto stride = static_cast<std::ptrdiff_t>(gradient.magnitude.step1());
     const auto& kernels = pixels::best();
-    for (int y = kBorder; y < height - kBorder; ++y) {
-        const auto* magnitude = gradient.magnitude.ptr<float>(y);
-        const auto* gx = gradient.gx.ptr<std::int16_t>(y);
-        const auto* gy = gradient.gy.ptr<std::int16_t>(y);
-        auto* mask = out.mask.ptr<std::uint8_t>(y);
-        for (int first = kBorder; first < width - kBorder; first += pixels::kMostRidges) {
-            const int count = std::min(pixels::kMostRidges, width - kBorder - first);
-            std::uint64_t ridges =
-                kernels.ridges(magnitude + first, stride, gx + first, gy + first, count, low);
-            for (; ridges != 0; ridges &= ridges - 1) {
-                const int x = first + __builtin_ctzll(ridges);
-                const bool strong = magnitude[x] >= high;
-                mask[x] = strong ? kEdge : kWeak;
-                if (strong) out.pixels.push_back(y * width + x);
-            }
+    for (int row = 0; row < bits.rows; ++row) {
+        const auto* magnitude = gradient.magnitude.ptr<float>(row + kBorder) + kBorder;
+        const auto* gx = gradient.gx.ptr<std::int16_t>(row + kBorder) + kBorder;
+        const auto* gy = gradient.gy.ptr<std::int16_t>(row + kBorder) + kBorder;
+        std::size_t word = bits.firstWord(row);
+        for (int first = 0; first < bits.columns; first += kBits, ++word) {
+            const int count = std::min(kBits, bits.columns - first);
+            const pixels::Ridges ridges =
+                kernels.ridges(magnitude + first, stride, gx + first, gy + first, count, low, high);
+            out.strong[word] = ridges.strong;
+            out.weak[word] = ridges.all & ~ridges.strong;
         }
     }
 }
 
-/// Hysteresis: weak pixels that the listed ones reach become edges, too.
-void followWeak(EdgeMask& out) {
-    auto* mask = out.mask.ptr<std::uint8_t>();
-    const int width = out.mask.cols;
-    for (std::size_t i = 0; i < out.pixels.size(); ++i) {
-        const std::int32_t centre = out.pixels[i];
-        for (int dy = -1; dy <= 1; ++dy) {
-            for (int dx = -1; dx <= 1; ++dx) {
-                const std::int32_t neighbour = centre + dy * width + dx;
-                if (mask[neighbour] != kWeak) continue;
-                mask[neighbour] = kEdge;
-                out.pixels.push_back(neighbour);
-            }
+/// Hysteresis: weak pixels that strong ones reach become strong, too.
+/// @param queue  buffer of pixels, as word * 64 + bit
+void followWeak(const BitRows& bits, EdgeMask& out) {
+    auto& queue = out.pixels;
+    queue.clear();
+    const auto adopt = [&](std::size_t word, std::uint64_t reached) {
+        const std::uint64_t found = reached & out.weak[word];
+        out.weak[word] ^= found;
+        out.strong[word] |= found;
+        for (std::uint64_t rest = found; rest != 0; rest &= rest - 1)
+            queue.push_back(static_cast<std::int32_t>(kBits * word) + __builtin_ctzll(rest));
+    };
+    for (int row = 0; row < bits.rows; ++row) {
+        const std::size_t first = bits.firstWord(row);
+        const auto column = [&](std::size_t word) {
+            return out.strong[word - bits.words] | out.strong[word] | out.strong[word + bits.words];
+        };
+        std::uint64_t before = 0, here = column(first);
+        for (std::size_t word = first; word < first + bits.words - 2; ++word) {
+            const std::uint64_t after = column(word + 1);
+            if (out.weak[word] != 0)
+                adopt(word, here | here << 1 | here >> 1 | before >> (kBits - 1) | after << (kBits - 1));
+            before = here;
+            here = after;
+        }
+    }
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+        const auto pixel = static_cast<std::size_t>(queue[i]);
+        const std::uint64_t centre = std::uint64_t{1} << pixel % kBits;
+        for (const std::size_t word :
+             {pixel / kBits - bits.words, pixel / kBits, pixel / kBits + bits.words}) {
+            adopt(word, centre | centre << 1 | centre >> 1);
+            if ((centre & 1) != 0) adopt(word - 1, std::uint64_t{1} << (kBits - 1));
+            if (centre >> (kBits - 1) != 0) adopt(word + 1, 1);
         }
     }
 }
 
-/// Lists the edge pixels in raster order and drops weak pixels that nothing reached; eight pixels at a time,
-/// because few are either. What is left of the image at the end is in the border.
-void listInRasterOrder(EdgeMask& out) {
-    out.pixels.clear();
+/// Lists the strong pixels in raster order.
+void listStrong(const BitRows& bits, EdgeMask& out) {
     auto* mask = out.mask.ptr<std::uint8_t>();
-    const auto total = static_cast<std::int32_t>(out.mask.total());
-    for (std::int32_t p = 0; p + 8 <= total; p += 8) {
-        std::uint64_t eight;
-        std::memcpy(&eight, mask + p, sizeof eight);
-        if (eight == 0) continue;
-        eight &= 0x0101010101010101U * kEdge;
-        std::memcpy(mask + p, &eight, sizeof eight);
-        for (; eight != 0; eight &= eight - 1) out.pixels.push_back(p + __builtin_ctzll(eight) / 8);
+    std::size_t count = 0;
+    for (int row = 0; row < bits.rows; ++row) {
+        if (const std::size_t room = count + bits.words * kBits; out.pixels.size() < room)
+            out.pixels.resize(2 * room);
+        std::int32_t pixel = (row + EdgeMask::kBorder) * out.mask.cols + EdgeMask::kBorder;
+        const std::size_t first = bits.firstWord(row);
+        for (std::size_t word = first; word < first + bits.words - 2; ++word, pixel += kBits) {
+            for (std::uint64_t rest = out.strong[word]; rest != 0; rest &= rest - 1) {
+                const std::int32_t p = pixel + __builtin_ctzll(rest);
+                out.pixels[count++] = p;
+                mask[p] = 1;
+            }
+        }
     }
+    out.pixels.resize(count);
 }
 
 }  // namespace
 
 void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
     const cv::Size size = gradient.magnitude.size();
-    out.mask.create(size, CV_8UC1);  // continuous
-    out.mask.setTo(kNone);
+    if (out.mask.size() == size) {  // what it shows are its pixels
+        auto* mask = out.mask.ptr<std::uint8_t>();
+        for (const std::int32_t p : out.pixels) mask[p] = 0;
+    } else {
+        out.mask.create(size, CV_8UC1);  // continuous
+        out.mask.setTo(0);
+    }
     out.pixels.clear();
     if (std::min(size.width, size.height) <= 2 * EdgeMask::kBorder) return;
-    markRidges(gradient, static_cast<float>(low), static_cast<float>(high), out);
-    followWeak(out);
-    listInRasterOrder(out);
+    const BitRows bits(size);
+    if (out.strong.size() != bits.size()) {
+        out.strong.assign(bits.size(), 0);
+        out.weak.assign(bits.size(), 0);
+    }
+    markRidges(gradient, static_cast<float>(low), static_cast<float>(high), bits, out);
+    followWeak(bits, out);
+    listStrong(bits, out);
 }
 
 cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y) {
-    const auto* magnitude = gradient.magnitude.ptr<float>(y) + x;
-    const int gx = gradient.gx.at<std::int16_t>(y, x), gy = gradient.gy.at<std::int16_t>(y, x);
-    if (gx == 0 && gy == 0) return {0, 0};
-    const Neighbours n =
-        alongGradient(magnitude, static_cast<std::ptrdiff_t>(gradient.magnitude.step1()), gx, gy);
-    // Through the logarithms: a blurred step has a Gaussian ridge, whose logarithm is a parabola
-    const float floor = 0.33F * magnitude[0];  // where a sharp ridge ends, the logarithm would run away
-    const float before = std::log(n.before + floor), here = std::log(magnitude[0] + floor),
-                after = std::log(n.after + floor);
-    const float curvature = before - 2 * here + after;
-    if (!(curvature < 0)) return {0, 0};
-    const float vertex = std::clamp(0.5F * (before - after) / curvature, -0.5F, 0.5F);
-    return {vertex * n.step_x, vertex * n.step_y};
+    const std::int32_t pixel = y * gradient.magnitude.cols + x;
+    if (gradient.gx.at<std::int16_t>(y, x) == 0 && gradient.gy.at<std::int16_t>(y, x) == 0) return {0, 0};
+    cv::Point2f point;
+    float gradient_x, gradient_y, strength;
+    pixels::best().refine(gradient.view(), &pixel, 1,
+                          {&point.x, &point.y, &gradient_x, &gradient_y, &strength});
+    return point - cv::Point2f(static_cast<float>(x), static_cast<float>(y));
 }
 
 }  // namespace roevo

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "pixels/pixel_kernels.h"
+
 namespace roevo {
 namespace {
 
@@ -40,23 +42,39 @@ float planeAtOrigin(const Sample* samples, int count) {
     return mq - b * mx - c * my;
 }
 
-}  // namespace
+/// A square of depths around pixel (x, y).
+struct Square {
+    int x, y, radius;
+};
 
-EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOptions& edges,
-                          const SensorOptions& sensor) {
-    const int radius = std::min(edges.depth_patch_radius, kMaxRadius);
-    const int cu = static_cast<int>(std::lround(u)), cv_ = static_cast<int>(std::lround(v));
-    const auto near_limit = static_cast<float>(sensor.min_depth),
-               far_limit = static_cast<float>(sensor.depth_limit);
+struct Limits {
+    float near, far;  ///< m, of depths that are used
+    float jump;       ///< factor between depths of two surfaces
+};
+
+/// The depth at the edge of a surface whose inverse depth there is this. The edge is up to a pixel past the
+/// last near sample, and sometimes only two columns of them are in the patch. Kept within their range, the
+/// far end of whatever recedes came out too near, and a camera that moves forward moved too little.
+float depthAtEdge(float inverse, float nearest, float farthest, const Limits& limits) {
+    const float range = farthest - nearest;
+    return std::clamp(inverse > 0 ? 1 / inverse : farthest, std::max(nearest - range, limits.near),
+                      std::min(farthest + range, limits.far));
+}
+
+/// Of a square that may lie partly outside and show several surfaces.
+EdgeDepth nearestSurface(const cv::Mat& depth, const Square& square, float u, float v, const Limits& limits) {
+    const int radius = square.radius;
     const int step = std::max(1, (radius + kMostAcross - 1) / kMostAcross);
     std::array<Sample, (2 * kMaxRadius + 1) * (2 * kMaxRadius + 1)> samples;
     int count = 0;
-    float nearest = far_limit, farthest = near_limit;
-    for (int y = std::max(0, cv_ - radius); y <= std::min(depth.rows - 1, cv_ + radius); y += step) {
+    float nearest = limits.far, farthest = limits.near;
+    for (int y = std::max(0, square.y - radius); y <= std::min(depth.rows - 1, square.y + radius);
+         y += step) {
         const auto* row = depth.ptr<float>(y);
-        for (int x = std::max(0, cu - radius); x <= std::min(depth.cols - 1, cu + radius); x += step) {
+        for (int x = std::max(0, square.x - radius); x <= std::min(depth.cols - 1, square.x + radius);
+             x += step) {
             const float z = row[x];
-            if (!(z >= near_limit && z <= far_limit)) continue;
+            if (!(z >= limits.near && z <= limits.far)) continue;
             samples[static_cast<std::size_t>(count++)] = {z, 1 / z, static_cast<float>(x) - u,
                                                           static_cast<float>(y) - v};
             nearest = std::min(nearest, z);
@@ -64,17 +82,16 @@ EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOpti
         }
     }
     if (count < kMinForeground) return {};
-    const float jump = 1 + static_cast<float>(edges.depth_jump);
     EdgeDepth result;
     int begin = 0, end = count;
-    if (farthest > nearest * jump) {
+    if (farthest > nearest * limits.jump) {
         std::sort(samples.begin(), samples.begin() + count, [](const Sample& a, const Sample& b) {
             return a.z != b.z ? a.z < b.z : (a.dy != b.dy ? a.dy < b.dy : a.dx < b.dx);
         });
         end = 1;
         while (end < count) {
             if (samples[static_cast<std::size_t>(end)].z >
-                samples[static_cast<std::size_t>(end) - 1].z * jump) {
+                samples[static_cast<std::size_t>(end) - 1].z * limits.jump) {
                 if (end - begin >= kMinForeground) break;
                 begin = end;  // speckle in front of everything else
             }
@@ -85,14 +102,31 @@ EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOpti
         farthest = samples[static_cast<std::size_t>(end) - 1].z;
         result.occluding = end < count;
     }
-    const float inverse = planeAtOrigin(samples.data() + begin, end - begin);
-    // The edge is up to a pixel past the last near sample, and sometimes only two columns of them are in the
-    // patch. Kept within their range, the far end of whatever recedes came out too near, and a camera that
-    // moves forward moved too little.
-    const float range = farthest - nearest;
-    result.depth = std::clamp(inverse > 0 ? 1 / inverse : farthest, std::max(nearest - range, near_limit),
-                              std::min(farthest + range, far_limit));
+    result.depth = depthAtEdge(planeAtOrigin(samples.data() + begin, end - begin), nearest, farthest, limits);
     return result;
+}
+
+}  // namespace
+
+EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOptions& edges,
+                          const SensorOptions& sensor) {
+    const Square square{static_cast<int>(std::lround(u)), static_cast<int>(std::lround(v)),
+                        std::min(edges.depth_patch_radius, kMaxRadius)};
+    const Limits limits{static_cast<float>(sensor.min_depth), static_cast<float>(sensor.depth_limit),
+                        1 + static_cast<float>(edges.depth_jump)};
+    // Most squares lie inside and show one surface
+    const int left = square.x - square.radius, top = square.y - square.radius, size = 2 * square.radius + 1;
+    if (size <= pixels::kMostPatch && left >= 0 && top >= 0 && left + pixels::kMostPatch < depth.cols &&
+        top + size <= depth.rows) {
+        pixels::DepthPatch patch;
+        pixels::best().depthPatch(depth.ptr<float>(top) + left, static_cast<std::ptrdiff_t>(depth.step1()),
+                                  size, limits.near, limits.far, limits.jump,
+                                  u - static_cast<float>(square.x), v - static_cast<float>(square.y), patch);
+        if (patch.count < kMinForeground) return {};
+        if (patch.farthest <= patch.nearest * limits.jump)
+            return {depthAtEdge(patch.inverse, patch.nearest, patch.farthest, limits), false};
+    }
+    return nearestSurface(depth, square, u, v, limits);
 }
 
 }  // namespace roevo

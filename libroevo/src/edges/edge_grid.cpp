@@ -10,9 +10,11 @@ void EdgeGrid::build(const OrganizedEdges& edges, int width, int height) {
     bits_.assign(row_bits_ / 64 * static_cast<std::size_t>(height) + 1, 0);
     cell_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     edges_ = &edges;
+    const auto most_x = static_cast<float>(width - 1), most_y = static_cast<float>(height - 1);
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        const int x = std::clamp(nearestPixel(edges.x[i]), 0, width - 1);
-        const int y = std::clamp(nearestPixel(edges.y[i]), 0, height - 1);
+        // As nearestPixel() of what is inside
+        const int x = static_cast<int>(std::clamp(edges.x[i], 0.0F, most_x) + 0.5F);
+        const int y = static_cast<int>(std::clamp(edges.y[i], 0.0F, most_y) + 0.5F);
         const std::size_t bit = bitIndex(x, y);
         bits_[bit / 64] |= std::uint64_t{1} << (bit % 64);
         cell_[static_cast<std::size_t>(y * width + x)] = static_cast<std::int32_t>(i);

@@ -24,8 +24,9 @@ class EdgeGrid {
 
     /// Nearest point to (u, v) within `radius` (at most kMaxRadius) pixels that `accept(index)` agrees to, or
     /// -1. (u, v) may lie outside the image.
+    /// @param guess  a point that may well be it, so that less is searched; -1 for none
     template <class Accept>
-    int nearest(float u, float v, float radius, Accept&& accept) const;
+    int nearest(float u, float v, float radius, Accept&& accept, int guess = -1) const;
 
     static constexpr int kMaxRadius = 30;  ///< px
 
@@ -49,33 +50,36 @@ class EdgeGrid {
 };
 
 template <class Accept>
-int EdgeGrid::nearest(float u, float v, float radius, Accept&& accept) const {
+int EdgeGrid::nearest(float u, float v, float radius, Accept&& accept, int guess) const {
     constexpr float kFar = kMaxRadius + 1;  // from here on nothing of the image is in reach
     if (!(u > -kFar && v > -kFar && u < static_cast<float>(width_) + kFar &&
           v < static_cast<float>(height_) + kFar)) {
         return -1;
     }
     const int cu = nearestPixel(u), cv = nearestPixel(v);
-    // Points are within half a pixel of their cell's centre, the query within half a pixel of its own
-    int reach = std::min(static_cast<int>(std::ceil(radius)), kMaxRadius) + 1;
+    const float within = std::min(radius, static_cast<float>(kMaxRadius));
     int best = -1;
-    float best_squared = radius * radius;
-    for (int step = 0; step <= 2 * reach; ++step) {  // rows 0, -1, +1, -2, +2 ...
+    float best_squared = within * within;
+    const auto consider = [&](std::size_t i) {
+        const float dx = edges_->x[i] - u, dv = edges_->y[i] - v;
+        const float squared = dx * dx + dv * dv;
+        if (squared >= best_squared || !accept(i)) return;
+        best = static_cast<int>(i);
+        best_squared = squared;
+    };
+    if (guess >= 0) consider(static_cast<std::size_t>(guess));
+    for (int step = 0;; ++step) {  // rows 0, -1, +1, -2, +2 ...
         const int dy = (step & 1) != 0 ? -(step + 1) / 2 : step / 2;
+        // Points are within half a pixel of their cell's centre, the query within half a pixel of its own
         const auto gap = static_cast<float>(std::max(0, std::abs(dy) - 1));
-        if (gap * gap >= best_squared) break;
+        const float left = best_squared - gap * gap;
+        if (left <= 0) break;
         const int y = cv + dy;
         if (y < 0 || y >= height_) continue;
-        const int first = cu - reach;
+        const int reach = static_cast<int>(std::sqrt(left)) + 1, first = cu - reach;
         for (std::uint64_t row = occupancy(first, y, 2 * reach + 1); row != 0; row &= row - 1) {
             const int x = first + __builtin_ctzll(row);
-            const auto i = static_cast<std::size_t>(cell_[static_cast<std::size_t>(y * width_ + x)]);
-            const float dx = edges_->x[i] - u, dv = edges_->y[i] - v;
-            const float squared = dx * dx + dv * dv;
-            if (squared >= best_squared || !accept(i)) continue;
-            best = static_cast<int>(i);
-            best_squared = squared;
-            reach = static_cast<int>(std::sqrt(squared)) + 1;  // never more than before
+            consider(static_cast<std::size_t>(cell_[static_cast<std::size_t>(y * width_ + x)]));
         }
     }
     return best;

@@ -31,11 +31,12 @@ double otsuThreshold(const cv::Mat& magnitude) {
     constexpr float kBinWidth = 4;
     constexpr int kBins = 362;  // 4 * 255 * sqrt(2) / kBinWidth, rounded up
     std::array<int, kBins> histogram{};
+    std::vector<std::int32_t> bins(static_cast<std::size_t>(magnitude.cols + 1) / 2);
     for (int y = 0; y < magnitude.rows; y += 2) {
         const auto* row = magnitude.ptr<float>(y);
-        for (int x = 0; x < magnitude.cols; x += 2) {
-            ++histogram[static_cast<std::size_t>(std::min(kBins - 1, static_cast<int>(row[x] / kBinWidth)))];
-        }
+        for (std::size_t i = 0; i < bins.size(); ++i)  // apart, so that the compiler makes vectors of it
+            bins[i] = static_cast<std::int32_t>(std::min<float>(kBins - 1, row[2 * i] / kBinWidth));
+        for (const std::int32_t bin : bins) ++histogram[static_cast<std::size_t>(bin)];
     }
     double total = 0, sum = 0;
     for (int i = 0; i < kBins; ++i) {

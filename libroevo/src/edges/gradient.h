@@ -2,6 +2,8 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "pixels/pixel_kernels.h"
+
 namespace roevo {
 
 /// Sobel gradient of a grey image (3x3, so a ramp of one grey level per pixel has magnitude 8).
@@ -9,6 +11,10 @@ struct Gradient {
     cv::Mat gx, gy;     ///< CV_16SC1
     cv::Mat magnitude;  ///< CV_32FC1, Euclidean norm
     cv::Mat blurred;    ///< buffer of the optional blur
+
+    pixels::GradientView view() const {
+        return {gx.ptr<std::int16_t>(), gy.ptr<std::int16_t>(), magnitude.ptr<float>(), magnitude.cols};
+    }
 };
 
 /// Fills `out` (its buffers are reused from frame to frame).

@@ -29,12 +29,16 @@ class EdgeOrganizer {
         std::int32_t child1, child2;  ///< where they begin
     };
     void growCluster(const Gradient& gradient, std::int32_t seed, float min_cosine);
-    void longestRoute();
-    void emitRoute(const Gradient& gradient, OrganizedEdges& out) const;
+    /// Appends the pixels of the longest pair of routes, in order. @return how many
+    std::size_t appendLongestRoute();
+    void searchFrom(const Gradient& gradient, std::int32_t seed, float min_cosine, std::size_t min_length,
+                    std::vector<std::int32_t>& begin);
 
-    std::vector<std::uint8_t> open_;  ///< 1 where an edge pixel waits to be visited
-    std::vector<Node> tree_;
+    std::vector<std::uint8_t> open_;  ///< 1 where an edge pixel waits to be visited; all 0 between calls
+    std::vector<Node> tree_;          ///< room for all pixels
+    std::size_t nodes_ = 0;           ///< of them in use
     std::vector<std::int32_t> route_, again_;
+    std::vector<std::int32_t> points_;  ///< pixels of the edges found, one edge after the other
     int width_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "edges/organized_edges.h"
 
+#include "pixels/pixel_kernels.h"
+
 namespace roevo {
 
 void OrganizedEdges::clear() {
@@ -22,23 +24,36 @@ void OrganizedEdges::finishEdge() {
     begin.push_back(static_cast<std::int32_t>(x.size()));
 }
 
+void OrganizedEdges::resize(std::size_t count) {
+    for (auto* array : {&x, &y, &gradient_x, &gradient_y, &normal_x, &normal_y, &strength})
+        array->resize(count);
+    edge_of.resize(count);
+}
+
 void computeNormals(OrganizedEdges& edges, int span) {
     edges.normal_x.resize(edges.size());
     edges.normal_y.resize(edges.size());
     const auto reach = static_cast<std::size_t>(span);
+    float *u = edges.normal_x.data(), *v = edges.normal_y.data();  // chords first
+    const float *x = edges.x.data(), *y = edges.y.data();
     for (int e = 0; e < edges.numEdges(); ++e) {
         const IndexRange own = edges.pointsOf(e);
-        for (std::size_t i = own.first; i < own.end; ++i) {
+        const auto chord = [&](std::size_t i) {
             const auto [before, end] = own.around(i, reach);
-            const float gx = edges.gradient_x[i], gy = edges.gradient_y[i];
-            float &nx = edges.normal_x[i], &ny = edges.normal_y[i];
-            if (edgeNormal(edges.x[end - 1] - edges.x[before], edges.y[end - 1] - edges.y[before], gx, gy, nx,
-                           ny))
-                continue;
-            nx = gx;  // an edge of one point, or one that turns back on itself
-            ny = gy;
+            u[i] = x[end - 1] - x[before];
+            v[i] = y[end - 1] - y[before];
+        };
+        const std::size_t inner = std::min(own.first + reach, own.end),
+                          inner_end = std::max(inner, own.end - std::min(reach, own.size()));
+        for (std::size_t i = own.first; i < inner; ++i) chord(i);
+        for (std::size_t i = inner; i < inner_end; ++i) {
+            u[i] = x[i + reach] - x[i - reach];
+            v[i] = y[i + reach] - y[i - reach];
         }
+        for (std::size_t i = inner_end; i < own.end; ++i) chord(i);
     }
+    // An edge of one point, or one that turns back on itself, has its gradient
+    pixels::best().normals(u, v, edges.gradient_x.data(), edges.gradient_y.data(), edges.size(), u, v);
 }
 
 }  // namespace roevo

@@ -42,6 +42,8 @@ struct OrganizedEdges {
         return rangeOf(begin, edge);
     }
     void clear();
+    /// Room for this many points, which are to be set.
+    void resize(std::size_t count);
     /// Adds a point to the edge being built; finishEdge() closes it.
     void addPoint(float px, float py, float gx, float gy, float magnitude);
     void finishEdge();

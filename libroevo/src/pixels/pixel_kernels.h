@@ -18,20 +18,64 @@ struct Remap {
     const std::int16_t* fraction;
 };
 
+/// A bit for each pixel that is a ridge, the first in the lowest bit.
+struct Ridges {
+    std::uint64_t all;     ///< of at least the low threshold
+    std::uint64_t strong;  ///< of them, those of at least the high one
+};
+
+/// A gradient image whose rows follow each other without gaps.
+struct GradientView {
+    const std::int16_t *gx, *gy;
+    const float* magnitude;
+    int width;  ///< px
+};
+
+/// Points of edges, one array for each of their numbers (see OrganizedEdges).
+struct EdgePointArrays {
+    float *x, *y, *gradient_x, *gradient_y, *strength;
+};
+
+constexpr int kMostPatch = 7;  ///< px, side of the squares that depthPatch() looks at
+
+/// What a square of depths shows.
+struct DepthPatch {
+    int count;                ///< depths within the limits
+    float nearest, farthest;  ///< of them, m
+    float inverse;            ///< 1/m, of their plane, or of their mean; unless some jump
+};
+
 struct Table {
     const char* name;
     /// One row of the 3x3 Sobel gradient, the outermost pixels repeated, and its Euclidean norm.
     void (*gradient)(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below,
                      int width, std::int16_t* gx, std::int16_t* gy, float* magnitude);
-    /// Non-maximum suppression of `count` (at most kMostRidges) pixels of a row: a bit for each that is at
-    /// least `low` and a ridge, the first in the lowest bit. Neighbours one row up and down and eight pixels
-    /// further right must be there.
+    /// Non-maximum suppression of `count` (at most kMostRidges) pixels of a row. Neighbours one row up and
+    /// down and eight pixels further right must be there.
     /// @param stride  of the magnitude, pixels
-    std::uint64_t (*ridges)(const float* magnitude, std::ptrdiff_t stride, const std::int16_t* gx,
-                            const std::int16_t* gy, int count, float low);
+    Ridges (*ridges)(const float* magnitude, std::ptrdiff_t stride, const std::int16_t* gx,
+                     const std::int16_t* gy, int count, float low, float high);
     /// Bilinear samples of an 8-bit image (stride in bytes), rounded.
     void (*remap)(const std::uint8_t* image, std::ptrdiff_t stride, const Remap& from, int count,
                   std::uint8_t* out);
+    /// Rounded means of 2x2 pixels: `count` of them from two rows.
+    void (*halve)(const std::uint8_t* upper, const std::uint8_t* lower, int count, std::uint8_t* out);
+    /// Moves edge pixels to the ridge of the magnitude: the vertex of the parabola through its logarithms
+    /// before, at and after each pixel along its gradient, which is not zero there. No pixel is in the
+    /// outermost row or column.
+    /// @param pixel  indices y * width + x
+    void (*refine)(const GradientView& gradient, const std::int32_t* pixel, std::size_t count,
+                   const EdgePointArrays& out);
+    /// Unit normals to `count` chords (u, v) on the side of the gradients, which are taken where the chord
+    /// has no length, Eqs. (4)-(6). Any of the arrays may be an output.
+    void (*normals)(const float* u, const float* v, const float* gradient_x, const float* gradient_y,
+                    std::size_t count, float* nx, float* ny);
+    /// A square of `size` (odd, at most kMostPatch) depths, of which those from `near` to `far` count, m.
+    /// Eight columns must be there. The plane, in inverse depth, is evaluated at (u, v) from the centre.
+    /// @param stride  pixels
+    /// @param jump    factor between depths that are not of one surface
+    void (*depthPatch)(const float* depth, std::ptrdiff_t stride, int size, float near, float far, float jump,
+                       float u, float v, DepthPatch& out);
 };
 
 const Table& baseline();

@@ -4,11 +4,11 @@
 
 namespace roevo::pixels {
 namespace {
-#include "pixel_kernels_impl.h"
+#include "edge_kernels_impl.h"
 }  // namespace
 
 const Table* avx2() {
-    static const Table table{"avx2", gradient, ridges, remap};
+    static const Table table{"avx2", gradient, ridges, remap, halve, refine, normals, depthPatch};
     return __builtin_cpu_supports("avx2") ? &table : nullptr;
 }
 

@@ -2,11 +2,11 @@
 
 namespace roevo::pixels {
 namespace {
-#include "pixel_kernels_impl.h"
+#include "edge_kernels_impl.h"
 }  // namespace
 
 const Table& baseline() {
-    static const Table table{"baseline", gradient, ridges, remap};
+    static const Table table{"baseline", gradient, ridges, remap, halve, refine, normals, depthPatch};
     return table;
 }
 

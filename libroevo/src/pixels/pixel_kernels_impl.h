@@ -1,17 +1,10 @@
-// Included by one file per instruction set, inside an anonymous namespace. No standard containers or Eigen
-// here: an inline function compiled with AVX2 must never be picked by the linker for the baseline.
+// Included by one file per instruction set, inside an anonymous namespace; what lanes_impl.h says of itself
+// holds here.
+#include "lanes_impl.h"
 
-constexpr int kLanes = 8;
-typedef float Lanes __attribute__((vector_size(4 * kLanes)));
-typedef std::int32_t IntLanes __attribute__((vector_size(4 * kLanes)));
 typedef std::int16_t ShortLanes __attribute__((vector_size(2 * kLanes)));
-
-template <class Vector, class Scalar>
-inline Vector load(const Scalar* p) {
-    Vector v;
-    __builtin_memcpy(&v, p, sizeof v);
-    return v;
-}
+typedef std::int16_t WideShorts __attribute__((vector_size(4 * kLanes)));  ///< twice as many
+typedef std::uint8_t WideBytes __attribute__((vector_size(2 * kLanes)));
 
 /// One bit for each lane that is true.
 inline std::uint64_t bitsOf(IntLanes condition) {
@@ -31,24 +24,67 @@ inline void sobel(const std::uint8_t* above, const std::uint8_t* here, const std
     gy = static_cast<std::int16_t>((below[l] - above[l]) + 2 * (below[x] - above[x]) + (below[r] - above[r]));
 }
 
+inline void sobelAndNorm(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below,
+                         int l, int x, int r, std::int16_t* gx, std::int16_t* gy, float* magnitude) {
+    sobel(above, here, below, l, x, r, gx[x], gy[x]);
+    const auto dx = static_cast<float>(gx[x]), dy = static_cast<float>(gy[x]);
+    magnitude[x] = __builtin_sqrtf(dx * dx + dy * dy);
+}
+
+inline WideShorts widen(const std::uint8_t* p) {
+#ifdef __AVX2__
+    return (WideShorts)_mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)));
+#else
+    return __builtin_convertvector(load<WideBytes>(p), WideShorts);
+#endif
+}
+
+/// Euclidean norms; squares and sums are exact.
+inline void storeNorms(WideShorts gx, WideShorts gy, float* magnitude) {
+#ifdef __AVX2__
+    const __m256i even = _mm256_unpacklo_epi16((__m256i)gx, (__m256i)gy),
+                  odd = _mm256_unpackhi_epi16((__m256i)gx, (__m256i)gy);
+    const __m256i low = _mm256_madd_epi16(even, even), high = _mm256_madd_epi16(odd, odd);
+    const __m256i first = _mm256_permute2x128_si256(low, high, 0x20),
+                  second = _mm256_permute2x128_si256(low, high, 0x31);
+    _mm256_storeu_ps(magnitude, _mm256_sqrt_ps(_mm256_cvtepi32_ps(first)));
+    _mm256_storeu_ps(magnitude + kLanes, _mm256_sqrt_ps(_mm256_cvtepi32_ps(second)));
+#else
+    for (int l = 0; l < 2 * kLanes; ++l) {
+        const auto dx = static_cast<float>(gx[l]), dy = static_cast<float>(gy[l]);
+        magnitude[l] = __builtin_sqrtf(dx * dx + dy * dy);
+    }
+#endif
+}
+
 void gradient(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below, int width,
               std::int16_t* __restrict gx, std::int16_t* __restrict gy, float* __restrict magnitude) {
+    constexpr int kBlock = 2 * kLanes;
     const int last = width - 1;
-    sobel(above, here, below, 0, 0, last > 0 ? 1 : 0, gx[0], gy[0]);
-    for (int x = 1; x < last; ++x) sobel(above, here, below, x - 1, x, x + 1, gx[x], gy[x]);
-    if (last > 0) sobel(above, here, below, last - 1, last, last, gx[last], gy[last]);
-    for (int x = 0; x < width; ++x) {
-        const auto dx = static_cast<float>(gx[x]), dy = static_cast<float>(gy[x]);
-        magnitude[x] = __builtin_sqrtf(dx * dx + dy * dy);
+    sobelAndNorm(above, here, below, 0, 0, last > 0 ? 1 : 0, gx, gy, magnitude);
+    if (last > 0) sobelAndNorm(above, here, below, last - 1, last, last, gx, gy, magnitude);
+    if (last - 1 < kBlock) {
+        for (int x = 1; x < last; ++x) sobelAndNorm(above, here, below, x - 1, x, x + 1, gx, gy, magnitude);
+        return;
+    }
+    for (int first = 1; first < last; first += kBlock) {
+        const int x = first < last - kBlock ? first : last - kBlock;  // the last ones may be done twice
+        const WideShorts nw = widen(above + x - 1), n = widen(above + x), ne = widen(above + x + 1);
+        const WideShorts w = widen(here + x - 1), e = widen(here + x + 1);
+        const WideShorts sw = widen(below + x - 1), s = widen(below + x), se = widen(below + x + 1);
+        const WideShorts dx = (ne - nw) + 2 * (e - w) + (se - sw), dy = (sw - nw) + 2 * (s - n) + (se - ne);
+        store(gx + x, dx);
+        store(gy + x, dy);
+        storeNorms(dx, dy, magnitude + x);
     }
 }
 
 /// The magnitudes one step before and after a pixel along its gradient are interpolated between the two
 /// neighbours that the gradient line passes; multiplied out, so that nothing is divided. ">=" on one side
 /// only, so that a ridge two pixels wide keeps exactly one of them.
-std::uint64_t ridges(const float* magnitude, std::ptrdiff_t stride, const std::int16_t* gx,
-                     const std::int16_t* gy, int count, float low) {
-    std::uint64_t found = 0;
+Ridges ridges(const float* magnitude, std::ptrdiff_t stride, const std::int16_t* gx, const std::int16_t* gy,
+              int count, float low, float high) {
+    Ridges found{0, 0};
     for (int i = 0; i < count; i += kLanes) {
         const float* m = magnitude + i;
         const Lanes here = load<Lanes>(m);
@@ -71,9 +107,12 @@ std::uint64_t ridges(const float* magnitude, std::ptrdiff_t stride, const std::i
         const Lanes after = (large - small) * side_after + small * diagonal_after;
         const Lanes before = (large - small) * side_before + small * diagonal_before;
         const Lanes centre = large * here;
-        found |= bitsOf(enough & (centre > before) & (centre >= after)) << i;
+        const IntLanes ridge = enough & (centre > before) & (centre >= after);
+        found.all |= bitsOf(ridge) << i;
+        found.strong |= bitsOf(ridge & (here >= high)) << i;
     }
-    return count < kMostRidges ? found & ((std::uint64_t{1} << count) - 1) : found;
+    const std::uint64_t inside = count < kMostRidges ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
+    return {found.all & inside, found.strong & inside};
 }
 
 /// The words of four bytes at these places.
@@ -107,20 +146,62 @@ inline void storeBytes(IntLanes values, int count, std::uint8_t* out) {
         __builtin_memcpy(out, &bytes, static_cast<std::size_t>(count));
 }
 
+/// Of eight pixels, the four neighbours of each blended, in 1/1024 of a grey level.
+inline IntLanes blend(IntLanes upper, IntLanes lower, ShortLanes fractions) {
+#ifdef __AVX2__
+    // [32 - f, f] of both directions, as weights of neighbouring bytes and of neighbouring words
+    const __m256i fraction = _mm256_cvtepi16_epi32((__m128i)fractions);
+    const __m256i right =
+        _mm256_shuffle_epi8(fraction, _mm256_setr_epi8(0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12, 0,
+                                                       0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12));
+    const __m256i down = _mm256_shuffle_epi8(
+        fraction, _mm256_setr_epi8(1, -1, 1, -1, 5, -1, 5, -1, 9, -1, 9, -1, 13, -1, 13, -1, 1, -1, 1, -1, 5,
+                                   -1, 5, -1, 9, -1, 9, -1, 13, -1, 13, -1));
+    const __m256i by_bytes = _mm256_add_epi8(_mm256_sign_epi8(right, _mm256_set1_epi16(0x01FF)),
+                                             _mm256_set1_epi16(1 << kFractionBits));
+    const __m256i by_words = _mm256_add_epi16(_mm256_sign_epi16(down, _mm256_set1_epi32(0x0001FFFF)),
+                                              _mm256_set1_epi32(1 << kFractionBits));
+    const __m256i four = _mm256_blend_epi16((__m256i)upper, (__m256i)lower, 0xAA);
+    return (IntLanes)_mm256_madd_epi16(_mm256_maddubs_epi16(four, by_bytes), by_words);
+#else
+    constexpr int kOne = 1 << kFractionBits;
+    const IntLanes fraction = __builtin_convertvector(fractions, IntLanes);
+    const IntLanes right = fraction & 255, down = fraction >> 8;
+    const IntLanes i00 = upper & 255, i01 = (upper >> 8) & 255;
+    const IntLanes i10 = (lower >> 16) & 255, i11 = (lower >> 24) & 255;
+    const IntLanes top = kOne * i00 + right * (i01 - i00), bottom = kOne * i10 + right * (i11 - i10);
+    return kOne * top + down * (bottom - top);
+#endif
+}
+
 void remap(const std::uint8_t* image, std::ptrdiff_t stride, const Remap& from, int count,
            std::uint8_t* out) {
-    constexpr int kOne = 1 << kFractionBits;
     // Two bytes early, so that the word around the last pixel ends with it
     const std::uint8_t* lower_image = image + stride - 2;
     for (int i = 0; i < count; i += kLanes) {
         const auto offset = load<IntLanes>(from.offset + i);
-        const IntLanes fraction = __builtin_convertvector(load<ShortLanes>(from.fraction + i), IntLanes);
-        const IntLanes right = fraction & 255, down = fraction >> 8;
-        const IntLanes upper = gather(image, offset), lower = gather(lower_image, offset);
-        const IntLanes i00 = upper & 255, i01 = (upper >> 8) & 255;
-        const IntLanes i10 = (lower >> 16) & 255, i11 = (lower >> 24) & 255;
-        const IntLanes top = kOne * i00 + right * (i01 - i00), bottom = kOne * i10 + right * (i11 - i10);
-        const IntLanes value = kOne * top + down * (bottom - top);
-        storeBytes((value + kOne * kOne / 2) >> (2 * kFractionBits), count - i, out + i);
+        const IntLanes value =
+            blend(gather(image, offset), gather(lower_image, offset), load<ShortLanes>(from.fraction + i));
+        storeBytes((value + (1 << (2 * kFractionBits - 1))) >> (2 * kFractionBits), count - i, out + i);
     }
+}
+
+void halve(const std::uint8_t* upper, const std::uint8_t* lower, int count, std::uint8_t* out) {
+    int i = 0;
+#ifdef __AVX2__
+    const __m256i one = _mm256_set1_epi8(1), half = _mm256_set1_epi16(2);
+    for (; i + 2 * kLanes <= count; i += 2 * kLanes) {
+        const auto pairs = [&](const std::uint8_t* row) {
+            return _mm256_maddubs_epi16(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + 2 * i)),
+                                        one);
+        };
+        const __m256i sum = _mm256_add_epi16(_mm256_add_epi16(pairs(upper), pairs(lower)), half);
+        const __m256i mean = _mm256_srli_epi16(sum, 2);
+        const __m256i bytes = _mm256_permute4x64_epi64(_mm256_packus_epi16(mean, mean), 0x08);
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(out + i), _mm256_castsi256_si128(bytes));
+    }
+#endif
+    for (; i < count; ++i)
+        out[i] = static_cast<std::uint8_t>(
+            (upper[2 * i] + upper[2 * i + 1] + lower[2 * i] + lower[2 * i + 1] + 2) >> 2);
 }

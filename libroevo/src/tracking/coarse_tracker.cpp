@@ -64,7 +64,7 @@ std::vector<std::size_t> CoarseTracker::mostSimilar(const Keyframe& keyframe, co
 
 CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& pyramid,
                                   const PinholeCamera& camera, const RollingShutter& shutter,
-                                  const std::vector<Pose>& guesses, const Brightness& start) {
+                                  const std::vector<Pose>& guesses, const Brightness& start, int finest) {
     CoarseResult best;
     best.T_current_keyframe = guesses.front();
     best.brightness = start;
@@ -73,11 +73,12 @@ CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& 
     // The coarsest level on which any guess sees enough points decides between the guesses; finer ones refine
     double best_cost = -1;
     std::size_t best_guess = 0;
-    for (int level = levels - 1; level >= 0; --level) {
+    finest = std::min(finest, levels - 1);
+    for (int level = levels - 1; level >= finest; --level) {
         const PinholeCamera scaled = camera.atPyramidLevel(level);
         const cv::Mat& image = pyramid.level(level);
         if (best_cost >= 0) {
-            if (alignLevel(keyframe, image, level, scaled, shutter, best) < 0 && level == 0) return best;
+            if (alignLevel(keyframe, image, level, scaled, shutter, best) < 0 && level == finest) return best;
             continue;
         }
         for (const std::size_t i : mostSimilar(keyframe, image, level, scaled, guesses, start)) {

@@ -23,9 +23,10 @@ class CoarseTracker {
     /// @param camera   ideal camera of level 0
     /// @param guesses  start poses T_current_keyframe, the most trusted first; the best after the coarsest
     /// level goes on
+    /// @param finest   the last level, where there are as many
     CoarseResult track(const Keyframe& keyframe, const ImagePyramid& pyramid, const PinholeCamera& camera,
                        const RollingShutter& shutter, const std::vector<Pose>& guesses,
-                       const Brightness& start);
+                       const Brightness& start, int finest = 0);
 
   private:
     /// Indices of the guesses worth aligning.

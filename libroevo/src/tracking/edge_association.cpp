@@ -7,6 +7,24 @@
 #include "roevo/types.h"
 
 namespace roevo {
+namespace {
+
+/// Along an edge from point p to where it is nearest to (u, v), as long as it comes nearer.
+std::size_t walk(const OrganizedEdges& edges, std::size_t p, float u, float v) {
+    const IndexRange edge = edges.pointsOf(edges.edge_of[p]);
+    const auto squaredTo = [&](std::size_t point) {
+        const float du = edges.x[point] - u, dv = edges.y[point] - v;
+        return du * du + dv * dv;
+    };
+    const float here = squaredTo(p);
+    float nearest = here;
+    for (float next; p + 1 < edge.end && (next = squaredTo(p + 1)) < nearest; ++p) nearest = next;
+    if (nearest == here)
+        for (float next; p > edge.first && (next = squaredTo(p - 1)) < nearest; --p) nearest = next;
+    return p;
+}
+
+}  // namespace
 
 void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, const float* v,
                                const Eigen::Vector2f& turn, int span, const OrganizedEdges& current,
@@ -24,6 +42,7 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
     for (int e = 0; e < reference.numEdges(); ++e) {
         const IndexRange own = reference.pointsOf(e);
         int visible = 0;
+        int before_this = -1;  // what a point before is associated with: it goes on along that edge, mostly
         for (std::size_t i = own.first + (stride_ / 2 + stride_ - own.first % stride_) % stride_; i < own.end;
              i += stride_) {
             if (!(u[i] >= margin && v[i] >= margin && u[i] <= max_u && v[i] <= max_v)) continue;
@@ -33,11 +52,16 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
             const float gy = turn.y() * reference.gradient_x[i] + turn.x() * reference.gradient_y[i];
             float nx, ny;
             if (!edgeNormal(u[end - 1] - u[before], v[end - 1] - v[before], gx, gy, nx, ny)) continue;
-            const int found =
-                grid.nearest(u[i], v[i], static_cast<float>(radius), [&](std::size_t candidate) {
-                    return nx * current.normal_x[candidate] + ny * current.normal_y[candidate] >= min_cosine;
-                });
+            const int guess =
+                before_this < 0
+                    ? -1
+                    : static_cast<int>(walk(current, static_cast<std::size_t>(before_this), u[i], v[i]));
+            const auto agrees = [&](std::size_t candidate) {
+                return nx * current.normal_x[candidate] + ny * current.normal_y[candidate] >= min_cosine;
+            };
+            const int found = grid.nearest(u[i], v[i], static_cast<float>(radius), agrees, guess);
             if (found < 0) continue;
+            before_this = found;
             out.reference.push_back(static_cast<std::int32_t>(i));
             out.current.push_back(found);
         }
@@ -82,25 +106,6 @@ void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges&
     }
     matches.reference.resize(kept);
     matches.current.resize(kept);
-}
-
-void EdgeAssociator::follow(const float* u, const float* v, const OrganizedEdges& current,
-                            EdgeMatches& matches) {
-    for (std::size_t k = 0; k < matches.size(); ++k) {
-        const auto i = static_cast<std::size_t>(matches.reference[k]);
-        auto p = static_cast<std::size_t>(matches.current[k]);
-        const IndexRange edge = current.pointsOf(current.edge_of[p]);
-        const auto squaredTo = [&](std::size_t point) {
-            const float du = current.x[point] - u[i], dv = current.y[point] - v[i];
-            return du * du + dv * dv;
-        };
-        const float here = squaredTo(p);
-        float nearest = here;
-        for (float next; p + 1 < edge.end && (next = squaredTo(p + 1)) < nearest; ++p) nearest = next;
-        if (nearest == here)
-            for (float next; p > edge.first && (next = squaredTo(p - 1)) < nearest; --p) nearest = next;
-        matches.current[k] = static_cast<std::int32_t>(p);
-    }
 }
 
 }  // namespace roevo

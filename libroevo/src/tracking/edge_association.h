@@ -44,9 +44,6 @@ class EdgeAssociator {
                    const Eigen::Vector2f& turn, int span, const OrganizedEdges& current, const EdgeGrid& grid,
                    int width, int height, double radius, EdgeMatches& out);
 
-    /// After a small motion: each match moves along its edge to the point that is nearest now.
-    static void follow(const float* u, const float* v, const OrganizedEdges& current, EdgeMatches& matches);
-
   private:
     void vote(const OrganizedEdges& reference, const OrganizedEdges& current, EdgeMatches& matches);
 

@@ -48,18 +48,34 @@ class EdgeTerm : public ResidualTerm {
     int inliers() const { return inliers_; }  ///< matches that passed the chi-square test
     double scale() const { return scale_; }   ///< robust spread of the point-to-tangent residual, px, at rest
     double slope() const { return slope_; }   ///< see studentSlope(): mean over the inliers by their weights
-    /// Of the matches; 0 where one is an outlier.
+    /// Of the matches, padded; 0 where one is an outlier.
     const std::vector<float>& weights() const { return weight_; }
 
   private:
-    void project(const Pose& pose, const RowMotion& rows);
+    /// What is needed of matched points, in their order; padded, by the first one with no weight.
+    struct Matched {
+        Points3 points;                 // in the keyframe, m
+        ProjectedPoints3 projected;     // in the frame
+        std::vector<float> row;         // in the keyframe, px
+        std::vector<float> weight;      // w_s
+        std::vector<float> blur;        // variance that the keyframe's motion adds, as share of that at rest
+        std::vector<float> correction;  // m, see EdgePoints3D
+        std::vector<std::int32_t> reference;  // index in the keyframe
+        std::vector<std::int32_t> current;    // in the frame
+    };
     void associateProjected(const Pose& T_current_keyframe, double radius);
+    bool isAssociated(const Pose& T_current_keyframe, double radius) const;
+    void gather();
+    void projectMatched(const Pose& pose, const RowMotion& rows);
+    void follow();
     void tangentResiduals(const RowMotion& rows);
     void depthResiduals();
     void weigh();
     float currentDepth(std::size_t point);
     void accumulate(PoseSystem& system);
-    void accumulateReadout(const Linearisation& at, PoseSystem& system) const;
+    void accumulateReadout(const Linearisation& at, PoseSystem& system);
+    kernels::MatchedPoints matchedPoints() const;
+    kernels::ImageEdges imageEdges() const;
 
     PinholeCamera camera_, ideal_;
     FineOptions options_;
@@ -70,16 +86,16 @@ class EdgeTerm : public ResidualTerm {
     const Frame* frame_ = nullptr;
     double looked_at_ = 0;  ///< s; frames use their memory again
     bool use_depth_ = true, free_readout_ = false;
-    Pose T_associated_;  ///< pose at which edges were associated within the final radius
-    bool has_associated_ = false;
+    Pose T_associated_;             ///< pose at which edges were associated
+    double associated_within_ = 0;  ///< px; 0: they are not
 
     EdgeMatches matches_;
-    ProjectedPoints3 projected_;  // all keyframe points
-    Points3 moved_;               // keyframe points at another read-out time
-    // of the matches; sharpness: information across an edge as a share of what it would be at rest
+    ProjectedPoints3 projected_;  // all keyframe points, where they were associated
+    Matched matched_;
+    Points3 moved_;  // matched points at another read-out time
+    // of the matches, padded; sharpness: information across an edge as a share of what it would be at rest
     std::vector<float> residual_, sharpness_, weight_, depth_residual_, depth_weight_;
     std::vector<float> current_depth_;  // of the frame's points, m
-    std::vector<float> keyframe_blur_;  // of the keyframe's points: MotionBlur::variance()
     std::vector<float> scratch_;
     InformationRows rows_;
     double scale_ = 1, slope_ = 1;

@@ -9,11 +9,23 @@
 namespace roevo {
 
 void InformationRows::reset(std::size_t count) {
+    arrays(count);
+    for (std::size_t i = count; i < points_.size(); ++i) leaveOut(i);
+}
+
+kernels::InformationArrays InformationRows::arrays(std::size_t count) {
     const std::size_t padded = kernels::paddedSize(count);
-    for (auto& array : matrix_) array.resize(padded);
-    for (auto& array : vector_) array.resize(padded);
     for (auto* array : {&points_.x, &points_.y, &points_.z}) array->resize(padded);
-    for (std::size_t i = count; i < padded; ++i) leaveOut(i);
+    kernels::InformationArrays out{points_.x.data(), points_.y.data(), points_.z.data(), {}, {}};
+    for (int a = 0; a < 6; ++a) {
+        matrix_[a].resize(padded);
+        out.matrix[a] = matrix_[a].data();
+    }
+    for (int a = 0; a < 3; ++a) {
+        vector_[a].resize(padded);
+        out.vector[a] = vector_[a].data();
+    }
+    return out;
 }
 
 kernels::NormalEquations InformationRows::sum() const {

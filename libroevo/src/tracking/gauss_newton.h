@@ -31,6 +31,8 @@ class InformationRows {
         for (int a = 0; a < 3; ++a) vector_[a][point] = vector[a];
         points_.set(point, x, y, z);
     }
+    /// Room for `count` points that a kernel writes, and the padding.
+    kernels::InformationArrays arrays(std::size_t count);
     /// It contributes nothing.
     void leaveOut(std::size_t point) { set(point, {}, {}, 0, 0, 0); }
     kernels::NormalEquations sum() const;

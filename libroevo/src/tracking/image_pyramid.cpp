@@ -1,6 +1,6 @@
 #include "tracking/image_pyramid.h"
 
-#include <opencv2/imgproc.hpp>
+#include "pixels/pixel_kernels.h"
 
 namespace roevo {
 
@@ -16,8 +16,11 @@ void ImagePyramid::build(const cv::Mat& grey, int levels) {
             break;
         }
         // An odd last row or column is left out, so that every level's pixel is the mean of exactly four
-        cv::resize(below(cv::Rect(0, 0, 2 * half.width, 2 * half.height)),
-                   levels_[static_cast<std::size_t>(i)], half, 0, 0, cv::INTER_AREA);
+        cv::Mat& level = levels_[static_cast<std::size_t>(i)];
+        level.create(half, CV_8UC1);
+        for (int y = 0; y < half.height; ++y)
+            pixels::best().halve(below.ptr<std::uint8_t>(2 * y), below.ptr<std::uint8_t>(2 * y + 1),
+                                 half.width, level.ptr<std::uint8_t>(y));
     }
 }
 

@@ -73,6 +73,67 @@ struct PointInformation {
     const float* vector[3];
 };
 
+/// The same, to be written.
+struct InformationArrays {
+    float *x, *y, *z;
+    float *matrix[6], *vector[3];
+};
+
+/// Photometric points at a pose.
+struct PatchPoints {
+    const Patch* patches;            ///< `count` of them
+    const PatchResidual* residuals;  ///< padded with invisible ones
+    std::size_t count;
+    const float *x, *y, *z;        ///< in the camera, m; padded, as all that follow
+    const float *axis_x, *axis_y;  ///< the aligned frame's first axis in the image
+    const float* weight;           ///< 0 for none
+};
+
+/// Sums over patches, for gain and offset.
+struct PatchSums {
+    double weight, reference, reference_squared, image, cross;
+};
+
+/// Edge points of an image (see OrganizedEdges), px.
+struct ImageEdges {
+    const float *x, *y, *normal_x, *normal_y;
+    const std::int32_t *edge_of, *begin;
+};
+
+/// Keyframe points, each matched with one of the image; padded, with any valid index.
+struct MatchedPoints {
+    const float *x, *y, *z;  ///< in the camera, m
+    const float *u, *v;      ///< px
+    const std::int32_t* current;
+};
+
+/// How a camera moves (m/s, rad/s; its own axes), and what a speed across an edge, as tan/s, makes of its
+/// standard deviation at rest.
+struct CameraMotion {
+    float velocity[3], turn[3];
+    float to_sigmas_x, to_sigmas_y;
+};
+
+/// How well residuals fit.
+struct Fit {
+    int inliers;
+    double weights, slopes;  ///< sums of weights, and of these times studentSlope()
+};
+
+/// What the read-out time does to matched points: where they are in the keyframe, and how they move there
+/// while a row is read, turned into the camera: -(velocity + turn point), m/s.
+struct ReadoutPoints {
+    const float *x, *y, *z;  ///< in the keyframe, m; padded
+    const float* row;        ///< in the keyframe, px; padded
+    float velocity[3], turn[9];
+    float reference_row;
+};
+
+/// Sums over points that join the read-out time to the pose.
+struct ReadoutSums {
+    double mixed[6], own, gradient;
+};
+
 struct Table {
     const char* name;
     /// n is a multiple of kLanes.
@@ -83,7 +144,50 @@ struct Table {
     void (*patches)(const ImageView& image, const Patch* patches, const float* u, const float* v,
                     const float* axis_x, const float* axis_y, std::size_t n, float gain, float offset,
                     PatchResidual* out);
+    /// The patch of a reference image at (u, v), at least 5 px from its border, in the frame whose first axis
+    /// is (axis_x, axis_y).
+    void (*referencePatch)(const ImageView& image, float u, float v, float axis_x, float axis_y, Patch& out);
     void (*accumulate)(const PointInformation& points, std::size_t n, NormalEquations& out);
+
+    // What follows takes n in whole blocks, too.
+
+    /// Weights of the t-distribution: squared residuals times `inverse` are relative to their spread.
+    /// @param prior  weight of each point before; 0 in the padding
+    void (*weighPatches)(const PatchResidual* residuals, const float* prior, std::size_t n, float inverse,
+                         float* weight, Fit& fit);
+    void (*sumPatches)(const PatchPoints& points, std::size_t n, PatchSums& out);
+    /// Information of the points times `scale`, where the image has `gain` times the reference's slopes.
+    void (*liftPatches)(const PatchPoints& points, std::size_t n, float fx, float fy, float scale, float gain,
+                        const InformationArrays& out);
+
+    /// values[index[i]] for each i.
+    void (*pick)(const float* values, const std::int32_t* index, std::size_t n, float* out);
+    /// Moves edge points along their edges to where these are nearest to (u, v), as long as they come nearer:
+    /// towards the end, or else towards the beginning.
+    void (*follow)(const float* u, const float* v, const ImageEdges& edges, std::size_t n,
+                   std::int32_t* current);
+    /// Variances across edges that motion adds, relative to those at rest (see MotionBlur).
+    void (*blur)(const CameraMotion& motion, const float* x, const float* y, const float* z, const float* nx,
+                 const float* ny, std::size_t n, float* out);
+    /// Point-to-tangent residuals (px), the information across each edge as a share of what it is at rest,
+    /// and magnitudes in sigmas of that.
+    /// @param keyframe_blur  variances that the motion of the keyframe adds
+    void (*edgeResiduals)(const MatchedPoints& matches, const ImageEdges& edges, const CameraMotion& motion,
+                          const float* keyframe_blur, std::size_t n, float* residual, float* sharpness,
+                          float* magnitude);
+    /// Weights of the t-distribution, 0 beyond `chi2`.
+    /// @param inverse  one over the squared spread of residuals at rest
+    /// @param prior    weight of each point before; 0 in the padding
+    void (*weighEdges)(const float* residual, const float* sharpness, const float* prior, std::size_t n,
+                       float inverse, float chi2, float* weight, Fit& fit);
+    /// Information of tangent residuals and of depths.
+    void (*liftEdges)(const MatchedPoints& matches, const ImageEdges& edges, const float* weight,
+                      const float* residual, const float* depth_weight, const float* depth_residual,
+                      std::size_t n, float fx, float fy, const InformationArrays& out);
+    /// The same without depths, and what joins the read-out time to the pose.
+    void (*liftReadout)(const MatchedPoints& matches, const ImageEdges& edges, const CameraMotion& motion,
+                        const ReadoutPoints& readout, const float* weight, const float* residual,
+                        std::size_t n, float fx, float fy, const InformationArrays& out, ReadoutSums& sums);
 };
 
 const Table& baseline();

@@ -1,5 +1,6 @@
 #pragma once
 #include "roevo/camera/pinhole_camera.h"
+#include "tracking/kernels.h"
 #include "tracking/rolling_shutter.h"
 
 namespace roevo {
@@ -31,6 +32,11 @@ class MotionBlur {
         const float v = vy_ * inverse + wz_ * a - wx_ - b * towards;
         const float sigmas = to_sigmas_x_ * nx * u + to_sigmas_y_ * ny * v;
         return sigmas * sigmas;
+    }
+
+    /// For the kernels, which do the same.
+    kernels::CameraMotion motion() const {
+        return {{vx_, vy_, vz_}, {wx_, wy_, wz_}, to_sigmas_x_, to_sigmas_y_};
     }
 
     static constexpr double kAtRest = 1. / 3;  ///< px, one sigma across an edge at rest

@@ -64,8 +64,10 @@ class PhotometricResiduals {
     }
 
   private:
+    kernels::PatchPoints view(const PhotometricPoints& points, int level) const;
+
     ProjectedPoints3 projected_;
-    std::vector<float> axis_x_, axis_y_, weight_;
+    std::vector<float> axis_x_, axis_y_, prior_, weight_;  // of the points, padded
     InformationRows rows_;
     std::vector<kernels::PatchResidual> residuals_;
     std::vector<float> scratch_;

@@ -19,48 +19,40 @@ RowMotion RowMotion::atPyramidLevel(int level) const {
 
 namespace {
 
-/// RowMotion::exchange() of many points, in single precision.
-class MotionExchange {
-  public:
-    MotionExchange(const RowMotion& from, const RowMotion& to) : from_(from), to_(to) {}
-
-    /// A motion that would bring a point to the camera is none: such a point stays.
-    void apply(float row, std::size_t i, Points3& points) const {
-        constexpr float kNearest = 0.05F;  // m
-        const Eigen::Vector3f p(points.x[i], points.y[i], points.z[i]);
-        const Eigen::Vector3f velocity = to_.at(row, to_.velocity) - from_.at(row, from_.velocity);
-        const Eigen::Vector3f turn = to_.at(row, to_.turn) - from_.at(row, from_.turn);
-        const Eigen::Vector3f moved = p + velocity + turn.cross(p);
-        if (moved.z() > kNearest) points.set(i, moved.x(), moved.y(), moved.z());
-    }
-
-  private:
-    /// By how much a camera moves from one row to the next.
-    struct PerRow {
-        explicit PerRow(const RowMotion& motion)
-            : velocity((motion.seconds_per_row * motion.velocity).cast<float>()),
-              turn((motion.seconds_per_row * motion.turn).cast<float>()),
-              reference(static_cast<float>(motion.reference_row)) {}
-        Eigen::Vector3f at(float row, const Eigen::Vector3f& rate) const { return (row - reference) * rate; }
-        Eigen::Vector3f velocity, turn;
-        float reference;
-    } from_, to_;
+/// By how much a camera moves from one row to the next.
+struct PerRow {
+    explicit PerRow(const RowMotion& motion)
+        : velocity((motion.seconds_per_row * motion.velocity).cast<float>()),
+          turn((motion.seconds_per_row * motion.turn).cast<float>()),
+          reference(static_cast<float>(motion.reference_row)) {}
+    Eigen::Vector3f velocity, turn;
+    float reference;
 };
 
 }  // namespace
 
 void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
                     std::size_t count, Points3& points) {
-    const MotionExchange exchange(from, to);
-    for (std::size_t i = 0; i < count; ++i) exchange.apply(rows[i], i, points);
-}
-
-void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
-                    const std::vector<std::int32_t>& which, Points3& points) {
-    const MotionExchange exchange(from, to);
-    for (const std::int32_t i : which) {
-        const auto point = static_cast<std::size_t>(i);
-        exchange.apply(rows[point], point, points);
+    constexpr float kNearest = 0.05F;  // m
+    const PerRow old(from), now(to);
+    const float *row = rows.data(), old_reference = old.reference, now_reference = now.reference;
+    const float v0 = old.velocity.x(), v1 = old.velocity.y(), v2 = old.velocity.z();
+    const float w0 = old.turn.x(), w1 = old.turn.y(), w2 = old.turn.z();
+    const float V0 = now.velocity.x(), V1 = now.velocity.y(), V2 = now.velocity.z();
+    const float W0 = now.turn.x(), W1 = now.turn.y(), W2 = now.turn.z();
+    float* __restrict px = points.x.data(), * __restrict py = points.y.data(), * __restrict pz = points.z.data();
+    // In plain numbers, so that the compiler makes vectors of it
+    for (std::size_t i = 0; i < count; ++i) {
+        const float a = row[i] - old_reference, b = row[i] - now_reference;
+        const float t0 = b * W0 - a * w0, t1 = b * W1 - a * w1, t2 = b * W2 - a * w2;
+        const float x = px[i], y = py[i], z = pz[i];
+        const float moved_x = x + (b * V0 - a * v0) + (t1 * z - t2 * y);
+        const float moved_y = y + (b * V1 - a * v1) + (t2 * x - t0 * z);
+        const float moved_z = z + (b * V2 - a * v2) + (t0 * y - t1 * x);
+        const bool stays = !(moved_z > kNearest);
+        px[i] = stays ? x : moved_x;
+        py[i] = stays ? y : moved_y;
+        pz[i] = stays ? z : moved_z;
     }
 }
 

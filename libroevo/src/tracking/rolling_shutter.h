@@ -54,10 +54,6 @@ struct RowMotion {
 /// `to` would have brought them. A motion that would bring a point to the camera is none: such a point stays.
 void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
                     std::size_t count, Points3& points);
-/// The same of these points only, each named once.
-void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
-                    const std::vector<std::int32_t>& which, Points3& points);
-
 /// Images whose rows are read one after the other while the camera moves. The motion follows from the pose
 /// itself and the previous frame's.
 struct RollingShutter {

@@ -12,6 +12,8 @@ namespace {
 
 // Frames of recordings that were tracked well agree to 72 % and more, poses that went astray to less than 40
 constexpr double kLeastDepthAgreement = 0.4;
+/// The last level of the image pyramid on which a pose is found that fine tracking takes over.
+constexpr int kFinestCoarse = 1;
 constexpr double kMatchedWithoutDepth = 0.6;  ///< share of the edges
 // One sigma of poses that went astray
 constexpr double kDoubtfulPosition = 0.15;  ///< m
@@ -72,7 +74,8 @@ PhotometricPoints Tracker::choosePoints(const EdgePoints3D& edges, const Frame& 
 
 CoarseResult Tracker::align(const Keyframe& reference, const Frame& frame, const RollingShutter& shutter,
                             const std::vector<Pose>& guesses, const Brightness& brightness) {
-    return coarse_.track(reference, frame.pyramid, ideal_, shutter, guesses, brightness);
+    const int finest = options_.mode == Mode::kCoarse ? 0 : kFinestCoarse;
+    return coarse_.track(reference, frame.pyramid, ideal_, shutter, guesses, brightness, finest);
 }
 
 FineResult Tracker::refine(const Keyframe& reference, const Frame& frame, const Pose& T_start,

@@ -4,11 +4,13 @@
 
 namespace roevo::kernels {
 namespace {
-#include "kernels_impl.h"
+#include "residuals_impl.h"
 }  // namespace
 
 const Table* avx2() {
-    static const Table table{"avx2", project, patches, accumulate};
+    static const Table table{"avx2",       project,       patches,     referencePatch, accumulate,
+                             weighPatches, sumPatches,    liftPatches, pick,           follow,
+                             blur,         edgeResiduals, weighEdges,  liftEdges,      liftReadout};
     return __builtin_cpu_supports("avx2") ? &table : nullptr;
 }
 

@@ -2,11 +2,13 @@
 
 namespace roevo::kernels {
 namespace {
-#include "kernels_impl.h"
+#include "residuals_impl.h"
 }  // namespace
 
 const Table& baseline() {
-    static const Table table{"baseline", project, patches, accumulate};
+    static const Table table{"baseline",   project,       patches,     referencePatch, accumulate,
+                             weighPatches, sumPatches,    liftPatches, pick,           follow,
+                             blur,         edgeResiduals, weighEdges,  liftEdges,      liftReadout};
     return table;
 }
 

@@ -1,27 +1,6 @@
-// Included by one file per instruction set, inside an anonymous namespace. No standard containers or Eigen
-// here: an inline function compiled with AVX2 must never be picked by the linker for the baseline.
-
-typedef float Lanes __attribute__((vector_size(4 * kLanes)));
-typedef std::int32_t IntLanes __attribute__((vector_size(4 * kLanes)));
-
-inline Lanes load(const float* p) {
-    Lanes v;
-    __builtin_memcpy(&v, p, sizeof v);
-    return v;
-}
-
-inline void store(float* p, Lanes v) {
-    __builtin_memcpy(p, &v, sizeof v);
-}
-
-inline Lanes splat(float value) {
-    return Lanes{value, value, value, value, value, value, value, value};
-}
-
-/// Sum of the lanes in a fixed order.
-inline float sumLanes(Lanes v) {
-    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
-}
+// Included by one file per instruction set, inside an anonymous namespace; what lanes_impl.h says of itself
+// holds here.
+#include "pixels/lanes_impl.h"
 
 void project(const Projection& m, const float* px, const float* py, const float* pz, std::size_t n,
              const ProjectedPoints& out) {
@@ -66,37 +45,86 @@ inline IntLanes gather(const std::uint8_t* data, IntLanes index) {
 #endif
 }
 
+/// Bilinear samples.
+inline Lanes bilinear(const ImageView& image, Lanes x, Lanes y) {
+    const auto stride = static_cast<std::int32_t>(image.stride);
+    const IntLanes ix = __builtin_convertvector(x, IntLanes), iy = __builtin_convertvector(y, IntLanes);
+    const Lanes fx = x - __builtin_convertvector(ix, Lanes), fy = y - __builtin_convertvector(iy, Lanes);
+    const IntLanes index = iy * stride + ix;
+    const IntLanes upper = gather(image.data, index), lower = gather(image.data + stride, index);
+    const Lanes i00 = __builtin_convertvector(upper & 255, Lanes);
+    const Lanes i01 = __builtin_convertvector((upper >> 8) & 255, Lanes);
+    const Lanes i10 = __builtin_convertvector(lower & 255, Lanes);
+    const Lanes i11 = __builtin_convertvector((lower >> 8) & 255, Lanes);
+    const Lanes top = i00 + fx * (i01 - i00), bottom = i10 + fx * (i11 - i10);
+    return top + fy * (bottom - top);
+}
+
+/// Products of the pixels of eight patches, before they are summed.
+struct PatchProducts {
+    Lanes squared[kLanes], gradient_u[kLanes], gradient_v[kLanes], current[kLanes], cross[kLanes];
+};
+
+/// Samples a patch around (u, v), which lies inside.
+inline void samplePatch(const ImageView& image, const Patch& patch, float u, float v, float axis_x,
+                        float axis_y, float gain, float offset, int k, PatchProducts& out) {
+    const Lanes du = load(kPatchU), dv = load(kPatchV);
+    const Lanes current = bilinear(image, u + axis_x * du - axis_y * dv, v + axis_y * du + axis_x * dv);
+    const Lanes reference = load(patch.intensity);
+    const Lanes e = current - gain * reference - offset;
+    out.squared[k] = e * e;
+    out.gradient_u[k] = load(patch.slope_u) * e;
+    out.gradient_v[k] = load(patch.slope_v) * e;
+    out.current[k] = current;
+    out.cross[k] = current * reference;
+}
+
+void referencePatch(const ImageView& image, float u, float v, float axis_x, float axis_y, Patch& out) {
+    const Lanes du = load(kPatchU), dv = load(kPatchV);
+    const Lanes x = u + axis_x * du - axis_y * dv, y = v + axis_y * du + axis_x * dv;
+    const Lanes along =
+        (bilinear(image, x + axis_x, y + axis_y) - bilinear(image, x - axis_x, y - axis_y)) / 2;
+    const Lanes across =
+        (bilinear(image, x - axis_y, y + axis_x) - bilinear(image, x + axis_y, y - axis_x)) / 2;
+    const Lanes intensity = bilinear(image, x, y);
+    store(out.intensity, intensity);
+    store(out.slope_u, along);
+    store(out.slope_v, across);
+    out.gram[0] = sumLanes(along * along);
+    out.gram[1] = sumLanes(along * across);
+    out.gram[2] = sumLanes(across * across);
+    out.sum = sumLanes(intensity);
+    out.sum_squared = sumLanes(intensity * intensity);
+}
+
 void patches(const ImageView& image, const Patch* patch, const float* u, const float* v, const float* axis_x,
              const float* axis_y, std::size_t n, float gain, float offset, PatchResidual* out) {
-    const Lanes du = load(kPatchU), dv = load(kPatchV);
     constexpr float kReach = 4;  // the patch, its bilinear neighbours, and whole words when gathering
     const float max_u = static_cast<float>(image.width - 1) - kReach;
     const float max_v = static_cast<float>(image.height - 1) - kReach;
-    const auto stride = static_cast<std::int32_t>(image.stride);
-    for (std::size_t i = 0; i < n; ++i) {
-        if (!(u[i] >= kReach && u[i] <= max_u && v[i] >= kReach && v[i] <= max_v)) {
-            out[i] = {-1, 0, 0, 0, 0};
+    PatchProducts products = {};
+    for (std::size_t begin = 0; begin < n; begin += kLanes) {
+        const int count = n - begin < kLanes ? static_cast<int>(n - begin) : kLanes;
+        unsigned inside = 0;
+        for (int k = 0; k < count; ++k) {
+            const std::size_t i = begin + static_cast<std::size_t>(k);
+            if (!(u[i] >= kReach && u[i] <= max_u && v[i] >= kReach && v[i] <= max_v)) continue;
+            inside |= 1U << k;
+            samplePatch(image, patch[i], u[i], v[i], axis_x[i], axis_y[i], gain, offset, k, products);
+        }
+        if (inside == 0) {
+            for (int k = 0; k < count; ++k) out[begin + static_cast<std::size_t>(k)] = {-1, 0, 0, 0, 0};
             continue;
         }
-        const Lanes x = u[i] + axis_x[i] * du - axis_y[i] * dv;
-        const Lanes y = v[i] + axis_y[i] * du + axis_x[i] * dv;
-        const IntLanes ix = __builtin_convertvector(x, IntLanes), iy = __builtin_convertvector(y, IntLanes);
-        const Lanes fx = x - __builtin_convertvector(ix, Lanes), fy = y - __builtin_convertvector(iy, Lanes);
-        const IntLanes index = iy * stride + ix;
-        const IntLanes upper = gather(image.data, index), lower = gather(image.data + stride, index);
-        const Lanes i00 = __builtin_convertvector(upper & 255, Lanes);
-        const Lanes i01 = __builtin_convertvector((upper >> 8) & 255, Lanes);
-        const Lanes i10 = __builtin_convertvector(lower & 255, Lanes);
-        const Lanes i11 = __builtin_convertvector((lower >> 8) & 255, Lanes);
-        const Lanes top = i00 + fx * (i01 - i00), bottom = i10 + fx * (i11 - i10);
-        const Lanes current = top + fy * (bottom - top);
-        const Lanes reference = load(patch[i].intensity);
-        const Lanes e = current - gain * reference - offset;
-        out[i].squared = sumLanes(e * e);
-        out[i].gradient_u = sumLanes(load(patch[i].slope_u) * e);
-        out[i].gradient_v = sumLanes(load(patch[i].slope_v) * e);
-        out[i].current = sumLanes(current);
-        out[i].cross = sumLanes(current * reference);
+        const Lanes squared = sumsOf(products.squared), gradient_u = sumsOf(products.gradient_u),
+                    gradient_v = sumsOf(products.gradient_v), current = sumsOf(products.current),
+                    cross = sumsOf(products.cross);
+        for (int k = 0; k < count; ++k) {
+            PatchResidual& residual = out[begin + static_cast<std::size_t>(k)];
+            residual = {-1, 0, 0, 0, 0};
+            if ((inside >> k & 1) != 0)
+                residual = {squared[k], gradient_u[k], gradient_v[k], current[k], cross[k]};
+        }
     }
 }
 

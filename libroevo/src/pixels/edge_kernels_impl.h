@@ -1,0 +1,152 @@
+// Loops over the pixels and points of edges; what pixel_kernels_impl.h says of itself holds here.
+#include "pixel_kernels_impl.h"
+
+/// Values at these indices, none of which is the last one.
+inline IntLanes gather(const std::int16_t* data, IntLanes index) {
+#ifdef __AVX2__
+    const __m256i pairs = _mm256_i32gather_epi32(reinterpret_cast<const int*>(data), (__m256i)index, 2);
+    return (IntLanes)_mm256_srai_epi32(_mm256_slli_epi32(pairs, 16), 16);
+#else
+    IntLanes values;
+    for (int l = 0; l < kLanes; ++l) values[l] = data[index[l]];
+    return values;
+#endif
+}
+
+/// Logarithm of (value + floor) / (here + floor), to 4e-6 of itself where value <= here <= 3 floor: twice the
+/// inverse hyperbolic tangent.
+inline Lanes logRatio(Lanes value, Lanes here, Lanes floor) {
+    const Lanes s = (value - here) / (value + here + 2 * floor), t = s * s;
+    const Lanes series =
+        1.0000033881F + t * (0.3328929437F + t * (0.2089945288F + t * (0.0808183651F + t * 0.2705720870F)));
+    return 2 * s * series;
+}
+
+/// Of eight pixels.
+inline void refineBlock(const GradientView& g, IntLanes p, const EdgePointArrays& out, std::size_t i) {
+    const float rows_per_pixel = 1 / static_cast<float>(g.width);
+    IntLanes row =
+        __builtin_convertvector((__builtin_convertvector(p, Lanes) + 0.5F) * rows_per_pixel, IntLanes);
+    IntLanes column = p - row * g.width;
+    const IntLanes before = column < 0, beyond = column >= g.width;  // rounding; -1 where it is true
+    row += before - beyond;
+    column += (beyond - before) * g.width;
+    const IntLanes gx = gather(g.gx, p), gy = gather(g.gy, p);
+    const IntLanes by_column = (gx < 0 ? -gx : gx) >= (gy < 0 ? -gy : gy);
+    // Magnitudes one step along the gradient, between the two neighbours that its line passes
+    const Lanes large = __builtin_convertvector(by_column ? gx : gy, Lanes);
+    const Lanes slope = __builtin_convertvector(by_column ? gy : gx, Lanes) / large;
+    const Lanes share = magnitudeOf(slope);
+    const IntLanes across = by_column ? IntLanes{} + g.width : IntLanes{} + 1;
+    const IntLanes step = by_column ? IntLanes{} + 1 : IntLanes{} + g.width;
+    const IntLanes side = slope >= 0 ? across : -across;
+    const Lanes here = pickLanes(g.magnitude, p);
+    const Lanes next = pickLanes(g.magnitude, p + step), last = pickLanes(g.magnitude, p - step);
+    const Lanes after = next + share * (pickLanes(g.magnitude, p + step + side) - next);
+    const Lanes ahead = last + share * (pickLanes(g.magnitude, p - step - side) - last);
+    // A blurred step has a Gaussian ridge, whose logarithm is a parabola; the floor, because where a
+    // sharp ridge ends the logarithm would run away
+    const Lanes floor = 0.33F * here;
+    const Lanes rise = logRatio(ahead, here, floor), fall = logRatio(after, here, floor);
+    const IntLanes curved = rise + fall < 0;
+    Lanes vertex = 0.5F * (rise - fall) / (curved ? rise + fall : Lanes{} - 1);
+    vertex = vertex < -0.5F ? Lanes{} - 0.5F : vertex;
+    vertex = vertex > 0.5F ? Lanes{} + 0.5F : vertex;
+    vertex = curved ? vertex : Lanes{};
+    const Lanes by_slope = vertex * slope;
+    store(out.x + i, __builtin_convertvector(column, Lanes) + (by_column ? vertex : by_slope));
+    store(out.y + i, __builtin_convertvector(row, Lanes) + (by_column ? by_slope : vertex));
+    store(out.gradient_x + i, __builtin_convertvector(gx, Lanes) / here);
+    store(out.gradient_y + i, __builtin_convertvector(gy, Lanes) / here);
+    store(out.strength + i, here / 8);
+}
+
+void refine(const GradientView& g, const std::int32_t* pixel, std::size_t count, const EdgePointArrays& out) {
+    std::size_t i = 0;
+    for (; i + kLanes <= count; i += kLanes) refineBlock(g, load<IntLanes>(pixel + i), out, i);
+    if (i == count) return;
+    const std::size_t bytes = (count - i) * sizeof(float);
+    IntLanes rest = IntLanes{} + pixel[i];
+    __builtin_memcpy(&rest, pixel + i, bytes);
+    float values[5][kLanes];
+    refineBlock(g, rest, {values[0], values[1], values[2], values[3], values[4]}, 0);
+    float* const arrays[5] = {out.x, out.y, out.gradient_x, out.gradient_y, out.strength};
+    for (int k = 0; k < 5; ++k) __builtin_memcpy(arrays[k] + i, values[k], bytes);
+}
+
+/// Of eight chords.
+inline void normalsBlock(const float* u, const float* v, const float* gradient_x, const float* gradient_y,
+                         float* nx, float* ny) {
+    const Lanes du = load<Lanes>(u), dv = load<Lanes>(v);
+    const Lanes gx = load<Lanes>(gradient_x), gy = load<Lanes>(gradient_y);
+    const Lanes length = squareRoot(du * du + dv * dv);
+    const IntLanes known = length > 0;
+    const Lanes x = -dv / length, y = du / length;  // Eq. (4)
+    const IntLanes wrong = x * gx + y * gy < 0;     // Eqs. (5), (6)
+    store(nx, known ? (wrong ? -x : x) : gx);
+    store(ny, known ? (wrong ? -y : y) : gy);
+}
+
+void normals(const float* u, const float* v, const float* gradient_x, const float* gradient_y,
+             std::size_t count, float* nx, float* ny) {
+    std::size_t i = 0;
+    for (; i + kLanes <= count; i += kLanes)
+        normalsBlock(u + i, v + i, gradient_x + i, gradient_y + i, nx + i, ny + i);
+    if (i == count) return;
+    const std::size_t bytes = (count - i) * sizeof(float);
+    float values[6][kLanes] = {};
+    const float* const inputs[4] = {u, v, gradient_x, gradient_y};
+    for (int k = 0; k < 4; ++k) __builtin_memcpy(values[k], inputs[k] + i, bytes);
+    normalsBlock(values[0], values[1], values[2], values[3], values[4], values[5]);
+    __builtin_memcpy(nx + i, values[4], bytes);
+    __builtin_memcpy(ny + i, values[5], bytes);
+}
+
+/// Where the least-squares plane of inverse depths is at (u, v), or their mean where they span none.
+inline float planeAt(float u, float v, float n, Lanes sums) {
+    const float sx = sums[0], sy = sums[1], sxx = sums[2], sxy = sums[3], syy = sums[4], sq = sums[5],
+                sxq = sums[6], syq = sums[7];
+    const float mx = sx / n, my = sy / n, mq = sq / n;
+    const float xx = sxx - sx * mx, xy = sxy - sx * my, yy = syy - sy * my;
+    const float xq = sxq - sx * mq, yq = syq - sy * mq;
+    const float determinant = xx * yy - xy * xy;
+    if (n < 6 || determinant < 0.05F * n * n) return mq;
+    const float b = (xq * yy - yq * xy) / determinant, c = (yq * xx - xq * xy) / determinant;
+    return mq + b * (u - mx) + c * (v - my);
+}
+
+void depthPatch(const float* depth, std::ptrdiff_t stride, int size, float near, float far, float jump,
+                float u, float v, DepthPatch& out) {
+    constexpr IntLanes kLane = {0, 1, 2, 3, 4, 5, 6, 7};
+    const IntLanes inside = kLane < size;
+    const Lanes x = __builtin_convertvector(kLane - size / 2, Lanes);
+    Lanes nearest = splat(far), farthest = splat(near), rows[kMostPatch], count{};
+    for (int r = 0; r < size; ++r) {
+        const Lanes z = load(depth + r * stride);
+        const IntLanes known = inside & (z >= near) & (z <= far);
+        rows[r] = known ? z : Lanes{};
+        nearest = known & (z < nearest) ? z : nearest;
+        farthest = known & (z > farthest) ? z : farthest;
+        count += known ? splat(1) : Lanes{};
+    }
+    out = {static_cast<int>(sumLanes(count)), far, near, 0};
+    for (int l = 0; l < kLanes; ++l) {
+        out.nearest = nearest[l] < out.nearest ? nearest[l] : out.nearest;
+        out.farthest = farthest[l] > out.farthest ? farthest[l] : out.farthest;
+    }
+    if (out.count == 0 || out.farthest > out.nearest * jump) return;
+    // Sums of columns first; inverse depths relative to the nearest one, which keeps them small
+    const float base = 1 / out.nearest;
+    Lanes y1{}, y2{}, q{}, yq{};
+    for (int r = 0; r < size; ++r) {
+        const auto y = static_cast<float>(r - size / 2);
+        const IntLanes known = rows[r] > 0;
+        const Lanes inverse = known ? 1 / rows[r] - base : Lanes{};
+        y1 += known ? splat(y) : Lanes{};
+        y2 += known ? splat(y * y) : Lanes{};
+        q += inverse;
+        yq += y * inverse;
+    }
+    const Lanes products[kLanes] = {x * count, y1, x * x * count, x * y1, y2, q, x * q, yq};
+    out.inverse = base + planeAt(u, v, sumLanes(count), sumsOf(products));
+}

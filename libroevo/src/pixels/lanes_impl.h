@@ -1,0 +1,92 @@
+// Eight values at once. Included by what one file per instruction set includes, inside an anonymous
+// namespace. No standard containers or Eigen here: an inline function compiled with AVX2 must never be picked
+// by the linker for the baseline.
+
+constexpr int kLanes = 8;
+typedef float Lanes __attribute__((vector_size(4 * kLanes)));
+typedef std::int32_t IntLanes __attribute__((vector_size(4 * kLanes)));
+
+template <class Vector = Lanes, class Scalar>
+inline Vector load(const Scalar* p) {
+    Vector v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
+}
+
+template <class Vector, class Scalar>
+inline void store(Scalar* p, Vector v) {
+    __builtin_memcpy(p, &v, sizeof v);
+}
+
+inline Lanes splat(float value) {
+    return Lanes{} + value;
+}
+
+/// values[index], of each lane.
+inline Lanes pickLanes(const float* values, IntLanes index) {
+#ifdef __AVX2__
+    return (Lanes)_mm256_i32gather_ps(values, (__m256i)index, 4);
+#else
+    Lanes out;
+    for (int l = 0; l < kLanes; ++l) out[l] = values[index[l]];
+    return out;
+#endif
+}
+
+inline IntLanes pickLanes(const std::int32_t* values, IntLanes index) {
+#ifdef __AVX2__
+    return (IntLanes)_mm256_i32gather_epi32(values, (__m256i)index, 4);
+#else
+    IntLanes out;
+    for (int l = 0; l < kLanes; ++l) out[l] = values[index[l]];
+    return out;
+#endif
+}
+
+/// Whether any lane is true.
+inline bool any(IntLanes condition) {
+#ifdef __AVX2__
+    return _mm256_movemask_ps((__m256)condition) != 0;
+#else
+    int all = 0;
+    for (int l = 0; l < kLanes; ++l) all |= condition[l];
+    return all != 0;
+#endif
+}
+
+inline Lanes squareRoot(Lanes v) {
+#ifdef __AVX2__
+    return (Lanes)_mm256_sqrt_ps((__m256)v);
+#else
+    for (int l = 0; l < kLanes; ++l) v[l] = __builtin_sqrtf(v[l]);
+    return v;
+#endif
+}
+
+inline Lanes magnitudeOf(Lanes v) {
+    return v < 0 ? -v : v;
+}
+
+/// Sum of the lanes in a fixed order.
+inline float sumLanes(Lanes v) {
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+/// The sums of the lanes of eight vectors, each in that order.
+inline Lanes sumsOf(const Lanes* v) {
+#ifdef __AVX2__
+    const auto halves = [&](int i, int j) {  // l + (l + 4): four of v[i], four of v[j]
+        const __m256 a = (__m256)v[i], b = (__m256)v[j];
+        return _mm256_add_ps(_mm256_permute2f128_ps(a, b, 0x20), _mm256_permute2f128_ps(a, b, 0x31));
+    };
+    const auto quarters = [](__m256 a, __m256 b) {  // two of each
+        return _mm256_add_ps(_mm256_shuffle_ps(a, b, 0x44), _mm256_shuffle_ps(a, b, 0xEE));
+    };
+    const __m256 even = quarters(halves(0, 4), halves(1, 5)), odd = quarters(halves(2, 6), halves(3, 7));
+    return (Lanes)_mm256_add_ps(_mm256_shuffle_ps(even, odd, 0x88), _mm256_shuffle_ps(even, odd, 0xDD));
+#else
+    Lanes sums;
+    for (int l = 0; l < kLanes; ++l) sums[l] = sumLanes(v[l]);
+    return sums;
+#endif
+}

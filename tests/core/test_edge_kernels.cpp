@@ -1,0 +1,211 @@
+// The loops over pixels and points of edges, baseline and AVX2: the same bytes, and what plain loops in
+// double precision give.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstring>
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+#include "edges/gradient.h"
+#include "edges/organized_edges.h"
+#include "pixels/pixel_kernels.h"
+
+namespace roevo {
+namespace {
+
+using Floats = std::vector<float>;
+
+std::vector<const pixels::Table*> tables() {
+    std::vector<const pixels::Table*> all{&pixels::baseline()};
+    if (pixels::avx2() != nullptr) all.push_back(pixels::avx2());
+    return all;
+}
+
+cv::Mat smoothNoise(int width, int height, unsigned seed) {
+    cv::Mat image(height, width, CV_8UC1), smooth;
+    cv::theRNG().state = seed;
+    cv::randu(image, 0, 256);
+    cv::GaussianBlur(image, smooth, {5, 5}, 1.2);
+    return smooth;
+}
+
+TEST(EdgeKernels, HalvedImageIsOpenCvs) {
+    for (const int width : {2, 30, 32, 34, 126, 640}) {
+        const cv::Mat image = smoothNoise(width, 6, 3);
+        cv::Mat expected;
+        cv::resize(image, expected, {width / 2, 3}, 0, 0, cv::INTER_AREA);
+        for (const auto* table : tables()) {
+            cv::Mat half(3, width / 2, CV_8UC1);
+            for (int y = 0; y < 3; ++y)
+                table->halve(image.ptr(2 * y), image.ptr(2 * y + 1), width / 2, half.ptr(y));
+            EXPECT_EQ(cv::norm(half, expected, cv::NORM_INF), 0) << table->name << ' ' << width;
+        }
+    }
+}
+
+/// What the kernel should give for one pixel, with logarithms in double precision.
+Eigen::Vector2d plainRidge(const Gradient& g, int x, int y) {
+    const auto at = [&](double px, double py) {  // one of both is whole
+        const int ix = static_cast<int>(std::floor(px)), iy = static_cast<int>(std::floor(py));
+        const double fx = px - ix, fy = py - iy;
+        const auto m = [&](int dx, int dy) {
+            return static_cast<double>(g.magnitude.at<float>(iy + dy, ix + dx));
+        };
+        return (1 - fx) * (1 - fy) * m(0, 0) + (fx > 0 ? fx * m(1, 0) : 0) + (fy > 0 ? fy * m(0, 1) : 0);
+    };
+    const double gx = g.gx.at<std::int16_t>(y, x), gy = g.gy.at<std::int16_t>(y, x);
+    const bool by_column = std::abs(gx) >= std::abs(gy);
+    const Eigen::Vector2d step(by_column ? 1 : gx / gy, by_column ? gy / gx : 1);
+    const double floor = 0.33 * at(x, y);
+    const double before = std::log(at(x - step.x(), y - step.y()) + floor), here = std::log(at(x, y) + floor),
+                 after = std::log(at(x + step.x(), y + step.y()) + floor);
+    const double curvature = before - 2 * here + after;
+    return Eigen::Vector2d(x, y) + std::clamp((before - after) / 2 / curvature, -0.5, 0.5) * step;
+}
+
+TEST(EdgeKernels, PixelsMoveToTheRidge) {
+    Gradient g;
+    computeGradient(smoothNoise(161, 93, 5), 0, g);
+    std::vector<std::int32_t> ridges;
+    for (int y = 4; y < 89; ++y) {
+        const auto stride = static_cast<std::ptrdiff_t>(g.magnitude.step1());
+        const auto found =
+            pixels::baseline().ridges(g.magnitude.ptr<float>(y) + 60, stride, g.gx.ptr<std::int16_t>(y) + 60,
+                                      g.gy.ptr<std::int16_t>(y) + 60, 64, 30, 30);
+        for (int i = 0; i < 64; ++i)
+            if ((found.all >> i & 1) != 0) ridges.push_back(y * 161 + 60 + i);
+    }
+    ASSERT_GT(ridges.size(), 200U);
+    for (const std::size_t count : {std::size_t{1}, std::size_t{8}, std::size_t{13}, ridges.size()}) {
+        std::vector<Floats> bytes;
+        for (const auto* table : tables()) {
+            Floats all(5 * count + 1, 77);  // the last one is to stay
+            float* p = all.data();
+            table->refine(g.view(), ridges.data(), count,
+                          {p, p + count, p + 2 * count, p + 3 * count, p + 4 * count});
+            EXPECT_EQ(all.back(), 77) << "written past the last point";
+            for (std::size_t i = 0; i < count; ++i) {
+                const int x = ridges[i] % 161, y = ridges[i] / 161;
+                const Eigen::Vector2d plain = plainRidge(g, x, y);
+                const float magnitude = g.magnitude.at<float>(y, x);
+                EXPECT_NEAR(static_cast<double>(p[i]), plain.x(), 1e-4) << table->name << ' ' << i;
+                EXPECT_NEAR(static_cast<double>(p[count + i]), plain.y(), 1e-4) << table->name << ' ' << i;
+                EXPECT_EQ(p[2 * count + i], g.gx.at<std::int16_t>(y, x) / magnitude);
+                EXPECT_EQ(p[3 * count + i], g.gy.at<std::int16_t>(y, x) / magnitude);
+                EXPECT_EQ(p[4 * count + i], magnitude / 8);
+            }
+            bytes.push_back(all);
+        }
+        EXPECT_EQ(std::memcmp(bytes.front().data(), bytes.back().data(), 20 * count), 0);
+    }
+}
+
+TEST(EdgeKernels, RowsOfLargeImagesAreNotMistaken) {
+    // Where a row begins and ends is found by a division in single precision
+    Gradient g;
+    const cv::Size size(1921, 1083);
+    g.gx = cv::Mat(size, CV_16SC1, cv::Scalar(100));
+    g.gy = cv::Mat(size, CV_16SC1, cv::Scalar(0));
+    g.magnitude = cv::Mat(size, CV_32FC1, cv::Scalar(100));
+    for (const auto* table : tables()) {
+        for (int y = 1; y < size.height - 1; ++y) {
+            const std::int32_t ends[2] = {y * size.width + 1, y * size.width + size.width - 2};
+            float x[2], found_y[2], rest[6];
+            table->refine(g.view(), ends, 2, {x, found_y, rest, rest + 2, rest + 4});
+            ASSERT_EQ(x[0], 1) << y;
+            ASSERT_EQ(x[1], static_cast<float>(size.width - 2)) << y;
+            ASSERT_EQ(found_y[0], static_cast<float>(y));
+            ASSERT_EQ(found_y[1], static_cast<float>(y));
+        }
+    }
+}
+
+TEST(EdgeKernels, NormalsAreThoseOfEdgeNormal) {
+    std::mt19937 random(4);
+    std::normal_distribution<float> normal(0, 3);
+    for (const std::size_t count : {std::size_t{1}, std::size_t{8}, std::size_t{21}}) {
+        Floats u(count), v(count), gx(count), gy(count);
+        for (auto* array : {&u, &v, &gx, &gy})
+            for (float& value : *array) value = normal(random);
+        u[0] = v[0] = 0;  // a chord without length
+        for (const auto* table : tables()) {
+            Floats nx = u, ny = v;  // in place
+            table->normals(nx.data(), ny.data(), gx.data(), gy.data(), count, nx.data(), ny.data());
+            for (std::size_t i = 0; i < count; ++i) {
+                float x = gx[i], y = gy[i];
+                edgeNormal(u[i], v[i], gx[i], gy[i], x, y);
+                EXPECT_EQ(nx[i], x) << table->name << ' ' << i;
+                EXPECT_EQ(ny[i], y) << table->name << ' ' << i;
+            }
+        }
+    }
+}
+
+TEST(EdgeKernels, PlaneOfInverseDepthsIsTheLeastSquaresOne) {
+    constexpr int kStride = 11;
+    constexpr float kNear = 0.2F, kFar = 9;
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int planes = 0;
+    for (int repeat = 0; repeat < 400; ++repeat) {
+        const int size = repeat % 2 == 0 ? 5 : 7;
+        const double missing = repeat % 5 == 0 ? 0.7 : 0.15;
+        Floats depth(kStride * 8, 0);
+        const double base = 0.3 + unit(random), a = 0.002 * (unit(random) - 0.5),
+                     b = 0.002 * (unit(random) - 0.5);
+        const double u = unit(random) - 0.5, v = unit(random) - 0.5;
+        Eigen::MatrixX3d A(0, 3);
+        Eigen::VectorXd q(0);
+        for (int y = 0; y < 8; ++y) {
+            for (int x = 0; x < 8; ++x) {
+                float& z = depth[static_cast<std::size_t>(y * kStride + x)];
+                z = static_cast<float>(1 / (base + a * x + b * y + 0.0005 * unit(random)));
+                if (unit(random) < missing) z = repeat % 3 == 0 ? 20.0F : (repeat % 3 == 1 ? 0.0F : NAN);
+                if (x >= size || y >= size || !(z >= kNear && z <= kFar)) continue;
+                A.conservativeResize(A.rows() + 1, 3);
+                q.conservativeResize(q.rows() + 1);
+                A.bottomRows(1) << 1, x - size / 2 - u, y - size / 2 - v;
+                q.tail(1) << 1 / static_cast<double>(z);
+            }
+        }
+        std::vector<pixels::DepthPatch> found;
+        for (const auto* table : tables()) {
+            found.emplace_back();
+            table->depthPatch(depth.data(), kStride, size, kNear, kFar, 1.5F, static_cast<float>(u),
+                              static_cast<float>(v), found.back());
+        }
+        EXPECT_EQ(std::memcmp(&found.front(), &found.back(), sizeof found.front()), 0);
+        ASSERT_EQ(found.front().count, A.rows());
+        if (A.rows() == 0) continue;
+        EXPECT_NEAR(found.front().nearest, 1 / q.maxCoeff(), 1e-5);
+        EXPECT_NEAR(found.front().farthest, 1 / q.minCoeff(), 1e-5);
+        const Eigen::Vector3d plane = A.colPivHouseholderQr().solve(q);
+        const double inverse = found.front().inverse;
+        if (A.rows() >= 15) {
+            EXPECT_NEAR(inverse, plane[0], 1e-6) << repeat;
+            ++planes;
+        } else if (A.rows() < 6) {
+            EXPECT_NEAR(inverse, q.mean(), 1e-6) << repeat;
+        }
+    }
+    EXPECT_GT(planes, 200);
+}
+
+TEST(EdgeKernels, DepthsThatJumpAreTold) {
+    Floats depth(8 * 8, 2);
+    depth[8 + 3] = 2.2F;
+    for (const auto* table : tables()) {
+        pixels::DepthPatch patch{};
+        table->depthPatch(depth.data(), 8, 5, 0.2F, 9, 1.03F, 0, 0, patch);
+        EXPECT_EQ(patch.count, 25);
+        EXPECT_EQ(patch.nearest, 2);
+        EXPECT_EQ(patch.farthest, 2.2F);
+        table->depthPatch(depth.data() + 16, 8, 5, 0.2F, 9, 1.03F, 0.3F, 0.1F, patch);
+        EXPECT_NEAR(patch.inverse, 0.5F, 1e-7F) << "the same everywhere";
+    }
+}
+
+}  // namespace
+}  // namespace roevo
