@@ -55,7 +55,7 @@ const Format kFormats[] = {
     {"icl", &isIclFolder, &loadIcl, "associations.txt with whole numbers for times, files named alike"},
     {"tum", &isTumFolder, &loadTum, "rgb.txt and depth.txt, or associations.txt"},
     {"plain", &isPlainFolder, &loadPlain,
-     "rgb/ or color/, and depth/, with numbers or times for names, and a camera"},
+     "camera.txt or another calibration, rgb/ or color/, and depth/, with numbers or times for names"},
     {"bag", &isBag, &loadBag,
      "a .bag of ROS 1; of ROS 2 .db3 or .mcap, or the folder of metadata.yaml with them"},
 };

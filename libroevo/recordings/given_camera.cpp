@@ -116,9 +116,8 @@ void setCamera(const CameraDescription& camera, DatasetDescription& out) {
 
 std::string noIntrinsics(const std::string& folder, const std::string& layout) {
     return "no intrinsics: " + folder + " has no camera.txt" + layout +
-           ", nor a calibration of ROS, ORB-SLAM, Open3D or RealSense (.yaml, .json); write camera.txt with "
-           "width, "
-           "height, fx, fy, cx, cy, depth_scale, or give --intrinsics fx fy cx cy --depth-scale "
+           "; write it with width, height, fx, fy, cx, cy, depth_scale, put a calibration of ROS, ORB-SLAM, "
+           "Open3D or RealSense there (.yaml, .json), or give --intrinsics fx fy cx cy --depth-scale "
            "units_per_metre";
 }
 

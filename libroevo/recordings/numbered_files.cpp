@@ -63,14 +63,18 @@ struct Numbered {
 
     Numbered(const NamedImages& files, AssociationReport& report) {
         bool decimal = false;
+        std::string by_number;  // the first that is
         for (const auto& [name, file] : files) {
             const auto number = lastNumber(name);
             if (!number)
                 throw std::runtime_error(file +
                                          ": no time in its name: expected a number or a time in seconds");
             decimal = decimal || number->decimal;
+            if (!number->decimal && number->value < kFirstStamp && by_number.empty()) by_number = file;
             images.push_back({number->value, file});
         }
+        if (decimal && !by_number.empty())
+            throw std::runtime_error(by_number + ": some images are named by number, others by time");
         // By name "10" comes before "9": that is no disorder of a list
         std::stable_sort(images.begin(), images.end(),
                          [](const ListEntry& a, const ListEntry& b) { return a.timestamp < b.timestamp; });

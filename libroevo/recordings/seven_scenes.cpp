@@ -119,8 +119,8 @@ DatasetDescription loadSevenScenes(const std::string& folder, const DatasetOptio
     if (const auto given = givenCamera(folder, options.folder)) {
         setCamera(*given, out);
         if (!out.registration)
-            out.notes.push_back("depth is taken as registered to colour, because the camera is given: " +
-                                given->source);
+            out.notes.push_back("depth is taken as registered to colour, because there is " +
+                                std::string(options.folder.intrinsics.empty() ? "a " : "") + given->source);
     } else {
         CameraDescription customary;
         customary.camera = sevenScenesColourCamera();
