@@ -12,7 +12,7 @@ release | asan | tsan) preset=$1 && shift ;;
 *) die "unknown preset '$1'; there are release, asan and tsan" ;;
 esac
 
-install_packages
+install_packages $roevo_batch_packages
 build "$preset"
 say "Testing (preset $preset)"
 # Leaks inside the libraries of others (OpenGL drivers, MRPT's registries) are not ours to count.

@@ -3,5 +3,5 @@
 set -eu
 cd "$(dirname "$0")/.."
 . scripts/set_up.sh
-install_packages
+install_packages $roevo_batch_packages
 echo "All packages are there."

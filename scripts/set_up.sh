@@ -4,7 +4,8 @@ roevo_packages="build-essential cmake ninja-build ccache git pkg-config libmrpt-
     libceres-dev libeigen3-dev libgtest-dev libbenchmark-dev libcli11-dev nlohmann-json3-dev zlib1g-dev libjpeg-dev
     libsqlite3-dev libyaml-cpp-dev liblz4-dev libzstd-dev libbz2-dev
     librosbag-storage-dev libsensor-msgs-dev libtf2-msgs-dev gnuplot-nox libjs-three
-    python3-dev pybind11-dev python3-numpy python3-pil snakemake"
+    python3-dev pybind11-dev python3-numpy python3-pil"
+roevo_batch_packages=snakemake # 680 MB, for roevo-batch alone
 
 say() { printf '\n== %s\n' "$*"; }
 
@@ -13,11 +14,12 @@ die() {
     exit 1
 }
 
-# Installs the packages above that are missing; does not touch apt when nothing is.
+# install_packages [MORE...]: installs those of $roevo_packages, and of what else is named, that are missing; does not
+# touch apt when nothing is.
 install_packages() {
-    command -v dpkg-query >/dev/null || die "this set-up is for Debian 12 and 13; install by hand: $(echo $roevo_packages)"
+    command -v dpkg-query >/dev/null || die "this set-up is for Debian 12 and 13; install by hand: $(echo $roevo_packages "$@")"
     missing=
-    for package in $roevo_packages; do
+    for package in $roevo_packages "$@"; do
         case "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" in
         installed) ;;
         *) missing="$missing $package" ;;
