@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct FolderKind {
     std::function<std::vector<std::string>(const DatasetReader& from, const std::filesystem::path& to)> write;
     enum { kSame, kOtherDepth, kOther } frames;  ///< how its frames compare with those that it was made of
 };
+inline void PrintTo(const FolderKind& kind, std::ostream* out) {
+    *out << kind.name;
+}
 
 const std::vector<FolderKind>& folderKinds();
 
