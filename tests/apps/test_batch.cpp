@@ -49,7 +49,7 @@ class Batch : public testing::Test {
     }
     std::size_t rows() const {
         std::size_t count = 0;
-        for (const char* name : {"a", "b", "c", "d"})
+        for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"})
             count += fs::exists(runFolder(name, "roevo-tr") + "/run.json");
         return count;
     }
@@ -169,10 +169,12 @@ TEST_F(Batch, AMissingProgramIsAReasonAndMadeLater) {
 }
 
 TEST_F(Batch, KilledItGoesOn) {
-    for (const char* name : {"a", "b", "c", "d"}) clip(name, name[0] < 'c' ? 30 : 90);
+    const std::vector<std::string> names{"a", "b", "c", "d", "e", "f", "g", "h"};
+    for (const std::string& name : names) clip(name, name < "c" ? 30 : 90);
     const std::vector<std::string> all{"--input",   data(),     "--output", out(),
                                        "--methods", "roevo-tr", "--jobs",   "1"};
     for (const int signal : {SIGKILL, SIGINT}) {
+        const std::size_t before = rows();
         const pid_t child = fork();
         if (child == 0) {
             const std::string program = std::string(ROEVO_BIN_DIR) + "/" + kName;
@@ -183,9 +185,8 @@ TEST_F(Batch, KilledItGoesOn) {
             execv(program.c_str(), argv.data());
             _exit(127);
         }
-        // Snakemake has an order of its own
-        const std::size_t enough = signal == SIGKILL ? 1 : 2;
-        for (int i = 0; i < 6000 && rows() < enough; ++i) usleep(5'000);
+        // One more row: then it holds the folder. Snakemake has an order of its own
+        for (int i = 0; i < 6000 && rows() <= before; ++i) usleep(5'000);
         expectError(test::runProgram(kName, all), 1, kName, {"another roevo-batch", out()});
         kill(child, signal);
         int status = 0;
@@ -199,9 +200,10 @@ TEST_F(Batch, KilledItGoesOn) {
     }
     const auto result = test::runProgram(kName, all);
     ASSERT_EQ(result.exit_code, 0) << result.all();
-    EXPECT_EQ(rows(), 4u);
-    for (const char* name : {"a", "b", "c", "d"})
-        EXPECT_EQ(row(name, "roevo-tr").trajectory.size(), name[0] < 'c' ? 30u : 90u);
+    EXPECT_EQ(rows(), names.size());
+    for (const std::string& name : names)
+        EXPECT_EQ(row(name, "roevo-tr").trajectory.size(), name < "c" ? 30u : 90u)
+            << readFile(runFolder(name, "roevo-tr") + "/run.json");
 }
 
 TEST_F(Batch, WrongUsage) {
