@@ -1,11 +1,12 @@
 #include "roevo/options.h"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <sstream>
-#include <thread>
 
 #include "input/excerpt.h"
 
@@ -86,7 +87,10 @@ const char* toString(Mode mode) {
 }
 
 int threadCount(int threads) {
-    return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    if (threads > 0) return threads;
+    // Not std::thread::hardware_concurrency(): that counts what the process may not use, too
+    cpu_set_t allowed;
+    return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? std::max(1, CPU_COUNT(&allowed)) : 2;
 }
 
 std::string OptionField::toText() const {

@@ -1,5 +1,6 @@
 // Option table: ranges, texts, faults in words.
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <cmath>
 #include <limits>
@@ -237,6 +238,18 @@ TEST(Options, ThoseThatMustFitEachOtherAreNamedTogether) {
     depths.sensor.depth_limit = depths.sensor.min_depth;
     EXPECT_NE(checkOptions(depths).find("sensor.depth_limit"), std::string::npos) << checkOptions(depths);
     EXPECT_EQ(checkOptions(OdometryOptions()), "");
+}
+
+TEST(ThreadCount, IsOfTheProcessorsThatTheProcessMayUse) {
+    EXPECT_EQ(threadCount(3), 3);
+    cpu_set_t before, one;
+    ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
+    EXPECT_EQ(threadCount(0), CPU_COUNT(&before));
+    CPU_ZERO(&one);
+    CPU_SET(sched_getcpu(), &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    EXPECT_EQ(threadCount(0), 1);
+    sched_setaffinity(0, sizeof before, &before);
 }
 
 }  // namespace
