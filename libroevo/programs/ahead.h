@@ -35,8 +35,7 @@ class Ahead {
     /// @param finish   what is left to do to each; none: nothing. What either throws ends the items, too:
     ///                 next() throws it after the items before it
     /// @param threads  that work at a time, the caller's among them. On a single processor more would only
-    /// take
-    ///                 time from the work that is being timed
+    ///                 take time from the work that is being timed
     explicit Ahead(Make make, Finish finish = nullptr, int threads = processorCount())
         : make_(std::move(make)), finish_(std::move(finish)) {
         const int useful = finish_ ? 2 : 1;
