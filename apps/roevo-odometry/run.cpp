@@ -143,7 +143,7 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
         if (const std::string fault = depth_scale.faultOf(ahead.source); !fault.empty())
             throw std::runtime_error(settings.input + ": " + fault);
         if (settings.realtime || !ahead.source.fault.empty()) return;
-        ahead.prepared = odometry.prepareFrame(ahead.source.frame);
+        ahead.prepared = odometry.prepareFrame(std::move(ahead.source.frame));
         ahead.source.frame = RgbdFrame();
     };
     Ahead<FrameAhead> frames(decode, findEdges, threadCount(settings.options.threads));

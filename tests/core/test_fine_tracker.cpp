@@ -22,11 +22,13 @@ class FineTracking : public ::testing::Test {
     void SetUp() override {
         const PinholeCamera& camera = sequence_->camera;
         Frame first;
-        FrontEnd(camera, options_).process(sequence_->frames[0], first);
+        first.images = sequence_->frames[0];
+        FrontEnd(camera, options_).process(first);
         keyframe_.edges =
             liftEdges(first.edges, first.images.depth, camera, RowMotion(), options_.edges, options_.sensor);
         keyframe_.median_depth = static_cast<double>(keyframe_.edges.medianDepth());
-        FrontEnd(camera, options_).process(sequence_->frames[4], frame_);
+        frame_.images = sequence_->frames[4];
+        FrontEnd(camera, options_).process(frame_);
         truth_ = sequence_->truth[4].T_world_camera.inverse() * sequence_->truth[0].T_world_camera;
     }
     /// Tracked, and assessed at the pose that was found.

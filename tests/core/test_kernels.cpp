@@ -270,6 +270,16 @@ TEST(KernelTables, Avx2GivesTheSameBytesAsTheBaseline) {
         const Projected a = project(baseline(), m, p), b = project(*avx2(), m, p);
         EXPECT_TRUE(sameBytes(a.x, b.x) && sameBytes(a.y, b.y) && sameBytes(a.z, b.z));
         EXPECT_TRUE(sameBytes(a.u, b.u) && sameBytes(a.v, b.v));
+        Points moved[] = {p, p};
+        const std::vector<float> rows(p.x.rbegin(), p.x.rend());
+        for (int k = 0; k < 2; ++k)  // not in whole blocks
+            (k == 0 ? baseline() : *avx2())
+                .exchangeMotion({{0.1F, -0.2F, 0.3F}, {0.3F, 0.1F, -0.2F}, 0.7F},
+                                {{0.2F, 0.1F, -0.3F}, {-0.3F, 0.2F, 0.1F}, 0.2F}, rows.data(),
+                                500 + repeat % 8, moved[k].x.data(), moved[k].y.data(), moved[k].z.data());
+        EXPECT_TRUE(sameBytes(moved[0].x, moved[1].x) && sameBytes(moved[0].y, moved[1].y) &&
+                    sameBytes(moved[0].z, moved[1].z));
+        EXPECT_FALSE(sameBytes(moved[0].x, p.x));
         const PatchScene s = randomPatches(random, 500);
         EXPECT_TRUE(sameBytes(residuals(baseline(), s, 0.9F, 12), residuals(*avx2(), s, 0.9F, 12)));
         const Information info = randomInformation(random, 1000);

@@ -77,6 +77,23 @@ TEST(PreparedFrames, AllInOneThreadGivesTheSameBits) {
     expectSame(track(spoilt(), options), track(spoilt()));
 }
 
+TEST(PreparedFrames, ImagesThatAreKeptGiveTheSameBitsAndStayAsTheyAre) {
+    Odometry odometry(spoilt().camera, OdometryOptions(), spoilt().start());
+    TrackedRun run;
+    std::vector<cv::Mat> before;
+    for (std::size_t i = 0; i < spoilt().frames.size(); ++i) {
+        const RgbdFrame& frame = spoilt().frames[i];
+        before.push_back(frame.grey.clone());
+        // These are others' images, too: copies of other frames must not come into them
+        run.results.push_back(odometry.processFrame(i % 3 == 0 ? odometry.prepareFrame(frame)
+                                                               : odometry.prepareFrame(RgbdFrame(frame))));
+    }
+    run.trajectory = odometry.trajectory();
+    expectSame(run, track(spoilt()));
+    for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_EQ(cv::norm(before[i], spoilt().frames[i].grey, cv::NORM_INF), 0) << i;
+}
+
 TEST(PreparedFrames, TheTimeOfBothHalvesIsCounted) {
     Odometry odometry(spoilt().camera, OdometryOptions(), spoilt().start());
     const FrameResult result = odometry.processFrame(odometry.prepareFrame(spoilt().frames.front()));

@@ -74,6 +74,8 @@ class Odometry {
     /// prepared in time order and processed in the same order, each once; what comes out is the same to the
     /// bit. FrameResult::ms counts both halves.
     [[nodiscard]] PreparedFrame prepareFrame(const RgbdFrame& frame);
+    /// The same without a copy: keeps the images, which nobody may write to any more.
+    [[nodiscard]] PreparedFrame prepareFrame(RgbdFrame&& frame);
     /// @throws std::logic_error where there is nothing in it
     [[nodiscard]] FrameResult processFrame(PreparedFrame frame);
 

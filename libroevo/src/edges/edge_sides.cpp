@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace roevo {
 namespace {
@@ -38,15 +39,17 @@ void visit(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, double r
     const double slope = normal[other] / normal[main];
     const int steps = static_cast<int>(std::lround(reach * std::abs(normal[main])));
     const int centre = static_cast<int>(std::lround(pixel[main]));
-    for (int i = centre - steps; i <= centre + steps; ++i) {
+    const int size[2] = {depth.cols, depth.rows};
+    const auto row = static_cast<std::ptrdiff_t>(depth.step1());
+    const std::ptrdiff_t along = by_column ? 1 : row, across = by_column ? row : 1;
+    const auto* depths = depth.ptr<float>();
+    for (int i = std::max(0, centre - steps); i <= std::min(size[main] - 1, centre + steps); ++i) {
         const double j = pixel[other] + (i - pixel[main]) * slope;
-        const int below = static_cast<int>(std::floor(j));
-        for (const int k : {below, below + 1}) {
-            const int x = by_column ? i : k, y = by_column ? k : i;
-            if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
-            const double distance = normal.dot(Eigen::Vector2d(x, y) - pixel);
-            const float there = depth.at<float>(y, x);
-            if (std::abs(distance) >= clear && there > 0 && std::isfinite(there))
+        const int towards_zero = static_cast<int>(j), below = towards_zero - (towards_zero > j ? 1 : 0);
+        for (int k = std::max(0, below); k <= std::min(size[other] - 1, below + 1); ++k) {
+            const float there = depths[i * along + k * across];
+            const double distance = normal[main] * (i - pixel[main]) + normal[other] * (k - pixel[other]);
+            if (std::abs(distance) >= clear && there > 0 && there <= std::numeric_limits<float>::max())
                 take(distance, there, 1 - std::abs(j - k));
         }
     }

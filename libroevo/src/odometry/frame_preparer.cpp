@@ -46,15 +46,32 @@ Fault FramePreparer::faultOf(const RgbdFrame& images) {
 }
 
 PreparedFrame::Content FramePreparer::prepare(const RgbdFrame& images) {
+    return prepare(images, [&](RgbdFrame& own) {
+        if (keeps_) own = RgbdFrame();  // these buffers may be somebody else's, too
+        own.timestamp = images.timestamp;
+        images.grey.copyTo(own.grey);
+        images.depth.copyTo(own.depth);
+        images.colour.copyTo(own.colour);
+    });
+}
+
+PreparedFrame::Content FramePreparer::prepare(RgbdFrame&& images) {
+    keeps_ = true;
+    return prepare(images, [&](RgbdFrame& own) { own = std::move(images); });
+}
+
+template <typename Take>
+PreparedFrame::Content FramePreparer::prepare(const RgbdFrame& images, const Take& take) {
     const Stopwatch watch;
     PreparedFrame::Content out;
     out.timestamp = images.timestamp;
     out.fault = faultOf(images);
     if (out.fault) return out;
     last_timestamp_ = images.timestamp;
-    out.frame = take();
+    out.frame = spare();
     Frame& frame = *out.frame;
-    front_end_.process(images, frame);
+    take(frame.images);
+    front_end_.process(frame);
     const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
     if (frame.edges.size() * kPixelsPerPoint > pixels) {
         keepLongest(frame.edges, pixels / kPixelsPerPoint);
@@ -64,7 +81,7 @@ PreparedFrame::Content FramePreparer::prepare(const RgbdFrame& images) {
     return out;
 }
 
-std::unique_ptr<Frame> FramePreparer::take() {
+std::unique_ptr<Frame> FramePreparer::spare() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (spare_.empty()) return std::make_unique<Frame>();
     std::unique_ptr<Frame> frame = std::move(spare_.back());

@@ -33,19 +33,24 @@ class FramePreparer {
     FramePreparer(const PinholeCamera& camera, const OdometryOptions& options)
         : camera_(camera), front_end_(camera, options) {}
 
-    PreparedFrame::Content prepare(const RgbdFrame& images);
+    PreparedFrame::Content prepare(const RgbdFrame& images);  ///< copies them
+    PreparedFrame::Content prepare(RgbdFrame&& images);       ///< keeps them
 
     /// A frame that is no longer used: its buffers are. From any thread.
     void giveBack(std::unique_ptr<Frame> frame);
 
   private:
+    /// @param take  puts the images into a frame
+    template <typename Take>
+    PreparedFrame::Content prepare(const RgbdFrame& images, const Take& take);
     Fault faultOf(const RgbdFrame& images);
-    std::unique_ptr<Frame> take();
+    std::unique_ptr<Frame> spare();
 
     PinholeCamera camera_;
     FrontEnd front_end_;
     double last_timestamp_ = -std::numeric_limits<double>::infinity();  ///< of those without a fault
     LeapCheck leaps_;
+    bool keeps_ = false;  ///< images that others brought are in the frames
     std::mutex mutex_;
     std::vector<std::unique_ptr<Frame>> spare_;
 };

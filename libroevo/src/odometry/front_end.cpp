@@ -2,16 +2,12 @@
 
 namespace roevo {
 
-void FrontEnd::process(const RgbdFrame& images, Frame& out) {
-    out.images.timestamp = images.timestamp;
-    images.grey.copyTo(out.images.grey);
-    images.depth.copyTo(out.images.depth);
-    images.colour.copyTo(out.images.colour);
-    const cv::Mat& grey = undistorter_.apply(out.images.grey, out.ideal_grey);
-    extractor_.extract(grey, out.edges, out.mask, kFrameRate * (images.timestamp - last_timestamp_));
-    last_timestamp_ = images.timestamp;
-    out.grid.build(out.edges, grey.cols, grey.rows);
-    out.pyramid.build(grey, levels_);
+void FrontEnd::process(Frame& frame) {
+    const cv::Mat& grey = undistorter_.apply(frame.images.grey, frame.ideal_grey);
+    extractor_.extract(grey, frame.edges, frame.mask, kFrameRate * (frame.timestamp() - last_timestamp_));
+    last_timestamp_ = frame.timestamp();
+    frame.grid.build(frame.edges, grey.cols, grey.rows);
+    frame.pyramid.build(grey, levels_);
 }
 
 }  // namespace roevo

@@ -13,8 +13,8 @@ class FrontEnd {
     FrontEnd(const PinholeCamera& camera, const OdometryOptions& options)
         : undistorter_(camera), extractor_(options.edges), levels_(options.coarse.levels) {}
 
-    /// @param out  its buffers are used again
-    void process(const RgbdFrame& images, Frame& out);
+    /// @param frame  with its images; its other buffers are used again
+    void process(Frame& frame);
 
   private:
     Undistorter undistorter_;

@@ -51,6 +51,11 @@ PreparedFrame Odometry::prepareFrame(const RgbdFrame& images) {
     prepared.content_ = std::make_unique<PreparedFrame::Content>(impl_->preparer.prepare(images));
     return prepared;
 }
+PreparedFrame Odometry::prepareFrame(RgbdFrame&& images) {
+    PreparedFrame prepared;
+    prepared.content_ = std::make_unique<PreparedFrame::Content>(impl_->preparer.prepare(std::move(images)));
+    return prepared;
+}
 FrameResult Odometry::processFrame(PreparedFrame prepared) {
     if (!prepared.content_) throw std::logic_error("there is nothing in this prepared frame");
     const Stopwatch watch;

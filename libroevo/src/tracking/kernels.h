@@ -26,6 +26,11 @@ struct Projection {
     float last_row;  ///< height - 1, px: no row is later
 };
 
+/// How a camera moves while one row is read (m, rad; in its own frame), and the row that points refer to.
+struct RowSpeed {
+    float velocity[3], turn[3], reference_row;
+};
+
 /// Points moved into the camera and projected; u = v = -1e6 where z <= 1e-3 m.
 struct ProjectedPoints {
     float *x, *y, *z;  ///< m
@@ -139,6 +144,10 @@ struct Table {
     /// n is a multiple of kLanes.
     void (*project)(const Projection& motion, const float* x, const float* y, const float* z, std::size_t n,
                     const ProjectedPoints& out);
+    /// Moves points that `from` brought to its reference row to where `to` would have brought them; one that
+    /// would come to the camera stays. Any n, nothing padded.
+    void (*exchangeMotion)(const RowSpeed& from, const RowSpeed& to, const float* row, std::size_t n,
+                           float* x, float* y, float* z);
     /// Bilinear samples of the patches at (u, v), rotated so that the aligned frame's first axis is (axis_x,
     /// axis_y).
     void (*patches)(const ImageView& image, const Patch* patches, const float* u, const float* v,

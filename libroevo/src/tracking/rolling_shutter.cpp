@@ -19,41 +19,22 @@ RowMotion RowMotion::atPyramidLevel(int level) const {
 
 namespace {
 
-/// By how much a camera moves from one row to the next.
-struct PerRow {
-    explicit PerRow(const RowMotion& motion)
-        : velocity((motion.seconds_per_row * motion.velocity).cast<float>()),
-          turn((motion.seconds_per_row * motion.turn).cast<float>()),
-          reference(static_cast<float>(motion.reference_row)) {}
-    Eigen::Vector3f velocity, turn;
-    float reference;
-};
+kernels::RowSpeed speedOf(const RowMotion& motion) {
+    kernels::RowSpeed speed{};
+    for (int k = 0; k < 3; ++k) {
+        speed.velocity[k] = static_cast<float>(motion.seconds_per_row * motion.velocity[k]);
+        speed.turn[k] = static_cast<float>(motion.seconds_per_row * motion.turn[k]);
+    }
+    speed.reference_row = static_cast<float>(motion.reference_row);
+    return speed;
+}
 
 }  // namespace
 
 void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
                     std::size_t count, Points3& points) {
-    constexpr float kNearest = 0.05F;  // m
-    const PerRow old(from), now(to);
-    const float *row = rows.data(), old_reference = old.reference, now_reference = now.reference;
-    const float v0 = old.velocity.x(), v1 = old.velocity.y(), v2 = old.velocity.z();
-    const float w0 = old.turn.x(), w1 = old.turn.y(), w2 = old.turn.z();
-    const float V0 = now.velocity.x(), V1 = now.velocity.y(), V2 = now.velocity.z();
-    const float W0 = now.turn.x(), W1 = now.turn.y(), W2 = now.turn.z();
-    float* __restrict px = points.x.data(), * __restrict py = points.y.data(), * __restrict pz = points.z.data();
-    // In plain numbers, so that the compiler makes vectors of it
-    for (std::size_t i = 0; i < count; ++i) {
-        const float a = row[i] - old_reference, b = row[i] - now_reference;
-        const float t0 = b * W0 - a * w0, t1 = b * W1 - a * w1, t2 = b * W2 - a * w2;
-        const float x = px[i], y = py[i], z = pz[i];
-        const float moved_x = x + (b * V0 - a * v0) + (t1 * z - t2 * y);
-        const float moved_y = y + (b * V1 - a * v1) + (t2 * x - t0 * z);
-        const float moved_z = z + (b * V2 - a * v2) + (t0 * y - t1 * x);
-        const bool stays = !(moved_z > kNearest);
-        px[i] = stays ? x : moved_x;
-        py[i] = stays ? y : moved_y;
-        pz[i] = stays ? z : moved_z;
-    }
+    kernels::best().exchangeMotion(speedOf(from), speedOf(to), rows.data(), count, points.x.data(),
+                                   points.y.data(), points.z.data());
 }
 
 RowMotion RollingShutter::motion(const Pose& T_current_keyframe) const {

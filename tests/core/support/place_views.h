@@ -22,7 +22,8 @@ inline std::unique_ptr<PlaceView> makePlaceView(const PinholeCamera& camera, con
                                                 const Pose& T_world_camera, int id) {
     const OdometryOptions options;
     auto view = std::make_unique<PlaceView>();
-    FrontEnd(camera, options).process(images, view->frame);
+    view->frame.images = images;
+    FrontEnd(camera, options).process(view->frame);
     view->keyframe.id = id;
     view->keyframe.edges = liftEdges(view->frame.edges, view->frame.images.depth, camera, RowMotion(),
                                      options.edges, options.sensor);

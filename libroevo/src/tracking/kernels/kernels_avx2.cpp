@@ -8,9 +8,9 @@ namespace {
 }  // namespace
 
 const Table* avx2() {
-    static const Table table{"avx2",       project,       patches,     referencePatch, accumulate,
-                             weighPatches, sumPatches,    liftPatches, pick,           follow,
-                             blur,         edgeResiduals, weighEdges,  liftEdges,      liftReadout};
+    static const Table table{
+        "avx2",      project, exchangeMotion, patches, referencePatch, accumulate, weighPatches, sumPatches,
+        liftPatches, pick,    follow,         blur,    edgeResiduals,  weighEdges, liftEdges,    liftReadout};
     return __builtin_cpu_supports("avx2") ? &table : nullptr;
 }
 

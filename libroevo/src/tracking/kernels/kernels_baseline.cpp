@@ -6,9 +6,9 @@ namespace {
 }  // namespace
 
 const Table& baseline() {
-    static const Table table{"baseline",   project,       patches,     referencePatch, accumulate,
-                             weighPatches, sumPatches,    liftPatches, pick,           follow,
-                             blur,         edgeResiduals, weighEdges,  liftEdges,      liftReadout};
+    static const Table table{
+        "baseline",  project, exchangeMotion, patches, referencePatch, accumulate, weighPatches, sumPatches,
+        liftPatches, pick,    follow,         blur,    edgeResiduals,  weighEdges, liftEdges,    liftReadout};
     return table;
 }
 
