@@ -4,7 +4,7 @@ target_link_libraries(roevo_test_support PUBLIC opencv_core opencv_imgproc openc
 
 roevo_test(test_evaluation
   SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_nees.cpp apps/test_support.cpp apps/test_ahead.cpp
-          apps/test_run_report.cpp apps/test_eval_alignments.cpp ${PROJECT_SOURCE_DIR}/apps/roevo-odometry/run_report.cpp
+          apps/test_run_report.cpp apps/test_eval_alignments.cpp apps/test_trajectory_formats.cpp ${PROJECT_SOURCE_DIR}/apps/roevo-odometry/run_report.cpp
   LIBS roevo_internal roevo_evaluation roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_evaluation roevo-eval)
 
