@@ -7,6 +7,7 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/to_json.h"
 #include "evaluation/trajectory_io.h"
+#include "page.h"
 #include "programs/atomic_file.h"
 #include "programs/program.h"
 #include "programs/text.h"
@@ -35,7 +36,7 @@ constexpr struct {
                    {"none", "no alignment", Alignment::kNone}};
 
 struct Settings {
-    std::string reference, alignment = "se3", json, table, format, times;
+    std::string reference, alignment = "se3", json, table, plot, format, times;
     std::vector<std::string> estimates;
     double max_dt = kDefaultMaxDt, offset = 0;
 };
@@ -65,8 +66,9 @@ JudgedEstimate judge(const std::vector<StampedPose>& reference, const std::strin
     auto poses = readTrajectory(named.file, trajectoryFormat(settings.format), times);
     for (StampedPose& pose : poses) pose.timestamp += settings.offset;
     try {
-        return {named.name.empty() ? named.file : named.name, named.file, poses.size(),
-                evaluate(reference, poses, settings.max_dt, alignmentOf(settings).alignment)};
+        const Evaluation e = evaluate(reference, poses, settings.max_dt, alignmentOf(settings).alignment);
+        for (StampedPose& pose : poses) pose.T_world_camera.translation() *= e.scale;
+        return {named.name.empty() ? named.file : named.name, named.file, poses.size(), e, poses};
     } catch (const std::runtime_error& e) {
         if (settings.estimates.size() == 1) throw;
         throw std::runtime_error(named.file + ": " + e.what());
@@ -121,14 +123,20 @@ int run(int argc, char** argv) {
     app.add_option("--json", settings.json, "Write all figures there too (m, deg)");
     app.add_option("--table", settings.table,
                    "Write a table there too, one row per estimate: FILE.csv or FILE.tex");
+    app.add_option(
+        "--plot", settings.plot,
+        "Write a page for a browser there too, FILE.html: the table, trajectories, errors over time, "
+        "cumulative errors");
     app.footer(
         "Example:\n  roevo-eval --reference groundtruth.txt --estimate out/trajectory.txt\n"
         "  roevo-eval --reference groundtruth.txt --estimate ours=out/trajectory.txt theirs=other.txt "
-        "--table errors.tex");
+        "--table errors.tex --plot errors.html");
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
     const std::string kind = std::filesystem::path(settings.table).extension().string();
     if (!settings.table.empty() && kind != ".csv" && kind != ".tex")
         throw UsageError("--table: '" + settings.table + "' must end in .csv or .tex");
+    if (!settings.plot.empty() && std::filesystem::path(settings.plot).extension() != ".html")
+        throw UsageError("--plot: '" + settings.plot + "' must end in .html");
 
     RowTimes times{{}, settings.reference};
     if (!settings.times.empty()) times = readRowTimes(settings.times);
@@ -137,6 +145,10 @@ int run(int argc, char** argv) {
     std::vector<JudgedEstimate> estimates;
     for (const std::string& argument : settings.estimates)
         estimates.push_back(judge(reference, argument, times, settings));
+    std::string page;  // before all else, since it may fail
+    if (!settings.plot.empty())
+        page =
+            htmlPage(settings.reference, reference, estimates, alignmentOf(settings).text, settings.max_dt);
     if (estimates.size() == 1)
         print(estimates.front(), reference.size(), settings);
     else
@@ -146,6 +158,7 @@ int run(int argc, char** argv) {
     if (!settings.table.empty())
         writeTextAtomically(settings.table,
                             kind == ".csv" ? csvTable(estimates, settings.alignment) : latexTable(estimates));
+    if (!page.empty()) writeTextAtomically(settings.plot, page);
     return 0;
 }
 
