@@ -37,15 +37,15 @@ std::string htmlPage(const std::string& reference_file, const std::vector<Stampe
     Table table = pageTable(estimates);
     table.protocol = "Poses with one of the reference within " + plainNumber(max_dt) + " s; ATE after " +
                      alignment + "; RPE over 1 s.";
-    return pageHead("Errors of trajectories") +
-           "<header>\n<h1>Errors of trajectories</h1>\n<p class=\"facts\">" +
-           counted(estimates.size(), "estimate") + " · reference <code>" + breakable(reference_file) +
-           "</code>, " + counted(reference.size(), "pose") + ", " +
-           shownNumber(reference.back().timestamp - reference.front().timestamp, 1) + " s, path of " +
-           shownNumber(pathLength(reference), 2) + " m</p>\n</header>\n<main>\n" +
-           setTable(table, "errors", false) +
-           trajectoryBlock(results, legend, "Trajectories, " + alignment) +
-           errorBlocks(results, legend, alignment) + "</main>\n</body>\n</html>\n";
+    std::string html = pageHead("Errors of trajectories") + "<header>\n<h1>Errors of trajectories</h1>\n";
+    html += "<p class=\"facts\">" + counted(estimates.size(), "estimate") + " · reference <code>" +
+            breakable(reference_file) + "</code>, " + counted(reference.size(), "pose") + ", " +
+            shownNumber(reference.back().timestamp - reference.front().timestamp, 1) + " s, path of " +
+            shownNumber(pathLength(reference), 2) + " m</p>\n</header>\n<main>\n" +
+            setTable(table, "errors", false);
+    html += trajectoryBlock(results, legend, "Trajectories, " + alignment);
+    html += errorBlocks(results, legend, alignment);
+    return html + "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace roevo

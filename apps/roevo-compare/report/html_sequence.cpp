@@ -92,8 +92,8 @@ std::string errorBlocks(const SequenceResults& results, const Legend& legend, co
     const auto set = [&](const std::string& title, const Figure& figure) {
         return block(title, figure.svg.empty() ? "" : lineLegend(results, legend, false), setFigure(figure));
     };
-    return set("Position error over time, " + alignment, errorFigure(results, legend)) +
-           set("Cumulative position error", cumulativeErrorFigure(results, legend));
+    const std::string over_time = set("Position error over time, " + alignment, errorFigure(results, legend));
+    return over_time + set("Cumulative position error", cumulativeErrorFigure(results, legend));
 }
 
 SequenceWriter::SequenceWriter(const Legend& legend, std::string folder, bool with_table)
