@@ -65,10 +65,10 @@ std::vector<MethodInfo> givenTrajectories(const std::vector<std::string>& argume
     for (const std::string& argument : arguments) {
         const NamedFile named = splitNamedFile(argument);
         if (const std::string fault = faultOf(named.name); !fault.empty())
-            throw UsageError("--trajectory " + argument + ": " + fault);
+            throw UsageError("--trajectory " + cleanText(argument) + ": " + fault);
         if (std::any_of(given.begin(), given.end(),
                         [&](const MethodInfo& m) { return m.name == named.name; }))
-            throw UsageError("--trajectory " + argument + ": that name is there twice");
+            throw UsageError("--trajectory " + cleanText(argument) + ": that name is there twice");
         MethodInfo info;
         info.name = info.label = named.name;
         info.note = "Poses that another program made, from " + named.file +

@@ -166,9 +166,9 @@ void setTimes(std::vector<StampedPose>& poses, const RowTimes& times, const Rows
               const std::string& path) {
     if (times.stamps.empty()) {
         const bool other = !times.source.empty() && times.source != path;
-        throw std::runtime_error(path + ": a KITTI file has no times" +
-                                 (other ? ", and neither has " + times.source : "") +
-                                 "; give a time for each of its rows by --times FILE of roevo-eval");
+        throw std::runtime_error(
+            path + ": a KITTI file has no times" + (other ? ", and neither has " + times.source : "") +
+            "; give one for each of its rows by roevo-eval --times FILE, or take another format");
     }
     if (poses.size() != times.stamps.size())
         at_end.fail("the last of " + std::to_string(poses.size()) +
