@@ -70,7 +70,6 @@ JudgedEstimate judge(const std::vector<StampedPose>& reference, const std::strin
         for (StampedPose& pose : poses) pose.T_world_camera.translation() *= e.scale;
         return {named.name.empty() ? named.file : named.name, named.file, poses.size(), e, poses};
     } catch (const std::runtime_error& e) {
-        if (settings.estimates.size() == 1) throw;
         throw std::runtime_error(named.file + ": " + e.what());
     }
 }
