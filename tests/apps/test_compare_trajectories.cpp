@@ -47,9 +47,12 @@ TEST(GivenTrajectory, FramesHaveThePoseOfTheirTimeAndEachPoseIsOfOneFrame) {
     EXPECT_NE(readFile(folder / "frames.csv").find("1.200000,0,no pose within 0.02 s"), std::string::npos);
 }
 
-TEST(GivenTrajectory, FewerPosesThanFramesAreNotUsedTwice) {
+TEST(GivenTrajectory, APoseBetweenTwoFramesIsOfOneOfThem) {
     const test::TemporaryFolder folder;
-    const MethodRun run = runGiven({1.1}, 4, folder.path().string());
+    test::FakeSource source(3);
+    source.frames[1].timestamp = source.frames[1].frame.timestamp = 1.015;
+    GivenTrajectory given("file", posesAt({1.01}));
+    const MethodRun run = runMethod(given, {}, source, 0, folder.path().string());
     EXPECT_EQ(run.tracked, 1u);
     EXPECT_EQ(run.trajectory.size(), 1u);
 }
