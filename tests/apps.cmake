@@ -4,7 +4,8 @@ target_link_libraries(roevo_test_support PUBLIC opencv_core opencv_imgproc openc
 
 roevo_test(test_evaluation
   SOURCES apps/test_trajectory_io.cpp apps/test_evaluation.cpp apps/test_nees.cpp apps/test_support.cpp apps/test_ahead.cpp
-          apps/test_run_report.cpp apps/test_eval_alignments.cpp ${PROJECT_SOURCE_DIR}/apps/roevo-odometry/run_report.cpp
+          apps/test_run_report.cpp apps/test_eval_alignments.cpp apps/test_trajectory_formats.cpp apps/test_eval_page.cpp
+          ${PROJECT_SOURCE_DIR}/apps/roevo-odometry/run_report.cpp
   LIBS roevo_internal roevo_evaluation roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_evaluation roevo-eval)
 
@@ -52,7 +53,7 @@ target_include_directories(test_study_ablation PRIVATE ${CMAKE_CURRENT_SOURCE_DI
 roevo_test(test_compare
   SOURCES apps/test_method_run.cpp apps/test_rows.cpp apps/test_process.cpp apps/test_supervised_run.cpp
           apps/test_compare_sequences.cpp apps/test_compare_program.cpp apps/test_compare_terminal.cpp
-          apps/test_compare_ba_first.cpp
+          apps/test_compare_ba_first.cpp apps/test_compare_trajectories.cpp
   LIBS roevo_compare roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog rawlog-simulate)
 
@@ -75,7 +76,7 @@ target_include_directories(test_compare_baselines PRIVATE ${CMAKE_CURRENT_SOURCE
 
 roevo_test(test_compare_report
   SOURCES apps/test_compare_tables.cpp apps/test_compare_report.cpp apps/test_compare_many.cpp
-          apps/test_compare_numpy.cpp
+          apps/test_compare_numpy.cpp apps/test_compare_plots.cpp
   LIBS roevo_report roevo_evaluation roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_compare_report roevo-compare roevo-odometry roevo-render)
 

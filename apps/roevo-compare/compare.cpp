@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "comparison_notes.h"
+#include "given_trajectory.h"
 #include "machine_info.h"
 #include "programs/interrupt.h"
 #include "programs/output_folder.h"
@@ -64,11 +65,11 @@ std::vector<SequenceComparison> openAll(const CompareSettings& settings) {
 }
 
 std::vector<std::string> childCommand(const CompareSettings& settings, const SequenceInput& sequence,
-                                      const std::string& method, const std::string& folder) {
+                                      const MethodInfo& method, const std::string& folder) {
     const std::string config = (fs::path(folder) / "config_used.ini").string();
     saveConfigFile(config, settings.options);
     // Not the path of this program: it may be another one by now, had it been built anew
-    std::vector<std::string> command{"/proc/self/exe", "--run-method", method};
+    std::vector<std::string> command{"/proc/self/exe", "--run-method", method.name};
     const auto add = [&](const std::string& option, const std::string& value) {
         command.insert(command.end(), {option, value});
     };
@@ -76,6 +77,7 @@ std::vector<std::string> childCommand(const CompareSettings& settings, const Seq
     add("--input", sequence.input);
     add("--name", sequence.name);
     add("--config", config);
+    if (!method.trajectory.empty()) add("--trajectory", method.name + "=" + method.trajectory);
     if (sequence.skip > 0) add("--skip", std::to_string(sequence.skip));
     if (sequence.first > 0) add("--first", std::to_string(sequence.first));
     if (settings.memory_mb > 0) add("--memory", std::to_string(settings.memory_mb));
@@ -105,8 +107,11 @@ SequenceComparison skippedRow(const RunTask& task) {
 void tell(const SequenceComparison& row, double seconds) {
     const MethodRun& run = row.runs[0];
     char what[96];
-    std::snprintf(what, sizeof what, "%zu frames, %.1f ms per frame (median), ", run.frames,
-                  run.total.median);
+    if (run.trajectory_file.empty())
+        std::snprintf(what, sizeof what, "%zu frames, %.1f ms per frame (median), ", run.frames,
+                      run.total.median);
+    else
+        std::snprintf(what, sizeof what, "%zu of %zu frames have a pose, ", run.tracked, run.frames);
     std::fprintf(stderr, "%s, %s: %s\n", row.name.c_str(), run.method.c_str(),
                  (run.failure.empty() ? what + durationText(seconds) : "FAILED: " + run.failure).c_str());
     std::fflush(stderr);
@@ -119,7 +124,7 @@ SequenceComparison makeRun(const CompareSettings& settings, const SequenceInput&
     if (!method.unavailable.empty()) return skippedRow(task);
     const auto start = std::chrono::steady_clock::now();
     const auto command = [&](const std::string& partial) {
-        return childCommand(settings, sequence, method.name, partial);
+        return childCommand(settings, sequence, method, partial);
     };
     SequenceComparison row;
     {
@@ -162,6 +167,10 @@ ComparisonReport writeReport(std::vector<SequenceComparison> sequences, const st
 ComparisonReport compare(const CompareSettings& settings) {
     const InterruptGuard guard;
     std::vector<SequenceComparison> sequences = openAll(settings);
+    for (const MethodInfo& method : settings.methods)  // before any run: the file may be a wrong one
+        for (const SequenceComparison& sequence : sequences)
+            if (!method.trajectory.empty())
+                readGivenTrajectory(method.trajectory, sequence.reference, sequence.ground_truth);
     prepareOutputFolder(settings.output);
     const FolderLock lock(settings.output);
     removeHalfMade(settings.output);

@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "compare.h"
+#include "evaluation/trajectory_io.h"
+#include "given_trajectory.h"
 #include "machine_info.h"
 #include "programs/option_arguments.h"
 #include "programs/program.h"
@@ -23,6 +25,7 @@ constexpr char kFooter[] =
     "Examples:\n"
     "  roevo-compare --input office.rawlog --output comparison\n"
     "  roevo-compare --input rgbd_dataset_freiburg1_xyz --methods roevo-ba,roevo-tr --output comparison\n"
+    "  roevo-compare --input office --trajectory ORB-SLAM3=orb.txt RTAB-Map=rtab.txt --output comparison\n"
     "  roevo-compare --report batch/runs --baseline last_week/runs --output report\n"
     "Many recordings at once, on all cores or a cluster: roevo-batch.\n"
     "Written into the output folder: table.csv, table.md, report.html, config_used.ini, and in\n"
@@ -30,7 +33,7 @@ constexpr char kFooter[] =
     "frames.csv, map.3Dscene for methods with a map, and its row, run.json.";
 
 struct Arguments {
-    std::vector<std::string> inputs, methods, sets, report, baseline;
+    std::vector<std::string> inputs, methods, sets, report, baseline, trajectories;
     std::string ground_truth, output, config, name, note, variant, key, command;
     InputChoice choice;
     std::size_t first = 0, skip = 0;
@@ -45,6 +48,10 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--ground-truth", a.ground_truth,
                    "TUM trajectory to compare with, for a single --input (default: what lies beside each)");
     app.add_option("--methods", a.methods, "Names, separated by commas (default: all)")->delimiter(',');
+    app.add_option(
+        "--trajectory", a.trajectories,
+        "NAME=FILE: poses that other programs made of a single --input, to stand beside the methods, "
+        "without times; TUM, EuRoC or KITTI (with a row for each of the ground truth's)");
     app.add_flag("--list-methods", a.list_methods, "Say what methods there are and end");
     app.add_option("--output", a.output, "Folder for the results; created when missing");
     app.add_option("--config", a.config, "Options of ROEVO (.ini), see config_ini/roevo.ini");
@@ -108,10 +115,6 @@ std::vector<MethodInfo> chosenMethods(const std::vector<std::string>& names) {
     return chosen;
 }
 
-bool isNameOfAFolder(const std::string& name) {
-    return name.empty() || (name[0] != '.' && name.find('/') == std::string::npos);
-}
-
 void checkUsage(const Arguments& a) {
     if (a.inputs.empty() && a.report.empty()) throw UsageError("--input or --report is required");
     if (!a.inputs.empty() && !a.report.empty()) throw UsageError("--input and --report exclude each other");
@@ -120,6 +123,7 @@ void checkUsage(const Arguments& a) {
     const std::pair<const char*, bool> of_one[] = {{"--ground-truth", !a.ground_truth.empty()},
                                                    {"--name", !a.name.empty()},
                                                    {"--note", !a.note.empty()},
+                                                   {"--trajectory", !a.trajectories.empty()},
                                                    {"--paper-ate", a.paper_ate.has_value()}};
     for (const auto& [option, is_given] : of_one)
         if (is_given && a.inputs.size() != 1)
@@ -189,6 +193,7 @@ int runAsChild(const Arguments& a) {
             "and --run-folder; use --methods");
     ChildSettings child;
     child.method = a.run_method;
+    if (!a.trajectories.empty()) child.trajectory = splitNamedFile(a.trajectories.front()).file;
     child.folder = a.run_folder;
     child.sequence = inputSequences(a).front();
     child.memory_mb = a.memory;
@@ -234,6 +239,7 @@ int run(int argc, char** argv) {
             method.name += kVariantMark + a.variant;
             method.label += " (" + a.variant + ")";
         }
+    for (MethodInfo& given : givenTrajectories(a.trajectories)) settings.methods.push_back(std::move(given));
     settings.sequences = inputSequences(a);
     settings.timeout_s = a.timeout;
     settings.memory_mb = a.memory;

@@ -13,11 +13,12 @@ namespace roevo {
 
 /// What a table has to say of a method.
 struct MethodInfo {
-    std::string name;         ///< as on the command line: "roevo-ba", "difodo-480", …
-    std::string label;        ///< as in tables: "ROEVO TR+BA", "DIFODO 480x640", …
-    std::string note;         ///< one sentence: what it is, and what is fair or weak about the comparison
-    std::string unavailable;  ///< why this build cannot run it (a library lacks it); empty when it can
-    bool ours = false;        ///< one of ROEVO's own modes
+    std::string name;          ///< as on the command line: "roevo-ba", "difodo-480", …
+    std::string label;         ///< as in tables: "ROEVO TR+BA", "DIFODO 480x640", …
+    std::string note;          ///< one sentence: what it is, and what is fair or weak about the comparison
+    std::string unavailable;   ///< why this build cannot run it (a library lacks it); empty when it can
+    bool ours = false;         ///< one of ROEVO's own modes
+    std::string trajectory{};  ///< file with poses that another program made: not to be run; else empty
 };
 
 /// What a method makes of one frame.

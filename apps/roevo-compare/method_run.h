@@ -34,7 +34,8 @@ struct MethodRun {
     std::vector<std::string> warnings;  ///< what is odd about the recording or the result, one line each
     std::string not_pinned;             ///< why its process was not bound to one core; empty when it was
     std::string key;                    ///< by which roevo-batch tells what it was made of; else empty
-    std::size_t poses = 0;              ///< of the trajectory, where it is known but not at hand
+    std::string trajectory_file;  ///< with poses that another program made: no times are known; else empty
+    std::size_t poses = 0;        ///< of the trajectory, where it is known but not at hand
 
     bool ok() const { return skipped.empty() && failure.empty(); }
 };

@@ -74,6 +74,7 @@ Json toJson(const MethodRun& run) {
             {"memory_peak_mb", finite(run.memory_peak_mb, "the memory")},
             {"scene", run.scene},
             {"not_pinned", run.not_pinned},
+            {"trajectory_file", run.trajectory_file},
             {"key", run.key}};
 }
 
@@ -87,6 +88,7 @@ MethodRun toRun(const Json& json) {
     run.failure = json.value("failure", "");
     run.not_pinned = json.value("not_pinned", "");
     run.key = json.value("key", "");
+    run.trajectory_file = json.value("trajectory_file", "");
     run.frames = json.value("frames", std::size_t{0});
     run.warnings = json.value("warnings", std::vector<std::string>());
     if (!run.ok()) return run;

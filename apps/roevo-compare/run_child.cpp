@@ -9,6 +9,7 @@
 #include <new>
 #include <opencv2/core/utility.hpp>
 
+#include "given_trajectory.h"
 #include "programs/program.h"
 #include "recordings/frame_source.h"
 #include "rows.h"
@@ -27,11 +28,23 @@ void limitMemory(double mb) {
         throw std::runtime_error(std::string("cannot limit the memory: ") + std::strerror(errno));
 }
 
-MethodRun makeRun(const ChildSettings& settings, const RunProgress& progress) {
+MethodRun runGiven(const ChildSettings& settings, const SequenceComparison& sequence, FrameSource& source,
+                   const RunProgress& progress) {
+    GivenTrajectory given(settings.trajectory, readGivenTrajectory(settings.trajectory, sequence.reference,
+                                                                   sequence.ground_truth));
+    MethodRun run = runMethod(given, {}, source, settings.sequence.first, settings.folder, progress);
+    run.trajectory_file = settings.trajectory;
+    forgetCosts(run);
+    return run;
+}
+
+MethodRun makeRun(const ChildSettings& settings, const SequenceComparison& sequence,
+                  const RunProgress& progress) {
     const std::string name = settings.method.substr(0, settings.method.find(kVariantMark));
     const auto source = openSource(settings.sequence.input, settings.sequence.choice);
-    const auto method = makeMethod(name, source->camera(), settings.options);
     skipFrames(*source, settings.sequence.skip, settings.sequence.input);
+    if (!settings.trajectory.empty()) return runGiven(settings, sequence, *source, progress);
+    const auto method = makeMethod(name, source->camera(), settings.options);
     return runMethod(*method, {}, *source, settings.sequence.first, settings.folder, progress);
 }
 
@@ -65,7 +78,7 @@ void runChild(const ChildSettings& settings) {
         if (!row.failure.empty()) throw std::runtime_error(row.failure);
         const ProgressFile file(settings.folder);
         const auto tell = [&](std::size_t frames, double share) { file.write({frames, share}); };
-        row.runs = {makeRun(settings, tell)};
+        row.runs = {makeRun(settings, row, tell)};
         MethodRun& run = row.runs[0];
         run.method = settings.method;
         run.poses = run.trajectory.size();

@@ -9,7 +9,8 @@ namespace roevo {
 
 /// One method's run over one recording, in the process that was started for it.
 struct ChildSettings {
-    std::string method;  ///< with its variant
+    std::string method;      ///< with its variant
+    std::string trajectory;  ///< file of another program's poses, in place of the method's; else empty
     std::string folder;
     SequenceInput sequence;
     OdometryOptions options;

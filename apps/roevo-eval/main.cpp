@@ -7,6 +7,7 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/to_json.h"
 #include "evaluation/trajectory_io.h"
+#include "page.h"
 #include "programs/atomic_file.h"
 #include "programs/program.h"
 #include "programs/text.h"
@@ -35,7 +36,7 @@ constexpr struct {
                    {"none", "no alignment", Alignment::kNone}};
 
 struct Settings {
-    std::string reference, alignment = "se3", json, table;
+    std::string reference, alignment = "se3", json, table, plot, format, times;
     std::vector<std::string> estimates;
     double max_dt = kDefaultMaxDt, offset = 0;
 };
@@ -60,15 +61,15 @@ void print(const JudgedEstimate& estimate, std::size_t num_reference, const Sett
 }
 
 JudgedEstimate judge(const std::vector<StampedPose>& reference, const std::string& argument,
-                     const Settings& settings) {
+                     const RowTimes& times, const Settings& settings) {
     const NamedFile named = splitNamedFile(argument);
-    auto poses = readTumTrajectory(named.file);
+    auto poses = readTrajectory(named.file, trajectoryFormat(settings.format), times);
     for (StampedPose& pose : poses) pose.timestamp += settings.offset;
     try {
-        return {named.name.empty() ? named.file : named.name, named.file, poses.size(),
-                evaluate(reference, poses, settings.max_dt, alignmentOf(settings).alignment)};
+        const Evaluation e = evaluate(reference, poses, settings.max_dt, alignmentOf(settings).alignment);
+        for (StampedPose& pose : poses) pose.T_world_camera.translation() *= e.scale;
+        return {named.name.empty() ? named.file : named.name, named.file, poses.size(), e, poses};
     } catch (const std::runtime_error& e) {
-        if (settings.estimates.size() == 1) throw;
         throw std::runtime_error(named.file + ": " + e.what());
     }
 }
@@ -97,15 +98,23 @@ int run(int argc, char** argv) {
     Settings settings;
     std::vector<std::string> alignments;
     for (const auto& each : kAlignments) alignments.emplace_back(each.name);
-    CLI::App app("Absolute (ATE) and relative (RPE) trajectory error of TUM trajectory files.", kName);
+    CLI::App app("Absolute (ATE) and relative (RPE) error of trajectories: TUM, KITTI and EuRoC files.",
+                 kName);
     app.add_option("--reference", settings.reference, "Ground truth")->required();
     app.add_option("--estimate", settings.estimates, "Trajectories to judge, [NAME=]FILE each")->required();
-    app.add_option("--align", settings.alignment,
-                   "How the ATE brings an estimate onto the reference: se3 (rotation, translation), sim3 "
-                   "(and scale), "
-                   "yaw (turn about z, translation), none")
+    app.add_option(
+           "--align", settings.alignment,
+           "How the ATE brings an estimate onto the reference: se3 (rotation, translation), sim3 (and "
+           "scale), yaw (turn about the reference's z, translation), none")
         ->capture_default_str()
         ->check(CLI::IsMember(alignments));
+    app.add_option(
+           "--format", settings.format,
+           "Of the estimates: tum, kitti or euroc (default: told by the first row, as the reference's is)")
+        ->check(CLI::IsMember(trajectoryFormatNames()));
+    app.add_option("--times", settings.times,
+                   "File whose lines begin with the time of each row of a KITTI file, s (default: the "
+                   "reference)");
     app.add_option("--max-dt", settings.max_dt, "Largest difference of paired stamps, s")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 1.0));
@@ -113,19 +122,32 @@ int run(int argc, char** argv) {
     app.add_option("--json", settings.json, "Write all figures there too (m, deg)");
     app.add_option("--table", settings.table,
                    "Write a table there too, one row per estimate: FILE.csv or FILE.tex");
+    app.add_option(
+        "--plot", settings.plot,
+        "Write a page for a browser there too, FILE.html: the table, trajectories, errors over time, "
+        "cumulative errors");
     app.footer(
         "Example:\n  roevo-eval --reference groundtruth.txt --estimate out/trajectory.txt\n"
         "  roevo-eval --reference groundtruth.txt --estimate ours=out/trajectory.txt theirs=other.txt "
-        "--table errors.tex");
+        "--table errors.tex --plot errors.html");
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
     const std::string kind = std::filesystem::path(settings.table).extension().string();
     if (!settings.table.empty() && kind != ".csv" && kind != ".tex")
         throw UsageError("--table: '" + settings.table + "' must end in .csv or .tex");
+    if (!settings.plot.empty() && std::filesystem::path(settings.plot).extension() != ".html")
+        throw UsageError("--plot: '" + settings.plot + "' must end in .html");
 
-    const auto reference = readTumTrajectory(settings.reference);
+    RowTimes times{{}, settings.reference};
+    if (!settings.times.empty()) times = readRowTimes(settings.times);
+    const auto reference = readTrajectory(settings.reference, {}, times);
+    if (settings.times.empty()) times = readRowTimes(settings.reference);
     std::vector<JudgedEstimate> estimates;
     for (const std::string& argument : settings.estimates)
-        estimates.push_back(judge(reference, argument, settings));
+        estimates.push_back(judge(reference, argument, times, settings));
+    std::string page;  // before all else, since it may fail
+    if (!settings.plot.empty())
+        page =
+            htmlPage(settings.reference, reference, estimates, alignmentOf(settings).text, settings.max_dt);
     if (estimates.size() == 1)
         print(estimates.front(), reference.size(), settings);
     else
@@ -135,6 +157,7 @@ int run(int argc, char** argv) {
     if (!settings.table.empty())
         writeTextAtomically(settings.table,
                             kind == ".csv" ? csvTable(estimates, settings.alignment) : latexTable(estimates));
+    if (!page.empty()) writeTextAtomically(settings.plot, page);
     return 0;
 }
 

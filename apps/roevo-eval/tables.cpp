@@ -42,6 +42,21 @@ std::optional<double> shownValue(const Column& column, const Evaluation& evaluat
     return column.scale * errors.*column.figure;
 }
 
+std::string shownFigure(const Column& column, const Evaluation& evaluation) {
+    const auto value = shownValue(column, evaluation);
+    return value ? shownNumber(value, column.decimals) : "";
+}
+
+// Of several estimates. Those that look alike are alike.
+bool isBest(const Column& column, const JudgedEstimate& estimate, const std::vector<JudgedEstimate>& all) {
+    const auto value = shownValue(column, estimate.evaluation);
+    return all.size() > 1 && value && std::none_of(all.begin(), all.end(), [&](const JudgedEstimate& other) {
+               const auto theirs = shownValue(column, other.evaluation);
+               return theirs && *theirs < *value &&
+                      shownFigure(column, other.evaluation) != shownFigure(column, estimate.evaluation);
+           });
+}
+
 std::string latexText(const std::string& text) {
     std::string escaped;
     for (const char c : cleanText(text)) {
@@ -82,9 +97,8 @@ std::string terminalTable(const std::vector<JudgedEstimate>& estimates) {
         std::snprintf(cell, sizeof cell, " %9zu %9.4f", e.evaluation.pairs.size(), e.evaluation.scale);
         rows += name + std::string(width - countCharacters(name), ' ') + cell;
         for (const Column& column : kColumns) {
-            const auto value = shownValue(column, e.evaluation);
-            std::snprintf(cell, sizeof cell, " %9s",
-                          value ? shownNumber(value, column.decimals).c_str() : "n/a");
+            const std::string shown = shownFigure(column, e.evaluation);
+            std::snprintf(cell, sizeof cell, " %9s", shown.empty() ? "n/a" : shown.c_str());
             rows += cell;
         }
         rows += '\n';
@@ -116,6 +130,24 @@ std::string csvTable(const std::vector<JudgedEstimate>& estimates, const std::st
     return csv;
 }
 
+Table pageTable(const std::vector<JudgedEstimate>& estimates) {
+    Table table{"", "Estimate", {"poses", "scale"}, {}, {}};
+    for (const Column& column : kColumns)
+        table.columns.push_back(std::string(column.title) + " [" + column.unit + "]");
+    for (const JudgedEstimate& e : estimates) {
+        table.rows.push_back({e.name, false, false, {}, {}});
+        auto& cells = table.rows.back().cells;
+        cells.push_back({std::to_string(e.evaluation.pairs.size()), false, false, {}});
+        cells.push_back({shownNumber(e.evaluation.scale, 4), false, false, {}});
+        for (const Column& column : kColumns) {
+            const std::string shown = shownFigure(column, e.evaluation);
+            cells.push_back({shown.empty() ? kDash : shown, isBest(column, e, estimates), false,
+                             shown.empty() ? "the common time is too short" : ""});
+        }
+    }
+    return table;
+}
+
 std::string latexTable(const std::vector<JudgedEstimate>& estimates) {
     std::string columns = "l", head = "method", rows;
     for (const Column& column : kColumns) {
@@ -125,15 +157,10 @@ std::string latexTable(const std::vector<JudgedEstimate>& estimates) {
     for (const JudgedEstimate& e : estimates) {
         rows += latexText(e.name);
         for (const Column& column : kColumns) {
-            const auto value = shownValue(column, e.evaluation);
-            // Those that look alike are alike
-            const std::string shown = value ? shownNumber(value, column.decimals) : "--";
-            const bool is_best =
-                value && std::none_of(estimates.begin(), estimates.end(), [&](const auto& other) {
-                    const auto theirs = shownValue(column, other.evaluation);
-                    return theirs && *theirs < *value && shownNumber(theirs, column.decimals) != shown;
-                });
-            rows += " & " + (is_best && estimates.size() > 1 ? "\\textbf{" + shown + "}" : shown);
+            const std::string shown = shownFigure(column, e.evaluation);
+            rows += " & " + (isBest(column, e, estimates) ? "\\textbf{" + shown + "}"
+                             : shown.empty()              ? "--"
+                                                          : shown);
         }
         rows += " \\\\\n";
     }

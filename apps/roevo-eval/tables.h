@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "evaluation/evaluate.h"
+#include "roevo-compare/report/tables.h"
 
 namespace roevo {
 
@@ -11,6 +12,7 @@ struct JudgedEstimate {
     std::string name, file;
     std::size_t poses = 0;
     Evaluation evaluation;
+    std::vector<StampedPose> trajectory;  ///< with the scale taken off
 };
 
 /// One row per estimate, for a terminal.
@@ -18,6 +20,9 @@ std::string terminalTable(const std::vector<JudgedEstimate>& estimates);
 
 /// One row per estimate, every figure in SI units and degrees; empty where nothing could be measured.
 std::string csvTable(const std::vector<JudgedEstimate>& estimates, const std::string& alignment);
+
+/// The figures of terminalTable() for a page, the best of each column marked.
+Table pageTable(const std::vector<JudgedEstimate>& estimates);
 
 /// A tabular of the figures that papers give, in cm and degrees; the best of each column is bold.
 std::string latexTable(const std::vector<JudgedEstimate>& estimates);

@@ -87,6 +87,15 @@ double scaleOf(const std::vector<StampedPose>& reference, const std::vector<Stam
     return bestScale(source, target);
 }
 
+bool allFinite(const Evaluation& evaluation) {
+    for (const ErrorStatistics* s :
+         {&evaluation.ate.translation, &evaluation.rpe_second.translation, &evaluation.rpe_second.rotation,
+          &evaluation.rpe_frame.translation, &evaluation.rpe_frame.rotation})
+        if (s->count > 0 && !(std::isfinite(s->rmse) && std::isfinite(s->std) && std::isfinite(s->max)))
+            return false;
+    return true;
+}
+
 }  // namespace
 
 Evaluation evaluate(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
@@ -110,6 +119,8 @@ Evaluation evaluate(const std::vector<StampedPose>& reference, const std::vector
     result.ate = absoluteTrajectoryError(reference, estimate, result.pairs, alignment);
     result.rpe_second = relativePoseErrorOverTime(reference, estimate, result.pairs, 1.0);
     result.rpe_frame = relativePoseErrorPerFrame(reference, estimate, result.pairs);
+    // Squares of what is beyond 1e150 m are no numbers any more
+    if (!allFinite(result)) throw std::runtime_error("its errors are too large to be computed");
     return result;
 }
 

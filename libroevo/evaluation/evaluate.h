@@ -22,7 +22,8 @@ struct Evaluation {
 /// @param alignment  of the ATE. With scale, that is taken off for the relative errors, too
 /// @throws std::runtime_error with the figures that decide (both time ranges, closest stamps, an offset that
 /// would fit)
-///         when fewer than 3 poses are common, or when there is no motion that could tell a scale
+///         when fewer than 3 poses are common, when there is no motion that could tell a scale, or when
+///         errors are too large to be squared
 Evaluation evaluate(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
                     double max_dt = kDefaultMaxDt, Alignment alignment = Alignment::kSe3);
 

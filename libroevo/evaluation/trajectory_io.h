@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -6,12 +7,37 @@
 
 namespace roevo {
 
-/// Reads a TUM trajectory: `timestamp tx ty tz qx qy qz qw` per line, seconds and metres, `#` starts a
-/// comment. Sorted by time on return; a stamp that repeats with the same pose counts once.
-/// @throws std::runtime_error with file and line: not eight numbers, a value that is not finite, a quaternion
-/// whose
-///         length is not one; or a file with no pose at all
+/// How files hold trajectories, a pose per line; `#` starts a comment.
+enum class TrajectoryFormat {
+    kTum,    ///< `timestamp tx ty tz qx qy qz qw`, s and m
+    kKitti,  ///< twelve numbers, the rows of the 3 x 4 matrix [R t], m; no times
+    kEuroc   ///< `timestamp,x,y,z,qw,qx,qy,qz` and maybe more, ns (a whole number) and m
+};
+
+/// "tum", "kitti", "euroc".
+const std::vector<std::string>& trajectoryFormatNames();
+std::optional<TrajectoryFormat> trajectoryFormat(const std::string& name);
+
+/// Times for the rows of files that have none.
+struct RowTimes {
+    std::vector<double> stamps;  ///< s, in the order of the rows; empty when the source has none, either
+    std::string source;          ///< where they are from, for messages
+};
+
+/// Reads a trajectory, sorted by time on return; of poses with one stamp the last counts.
+/// @param format  none: as its first row looks. @param times  for KITTI
+/// @throws std::runtime_error with file and line: not the numbers that the format has, a value that is not
+/// finite, a quaternion whose length is not one, a matrix that is no rotation, another number of rows than
+/// times; or a file with no pose at all
+std::vector<StampedPose> readTrajectory(const std::string& path, std::optional<TrajectoryFormat> format = {},
+                                        const RowTimes& times = {});
+
+/// The same, and nothing but TUM's format.
 std::vector<StampedPose> readTumTrajectory(const std::string& path);
+
+/// Times of a file's rows, in their order: a trajectory's (none: KITTI), or a list whose lines begin with
+/// seconds, as KITTI's times.txt. @throws as readTrajectory()
+RowTimes readRowTimes(const std::string& path);
 
 /// A trajectory as programs take it on their command line.
 struct NamedFile {

@@ -41,7 +41,6 @@ set title textcolor rgb '#222222'
 set xlabel textcolor rgb '#333333'
 set ylabel textcolor rgb '#333333'
 set style fill solid 0.9 noborder
-set datafile missing 'NaN'
 )";
 
 /// A file in memory that other programs can open by its path: nothing is left of it, whatever ends this one.

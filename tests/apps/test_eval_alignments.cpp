@@ -172,6 +172,8 @@ TEST_F(EvalSeveral, FailuresAreOneLine) {
                 {"cannot write", "t.csv"});
     expectError(eval({folder_ / "right.txt", folder_ / "late.txt"}, {"--table", folder_ / "t.csv"}), 1, kName,
                 {"late.txt: no pose", "902.000000"});
+    test::writeFile(folder_ / "far.txt", "100 0 0 0 0 0 0 1\n101 1e200 0 0 0 0 0 1\n102 0 1e200 0 0 0 0 1\n");
+    expectError(eval({folder_ / "far.txt"}), 1, kName, {"far.txt: its errors are too large to be computed"});
     expectError(eval({"=" + (folder_ / "right.txt")}), 2, kName, {"no name before"});
     EXPECT_FALSE(std::filesystem::exists(folder_ / "t.csv"));
 }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -41,6 +42,21 @@ TEST(Gnuplot, DrawsDataWithGapsAndAnyText) {
     EXPECT_NE(svg.find("width=\"400\" height=\"300\""), std::string::npos);
     EXPECT_NE(svg.find("a_b's {x} &amp; &lt;y> ^ @ ~ \\ %"), std::string::npos) << svg;
     EXPECT_EQ(svg.find("baseline-shift"), std::string::npos) << "text was taken for a formula";
+}
+
+TEST(Gnuplot, ALineEndsAtANumberThatIsNone) {
+    const TemporaryFolder folder;
+    drawSvg(folder / "plot.svg",
+            gnuplotData(
+                "data",
+                {{0, 1}, {1, 2}, {std::nan(""), std::nan("")}, {2, 1}, {3, std::nan("")}, {4, 1}, {5, 2}}) +
+                "unset key\nplot $data using 1:2 with lines");
+    std::string svg = readFile(folder / "plot.svg");
+    svg = svg.substr(svg.find("gnuplot_plot_1"));
+    const std::size_t path = svg.find(" d='");
+    svg = svg.substr(path, svg.find("'", path + 4) - path);
+    EXPECT_GE(std::count(svg.begin(), svg.end(), 'M'), 2) << svg;
+    EXPECT_EQ(std::count(svg.begin(), svg.end(), 'L'), 2) << "two pieces of two points: " << svg;
 }
 
 TEST(Gnuplot, TheSameInputGivesTheSameBytes) {

@@ -41,6 +41,7 @@ class Row : public testing::Test {
         run.background_ms = 8;
         run.memory_peak_mb = 99.5;
         run.key = "abc";
+        run.trajectory_file = "their/orb.txt";
         run.poses = 3;
         for (int i = 0; i < 3; ++i)
             run.trajectory.push_back({1.5 + i, Pose(Eigen::Translation3d(i, 0.123456789, 0))});
@@ -95,6 +96,7 @@ TEST_F(Row, ComesBackAsItWas) {
     EXPECT_EQ(back.background, run.background);
     EXPECT_EQ(back.background_ms, run.background_ms);
     EXPECT_EQ(back.memory_peak_mb, run.memory_peak_mb);
+    EXPECT_EQ(back.trajectory_file, run.trajectory_file);
     EXPECT_EQ(back.key, "abc");
     ASSERT_EQ(back.trajectory.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {

@@ -117,7 +117,7 @@ std::vector<std::string> optionsSeeds() {
 
 void runTrajectory(std::string_view bytes) {
     accepted([&] {
-        const auto poses = readTumTrajectory(fileOf(bytes));
+        const auto poses = readTrajectory(fileOf(bytes), {}, {{1, 1.1, 1.2, 1.3, 2.3}, "times"});
         for (const StampedPose& pose : poses) requireRigid(pose.T_world_camera);
         for (std::size_t i = 1; i < poses.size(); i++)
             require(poses[i].timestamp > poses[i - 1].timestamp, "stamps do not go up");
@@ -129,7 +129,12 @@ void runTrajectory(std::string_view bytes) {
 std::vector<std::string> trajectorySeeds() {
     return {
         "# timestamp tx ty tz qx qy qz qw\n1.0 0 0 0 0 0 0 1\n1.1 0.1 0 0 0 0 0 1\n1.2 0.1 0.2 0 0 0 0 1\n"
-        "1.3 0 0 0.5 0.5 0.5 0.5 0.5\n2.3 0 0 0.5 -0.5 0.5 -0.5 0.5\n"};
+        "1.3 0 0 0.5 0.5 0.5 0.5 0.5\n2.3 0 0 0.5 -0.5 0.5 -0.5 0.5\n",
+        "1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 0 0 0 1 0\n1e0 0 0 2 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 3 0 0 1 "
+        "0\n"
+        "1 0 0 0 0 1 0 0 0 0 1 4\n",
+        "#timestamp,x,y,z,qw,qx,qy,qz,vx\n1403636579758555392,4.6,-1.7,0.5,1,0,0,0,0\n"
+        "1403636579763555584,4.7,-1.7,0.5,0.5,0.5,0.5,-0.5,0\n1403636579863555584,4.7,1,0.5,1,0,0,0,0\n"};
 }
 
 }  // namespace roevo::fuzz

@@ -73,7 +73,7 @@ void addTimes(Row& row, const std::string& name, const StageStatistics* s) {
 }
 
 void addCosts(Row& row, const MethodRun* run, const std::vector<std::string>& stages) {
-    const bool timed = run && run->ok() && run->tracked > 0;
+    const bool timed = run && run->ok() && run->tracked > 0 && run->trajectory_file.empty();
     addTimes(row, "time_total", timed ? &run->total : nullptr);
     addTimes(row, "time_decode", timed ? &run->decode : nullptr);
     for (const std::string& name : stages) {

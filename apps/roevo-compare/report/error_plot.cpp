@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <utility>
 
 #include "evaluation/error_statistics.h"
 #include "programs/gnuplot.h"
@@ -12,20 +14,14 @@ namespace {
 
 constexpr std::size_t kMaxIntervals = 800;  // of a line, each with its largest error
 constexpr int kWidth = 960, kHeight = 300;  // px
-constexpr double kMinError = 1e-3;          // cm: what is less is of no interest, and has no logarithm
+constexpr char kMargins[] = "unset key\nset lmargin 9\nset rmargin 2\nset tmargin 1\nset bmargin 2.6\n";
+constexpr double kMinError = 1e-3;  // cm: what is less is of no interest, and has no logarithm
 
 struct Line {
     std::string name;
     LineStyle style;
     std::vector<double> times, errors;  // s since the sequence's first pose; cm
 };
-
-// Between poses that are farther apart than this nothing is known, and no line is drawn.
-double largestStep(const std::vector<double>& times) {
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
-    return 3.5 * percentile(steps, 0.5);
-}
 
 std::vector<std::vector<double>> thinned(const Line& line) {
     const std::size_t step = (line.times.size() + kMaxIntervals - 1) / kMaxIntervals;
@@ -79,13 +75,43 @@ std::string shownTic(double value) {
 }
 
 // 1, 2, 5 in every decade while these are few: gnuplot would label the powers of ten only.
-std::string ticsOf(double low, double high) {
+std::string ticsOf(char axis, double low, double high) {
     const bool few = high / low < 1000;
     std::string tics;
     for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10)
         for (const double step : {1.0, 2.0, 5.0})
             if (few || step < 1.5) tics += (tics.empty() ? "" : ", ") + shownTic(decade * step);
-    return "set ytics (" + tics + ")\n";
+    return std::string("set ") + axis + "tics (" + tics + ")\n";
+}
+
+// What of the errors is shown. Where a line passes through zero it would reach down for ever.
+std::pair<double, double> rangeOf(const std::vector<Line>& lines) {
+    std::vector<double> all;
+    for (const Line& line : lines) all.insert(all.end(), line.errors.begin(), line.errors.end());
+    const double low = std::max(percentile(all, 0.01), kMinError);
+    return {low, std::max(percentile(all, 1) * 1.3, 10 * low)};
+}
+
+std::vector<std::vector<double>> cumulative(const Line& line) {
+    std::vector<double> errors = line.errors;
+    std::sort(errors.begin(), errors.end());
+    std::vector<std::vector<double>> rows;
+    for (const std::size_t i : evenly(errors.size(), kMaxIntervals))
+        rows.push_back({std::max(errors[i], kMinError),
+                        100 * static_cast<double>(i + 1) / static_cast<double>(errors.size())});
+    return rows;
+}
+
+std::string plotOf(const std::vector<Line>& lines,
+                   const std::function<std::vector<std::vector<double>>(const Line&)>& rows) {
+    std::string data, plot;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const std::string block = "line" + std::to_string(i);
+        data += gnuplotData(block, rows(lines[i]));
+        plot += (i == 0 ? "plot " : ", ") + std::string("$") + block + " using 1:2 with lines " +
+                gnuplotStyle(lines[i].style);
+    }
+    return data + plot + "\n";
 }
 
 }  // namespace
@@ -94,31 +120,30 @@ Figure errorFigure(const SequenceResults& results, const Legend& legend) {
     const std::vector<Line> lines = linesOf(results, legend);
     if (lines.empty()) return {"", "", "No run has errors that could be drawn."};
 
-    std::vector<double> all;
     double end = 0;
-    for (const Line& line : lines) {
-        all.insert(all.end(), line.errors.begin(), line.errors.end());
-        end = std::max(end, line.times.back());
-    }
-    // Where a line passes through zero it would reach down for ever.
-    const double low = std::max(percentile(all, 0.01), kMinError);
-    const double high = std::max(percentile(all, 1) * 1.3, 10 * low);
-    std::string script =
-        "unset key\nset logscale y\nset lmargin 9\nset rmargin 2\nset tmargin 1\nset bmargin 2.6\n"
-        "set xlabel 'time [s]' offset 0,0.4\nset ylabel 'position error [cm]'\nset format y '%g'\n"
-        "set xrange [0:" +
-        exactNumber(std::max(end, 1e-3)) + "]\nset yrange [" + exactNumber(low) + ":" + exactNumber(high) +
-        "]\n";
-    script += ticsOf(low, high);
-    std::string plot;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const std::string block = "line" + std::to_string(i);
-        script += gnuplotData(block, thinned(lines[i]));
-        plot += (i == 0 ? "plot " : ", ") + std::string("$") + block + " using 1:2 with lines " +
-                gnuplotStyle(lines[i].style);
-    }
-    return drawFigure(script + plot + "\n", kWidth, kHeight,
-                      results.sequence->name + ": position error over time", "");
+    for (const Line& line : lines) end = std::max(end, line.times.back());
+    const auto [low, high] = rangeOf(lines);
+    std::string script = std::string(kMargins) +
+                         "set logscale y\nset xlabel 'time [s]' offset 0,0.4\n"
+                         "set ylabel 'position error [cm]'\nset format y '%g'\nset xrange [0:" +
+                         exactNumber(std::max(end, 1e-3)) + "]\nset yrange [" + exactNumber(low) + ":" +
+                         exactNumber(high) + "]\n" + ticsOf('y', low, high);
+    script += plotOf(lines, thinned);
+    return drawFigure(script, kWidth, kHeight, results.sequence->name + ": position error over time", "");
+}
+
+Figure cumulativeErrorFigure(const SequenceResults& results, const Legend& legend) {
+    const std::vector<Line> lines = linesOf(results, legend);
+    if (lines.empty()) return {"", "", "No run has errors that could be drawn."};
+
+    const auto [low, high] = rangeOf(lines);
+    std::string script = std::string(kMargins) +
+                         "set logscale x\nset xlabel 'position error [cm]' offset 0,0.4\n"
+                         "set ylabel 'poses [%]'\nset format x '%g'\nset yrange [0:100]\nset xrange [" +
+                         exactNumber(low) + ":" + exactNumber(high) + "]\n" + ticsOf('x', low, high);
+    script += plotOf(lines, cumulative);
+    return drawFigure(script, kWidth, kHeight, results.sequence->name + ": cumulative position error",
+                      "Share of the paired poses whose error is at most so much.");
 }
 
 }  // namespace roevo

@@ -12,11 +12,11 @@ constexpr std::size_t kMostChanged = 10;  // recordings in each direction
 
 }  // namespace
 
-std::string pageHead() {
+std::string pageHead(const std::string& title) {
     return "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta "
            "charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-           "<title>Comparison of RGB-D odometries</title>\n<style>" +
-           std::string(pageStyle()) + "</style>\n</head>\n<body>\n";
+           "<title>" +
+           htmlText(title) + "</title>\n<style>" + pageStyle() + "</style>\n</head>\n<body>\n";
 }
 
 std::string counted(std::size_t n, const std::string& what) {

@@ -8,7 +8,7 @@
 namespace roevo {
 
 /// All up to and with <body>.
-std::string pageHead();
+std::string pageHead(const std::string& title = "Comparison of RGB-D odometries");
 
 /// "1 method", "2 methods".
 std::string counted(std::size_t n, const std::string& what);

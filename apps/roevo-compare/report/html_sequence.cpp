@@ -60,26 +60,6 @@ std::string block(const std::string& title, const std::string& legend, const std
     return "<div class=\"block\"><h3>" + title + "</h3>\n" + legend + figures + "</div>\n";
 }
 
-std::string trajectoryBlock(const SequenceResults& results, const Legend& legend) {
-    std::string figures;
-    bool any = false;
-    for (const Figure& figure : trajectoryFigures(results, legend)) {
-        figures += setFigure(figure);
-        any = any || !figure.svg.empty();
-    }
-    return block(isReferenced(results) ? "Trajectories, aligned with the ground truth"
-                                       : "Trajectories, each from its own first pose",
-                 any ? lineLegend(results, legend, true) : "",
-                 "<div class=\"pair\">\n" + figures + "</div>\n");
-}
-
-std::string errorBlock(const SequenceResults& results, const Legend& legend) {
-    if (!isReferenced(results)) return {};
-    const Figure figure = errorFigure(results, legend);
-    return block("Position error over time, after the alignment",
-                 figure.svg.empty() ? "" : lineLegend(results, legend, false), setFigure(figure));
-}
-
 std::string stageBlock(const SequenceResults& results, std::vector<std::string>& stages) {
     const Figure figure = stageFigure(results, stages);
     return block("Mean time per tracked frame by stage", figure.svg.empty() ? "" : stageLegend(figure),
@@ -94,6 +74,26 @@ std::string allFigures(const SequenceResults& results, const std::string& id, co
     for (std::size_t i = 0; i < std::min(table.rows.size(), run_folders.size()); ++i)
         table.rows[i].link = relativeLink(run_folders[i], folder);
     return setTable(table, id, false);
+}
+
+std::string trajectoryBlock(const SequenceResults& results, const Legend& legend, const std::string& title) {
+    std::string figures;
+    bool any = false;
+    for (const Figure& figure : trajectoryFigures(results, legend)) {
+        figures += setFigure(figure);
+        any = any || !figure.svg.empty();
+    }
+    return block(title, any ? lineLegend(results, legend, true) : "",
+                 "<div class=\"pair\">\n" + figures + "</div>\n");
+}
+
+std::string errorBlocks(const SequenceResults& results, const Legend& legend, const std::string& alignment) {
+    if (!isReferenced(results)) return {};
+    const auto set = [&](const std::string& title, const Figure& figure) {
+        return block(title, figure.svg.empty() ? "" : lineLegend(results, legend, false), setFigure(figure));
+    };
+    const std::string over_time = set("Position error over time, " + alignment, errorFigure(results, legend));
+    return over_time + set("Cumulative position error", cumulativeErrorFigure(results, legend));
 }
 
 SequenceWriter::SequenceWriter(const Legend& legend, std::string folder, bool with_table)
@@ -121,8 +121,11 @@ std::string SequenceWriter::write(const SequenceResults& results, std::size_t nu
 std::string SequenceWriter::plots(const SequenceResults& results) {
     if (!plot_fault_.empty()) return {};
     try {
-        std::string html = trajectoryBlock(results, legend_);
-        html += errorBlock(results, legend_);
+        std::string html =
+            trajectoryBlock(results, legend_,
+                            isReferenced(results) ? "Trajectories, aligned with the ground truth"
+                                                  : "Trajectories, each from its own first pose");
+        html += errorBlocks(results, legend_, "after the alignment");
         return html + stageBlock(results, stages_);
     } catch (const NoGnuplot& e) {
         plot_fault_ = e.what();  // the others need not be tried

@@ -9,6 +9,13 @@ namespace roevo {
 /// Table of all figures of a sequence, each method linked with the folder of its run.
 std::string allFigures(const SequenceResults& results, const std::string& id, const std::string& folder);
 
+/// Trajectories from above and from the side, with their legend. @throws NoGnuplot; Interrupted
+std::string trajectoryBlock(const SequenceResults& results, const Legend& legend, const std::string& title);
+
+/// Position errors over time, and their cumulative curve; empty without any. @param alignment  in words
+/// @throws NoGnuplot; Interrupted
+std::string errorBlocks(const SequenceResults& results, const Legend& legend, const std::string& alignment);
+
 /// Writes the sections of the sequences of one report: facts, figures, trajectories, errors, times, maps.
 class SequenceWriter {
   public:

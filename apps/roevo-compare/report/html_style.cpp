@@ -24,7 +24,7 @@ nav { margin: 14px 0 0; color: var(--muted); }
 nav a { margin-right: 14px; display: inline-block; }
 .remark { border-left: 3px solid #D55E00; padding: 2px 0 2px 12px; margin: 8px 0; max-width: 90ch;
   overflow-wrap: anywhere; }
-.tablebox { margin: 0 0 22px; }
+.tablebox { margin: 14px 0 22px; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; border-top: 2px solid var(--ink); border-bottom: 2px solid var(--ink);
   font-size: 14px; font-variant-numeric: tabular-nums lining-nums; }
@@ -54,7 +54,7 @@ sup a { text-decoration: none; }
 .protocol { font-size: 12.5px; line-height: 1.4; color: var(--muted); margin: 5px 0 0; max-width: 110ch; }
 .legend { list-style: none; display: flex; flex-wrap: wrap; gap: 2px 20px; margin: 10px 0 4px; padding: 0;
   font-size: 13.5px; }
-.legend li { display: flex; align-items: center; gap: 7px; white-space: nowrap; }
+.legend li { display: flex; align-items: center; gap: 7px; min-width: 0; overflow-wrap: anywhere; }
 .sample { flex: none; }
 figure { margin: 0; min-width: 0; }
 figcaption { font-size: 13px; color: var(--muted); margin: 2px 0 0; overflow-wrap: anywhere; }

@@ -9,9 +9,10 @@
 namespace roevo {
 namespace {
 
-// Okabe and Ito's palette, without the blues, which are ours, and the yellow, which is too pale for a line.
+// Okabe and Ito's palette without the blues, which are ours, the yellow, which is too pale for a line, and
+// the second orange; and two that stay apart from these.
 constexpr std::array<const char*, 6> kForeign{"#D55E00", "#009E73", "#CC79A7",
-                                              "#E69F00", "#5B5B5B", "#7A4B16"};
+                                              "#222222", "#A08C00", "#7A4B16"};
 constexpr std::array<const char*, 3> kForeignDashes{"", "7,3", "2,3"};
 
 // From the fullest mode on.

@@ -4,6 +4,7 @@
 #include <regex>
 #include <stdexcept>
 
+#include "evaluation/error_statistics.h"
 #include "programs/gnuplot.h"
 #include "programs/interrupt.h"
 #include "programs/text.h"
@@ -54,6 +55,12 @@ std::vector<StampedPose> aligned(const std::vector<StampedPose>& trajectory, con
     for (StampedPose& pose : poses)
         pose.T_world_camera = evaluation.ate.T_reference_estimate * pose.T_world_camera;
     return poses;
+}
+
+double largestStep(const std::vector<double>& times) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
+    return 3.5 * percentile(steps, 0.5);
 }
 
 std::vector<std::size_t> evenly(std::size_t count, std::size_t limit) {

@@ -32,6 +32,9 @@ std::vector<Figure> trajectoryFigures(const SequenceResults& results, const Lege
 /// Distance of the aligned camera centres from the ground truth over time. @throws as drawFigure()
 Figure errorFigure(const SequenceResults& results, const Legend& legend);
 
+/// Share of the paired poses whose distance is at most so much. @throws as drawFigure()
+Figure cumulativeErrorFigure(const SequenceResults& results, const Legend& legend);
+
 /// Mean time per frame of each run as a bar of its stages. @param stages  names in the order of stageRgb();
 /// new ones are added, so that a stage has one colour in all plots. @throws as drawFigure()
 Figure stageFigure(const SequenceResults& results, std::vector<std::string>& stages);
@@ -44,6 +47,10 @@ Figure drawFigure(const std::string& script, int width, int height, const std::s
 
 /// Poses brought into the ground truth's world.
 std::vector<StampedPose> aligned(const std::vector<StampedPose>& trajectory, const Evaluation& evaluation);
+
+/// Between poses that are farther apart in time than this nothing is known, and no line is drawn: 3.5 times
+/// the median of the steps.
+double largestStep(const std::vector<double>& times);
 
 /// At most `limit` of so many, evenly, the last among them.
 std::vector<std::size_t> evenly(std::size_t count, std::size_t limit);

@@ -10,16 +10,6 @@
 namespace roevo {
 namespace {
 
-// Squares of what is beyond 1e150 m are no numbers any more.
-bool allFinite(const Evaluation& evaluation) {
-    for (const ErrorStatistics* s :
-         {&evaluation.ate.translation, &evaluation.rpe_second.translation, &evaluation.rpe_second.rotation,
-          &evaluation.rpe_frame.translation, &evaluation.rpe_frame.rotation})
-        if (s->count > 0 && !(std::isfinite(s->rmse) && std::isfinite(s->std) && std::isfinite(s->max)))
-            return false;
-    return true;
-}
-
 EvaluatedRun evaluateRun(const SequenceComparison& sequence, const MethodRun& run) {
     EvaluatedRun result;
     if (!run.ok()) {
@@ -39,13 +29,9 @@ EvaluatedRun evaluateRun(const SequenceComparison& sequence, const MethodRun& ru
         return result;
     }
     try {
-        const Evaluation evaluation = evaluate(sequence.reference, run.trajectory);
-        if (allFinite(evaluation)) {
-            result.evaluation = evaluation;
-            result.scale_warning = scaleContradiction(sequence.reference, run.trajectory, evaluation.pairs);
-        } else {
-            result.fault = "its errors are too large to be computed";
-        }
+        result.evaluation = evaluate(sequence.reference, run.trajectory);
+        result.scale_warning =
+            scaleContradiction(sequence.reference, run.trajectory, result.evaluation->pairs);
     } catch (const std::exception& e) {
         result.fault = firstLine(e.what());
     }

@@ -18,7 +18,7 @@ std::string reasonOf(const Metric& metric, const SequenceResults& results, std::
         const std::string reason = whyNoErrors(*results.sequence, run, results.evaluated[index]);
         return reason.empty() ? "the sequence is too short for it" : reason;
     }
-    return "not measured";
+    return run.trajectory_file.empty() ? "not measured" : "made by another program, not run here";
 }
 
 TableCell makeCell(const Metric& metric, const SequenceResults& results, const std::vector<bool>& best,
@@ -194,7 +194,7 @@ Table stageTable(const SequenceResults& results) {
         return shownNumber(s.median, 2) + " / " + shownNumber(s.p95, 2);
     };
     for (const MethodRun& run : results.sequence->runs) {
-        if (!run.ok() || run.tracked == 0) continue;
+        if (!run.ok() || run.tracked == 0 || !run.trajectory_file.empty()) continue;
         std::string stages;
         for (const StageStatistics& stage : run.stages)
             stages += (stages.empty() ? "" : " · ") + stage.name + " " + show(stage);

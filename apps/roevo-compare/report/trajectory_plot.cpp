@@ -13,6 +13,7 @@ constexpr std::size_t kMaxPoints = 1500;               // of a line; more are no
 constexpr int kWidth = 480;                            // px
 constexpr int kBesideWidth = 94, kBesideHeight = 76;   // px that the axes' texts take
 constexpr double kMargin = 0.12;                       // around the ground truth, as a share of its extent
+constexpr double kMinGap = 1;                          // s: within it the line goes on, whatever the rate is
 constexpr double kMinExtent = 0.02;                    // m: of a camera that stands
 constexpr double kMinAspect = 0.42, kMaxAspect = 0.8;  // height to width of a picture
 
@@ -69,7 +70,13 @@ std::array<View, 2> chooseViews(const std::vector<StampedPose>& poses, const Box
 void add(std::string& script, const std::string& name, const std::vector<StampedPose>& poses,
          const View& view) {
     std::vector<std::vector<double>> rows;
+    const std::vector<double> times = stampsOf(poses);
+    const double gap = std::max(kMinGap, largestStep(times));
+    std::size_t last = 0;
     for (const std::size_t i : evenly(poses.size(), kMaxPoints)) {
+        bool is_joined = true;
+        for (; last < i; ++last) is_joined = is_joined && times[last + 1] - times[last] <= gap;
+        if (!is_joined) rows.push_back({NAN, NAN});
         const Eigen::Vector3d p = poses[i].T_world_camera.translation();
         rows.push_back({p[view.right], p[view.up]});
     }

@@ -1,0 +1,238 @@
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+
+#include "evaluation/trajectory_io.h"
+#include "input/excerpt.h"
+#include "input/regular_file.h"
+#include "programs/byte_order_mark.h"
+
+namespace roevo {
+namespace {
+
+constexpr std::size_t kTumColumns = 8, kKittiColumns = 12, kEurocColumns = 8;
+constexpr double kRotationTolerance = 0.05;  // files with two decimals still pass
+constexpr std::string_view kBlank = " \t\r\f\v";
+constexpr std::int64_t kNanoseconds = 1'000'000'000;  // of a second
+
+constexpr struct {
+    TrajectoryFormat format;
+    const char *name, *row;
+} kFormats[] = {{TrajectoryFormat::kTum, "tum", "8 numbers (timestamp tx ty tz qx qy qz qw)"},
+                {TrajectoryFormat::kKitti, "kitti", "12 numbers (KITTI: rows r r r t of a 3 x 4 matrix)"},
+                {TrajectoryFormat::kEuroc, "euroc",
+                 "8 or more numbers with commas between (EuRoC: nanoseconds,x,y,z,qw,qx,qy,qz)"}};
+
+const char* rowOf(TrajectoryFormat format) {
+    return kFormats[static_cast<std::size_t>(format)].row;
+}
+
+/// Rows of a text file without comments and blank lines, one after the other. What stands between the words
+/// is told by the format, or by the first row.
+class Rows {
+  public:
+    explicit Rows(const std::string& path, std::optional<TrajectoryFormat> format = {}) : path_(path) {
+        if (format) has_commas_ = *format == TrajectoryFormat::kEuroc;
+        requireRegularInput(path);
+        errno = 0;
+        in_.open(path);
+        if (!in_)
+            throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno ? errno : ENOENT));
+        skipByteOrderMark(in_);
+    }
+    bool next() {
+        while (std::getline(in_, text_)) {
+            ++line_;
+            const std::string_view content = std::string_view(text_).substr(0, text_.find('#'));
+            if (content.find_first_not_of(kBlank) == std::string_view::npos) continue;
+            split(content);
+            if (columns_ == 0) columns_ = words_.size();
+            return true;
+        }
+        return false;
+    }
+    bool hasCommas() const { return *has_commas_; }
+    const std::vector<std::string_view>& words() const { return words_; }
+    std::size_t columns() const { return columns_; }  // of the first row
+
+    template <class Number>
+    Number number(std::size_t column, const char* what = "number") const {
+        const std::string_view word = words_[column];
+        Number value{};
+        const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc() || rest != word.data() + word.size())
+            fail("'" + excerpt(word) + "' is not a " + what);
+        if (!std::isfinite(static_cast<double>(value))) fail("'" + excerpt(word) + "' is not finite");
+        return value;
+    }
+    [[noreturn]] void fail(const std::string& what) const {
+        throw std::runtime_error(path_ + ":" + std::to_string(line_) + ": " + what);
+    }
+    [[noreturn]] void failAsRow(const std::string& expected) const {
+        fail("expected " + expected + ", found " + std::to_string(words_.size()));
+    }
+
+  private:
+    void split(std::string_view content) {
+        if (!has_commas_) has_commas_ = content.find(',') != std::string_view::npos;
+        const auto trimmed = [](std::string_view word) {
+            const std::size_t begin = word.find_first_not_of(kBlank);
+            if (begin == std::string_view::npos) return std::string_view();
+            return word.substr(begin, word.find_last_not_of(kBlank) - begin + 1);
+        };
+        words_.clear();
+        if (*has_commas_) {
+            for (std::size_t end; (end = content.find(',')) != std::string_view::npos;
+                 content.remove_prefix(end + 1))
+                words_.push_back(trimmed(content.substr(0, end)));
+            words_.push_back(trimmed(content));
+            return;
+        }
+        for (content = trimmed(content); !content.empty();) {
+            words_.push_back(content.substr(0, content.find_first_of(kBlank)));
+            content = trimmed(content.substr(words_.back().size()));
+        }
+    }
+
+    std::string path_, text_;
+    std::ifstream in_;
+    std::size_t line_ = 0, columns_ = 0;
+    std::optional<bool> has_commas_;
+    std::vector<std::string_view> words_;
+};
+
+std::optional<TrajectoryFormat> recognise(const Rows& rows) {
+    if (rows.hasCommas()) return TrajectoryFormat::kEuroc;
+    if (rows.words().size() == kTumColumns) return TrajectoryFormat::kTum;
+    if (rows.words().size() == kKittiColumns) return TrajectoryFormat::kKitti;
+    return std::nullopt;
+}
+
+std::string anyRow() {
+    std::string all;
+    for (const auto& each : kFormats)
+        all += (all.empty() ? "" : &each + 1 == std::end(kFormats) ? " or " : ", ") + std::string(each.row);
+    return all;
+}
+
+double eurocStamp(const Rows& rows) {
+    const auto ns = rows.number<std::int64_t>(0, "time stamp in whole nanoseconds");
+    return static_cast<double>(ns / kNanoseconds) + 1e-9 * static_cast<double>(ns % kNanoseconds);
+}
+
+Pose quaternionPose(const Rows& rows, std::size_t w, std::size_t x) {
+    const auto at = [&](std::size_t column) { return rows.number<double>(column); };
+    const Eigen::Vector3d position(at(1), at(2), at(3));
+    const Eigen::Quaterniond q(at(w), at(x), at(x + 1), at(x + 2));
+    if (!(std::abs(q.norm() - 1) <= kRotationTolerance))
+        rows.fail("the quaternion has length " + std::to_string(q.norm()) + " instead of 1");
+    return {q, position};
+}
+
+Pose matrixPose(const Rows& rows) {
+    Eigen::Matrix<double, 3, 4> T;
+    for (Eigen::Index i = 0; i < T.size(); ++i)
+        T(i / 4, i % 4) = rows.number<double>(static_cast<std::size_t>(i));
+    const Eigen::Matrix3d R = T.leftCols<3>();
+    if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kRotationTolerance) ||
+        R.determinant() < 0)
+        rows.fail("the first three of each four numbers are no rotation matrix");
+    return {Eigen::Quaterniond(R), T.col(3)};
+}
+
+StampedPose poseOf(const Rows& rows, TrajectoryFormat format) {
+    const std::size_t count = rows.words().size();
+    if (format == TrajectoryFormat::kEuroc) {
+        if (count < kEurocColumns) rows.failAsRow(rowOf(format));
+        if (count != rows.columns())
+            rows.failAsRow(std::to_string(rows.columns()) + " numbers, as in the first row");
+        return {eurocStamp(rows), quaternionPose(rows, 4, 5)};
+    }
+    if (count != (format == TrajectoryFormat::kTum ? kTumColumns : kKittiColumns))
+        rows.failAsRow(rowOf(format));
+    if (format == TrajectoryFormat::kKitti) return {0, matrixPose(rows)};
+    return {rows.number<double>(0), quaternionPose(rows, 7, 4)};
+}
+
+// Gives the rows of a file that has no times those of another one.
+void setTimes(std::vector<StampedPose>& poses, const RowTimes& times, const Rows& at_end,
+              const std::string& path) {
+    if (times.stamps.empty()) {
+        const bool other = !times.source.empty() && times.source != path;
+        throw std::runtime_error(
+            path + ": a KITTI file has no times" + (other ? ", and neither has " + times.source : "") +
+            "; give one for each of its rows by roevo-eval --times FILE, or take another format");
+    }
+    if (poses.size() != times.stamps.size())
+        at_end.fail("the last of " + std::to_string(poses.size()) +
+                    " rows, which have no times (KITTI); expected " + std::to_string(times.stamps.size()) +
+                    ", one for each in " + times.source);
+    for (std::size_t i = 0; i < poses.size(); ++i) poses[i].timestamp = times.stamps[i];
+}
+
+// Published ground truth does repeat stamps (TUM fr2/desk); as in the benchmark's own script the last one
+// counts.
+void sortByTime(std::vector<StampedPose>& poses) {
+    std::stable_sort(poses.begin(), poses.end(),
+                     [](const auto& a, const auto& b) { return a.timestamp < b.timestamp; });
+    const auto last = std::unique(poses.rbegin(), poses.rend(),
+                                  [](const auto& a, const auto& b) { return a.timestamp == b.timestamp; });
+    poses.erase(poses.begin(), last.base());
+}
+
+}  // namespace
+
+const std::vector<std::string>& trajectoryFormatNames() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const auto& each : kFormats) all.emplace_back(each.name);
+        return all;
+    }();
+    return names;
+}
+
+std::optional<TrajectoryFormat> trajectoryFormat(const std::string& name) {
+    for (const auto& each : kFormats)
+        if (each.name == name) return each.format;
+    return std::nullopt;
+}
+
+std::vector<StampedPose> readTrajectory(const std::string& path, std::optional<TrajectoryFormat> format,
+                                        const RowTimes& times) {
+    Rows rows(path, format);
+    std::vector<StampedPose> poses;
+    const std::string expected = format ? rowOf(*format) : anyRow();
+    while (rows.next()) {
+        if (!format) format = recognise(rows);
+        if (!format) rows.failAsRow(expected);
+        poses.push_back(poseOf(rows, *format));
+    }
+    if (poses.empty()) throw std::runtime_error(path + ": no pose in it; expected lines of " + expected);
+    if (*format == TrajectoryFormat::kKitti) setTimes(poses, times, rows, path);
+    sortByTime(poses);
+    return poses;
+}
+
+std::vector<StampedPose> readTumTrajectory(const std::string& path) {
+    return readTrajectory(path, TrajectoryFormat::kTum);
+}
+
+RowTimes readRowTimes(const std::string& path) {
+    Rows rows(path);
+    RowTimes times{{}, path};
+    while (rows.next()) {
+        if (!rows.hasCommas() && rows.words().size() == kKittiColumns) return {{}, path};
+        times.stamps.push_back(rows.hasCommas() ? eurocStamp(rows) : rows.number<double>(0));
+    }
+    if (times.stamps.empty()) throw std::runtime_error(path + ": no time in it; expected one per line");
+    return times;
+}
+
+}  // namespace roevo
