@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "background.h"
 #include "view.h"
 
 namespace roevo {
@@ -18,12 +19,23 @@ std::vector<std::string> layerNames();
 /// @throws std::runtime_error when the scene does not hold it
 void showLayer(mrpt::opengl::COpenGLScene& scene, const std::string& layer);
 
-/// Points of the scene's point clouds, and the corners of its other objects (ground grids and axes do not
-/// count).
-ViewContent sceneContent(const mrpt::opengl::COpenGLScene& scene);
+/// Points of the scene's point clouds, and the corners of its other objects (axes do not count).
+/// @param with_grid  whether ground grids count
+ViewContent sceneContent(const mrpt::opengl::COpenGLScene& scene, bool with_grid);
 
 /// Makes the points of the scene's clouds `factor` times larger and of one size at any distance, and colours
-/// that could not be told from the background brighter or darker.
-void preparePoints(mrpt::opengl::COpenGLScene& scene, float factor, Background background);
+/// that could not be told from the background brighter or darker. Where all layers are shown, those that are
+/// not the map's edges are faint.
+/// @return the objects that the edges are to be drawn over
+std::vector<mrpt::opengl::CRenderizable::Ptr> preparePoints(mrpt::opengl::COpenGLScene& scene, float factor,
+                                                            const Background& background, bool all_layers);
+
+/// Makes ground grids such as can be seen on the background, faintly.
+void prepareGrid(mrpt::opengl::COpenGLScene& scene, const Background& background);
+
+/// Colour in which a point of a layer is shown.
+/// @param layer  name of the object. @param all_layers  whether the others are shown, too
+Colour shownColour(const Colour& colour, const std::string& layer, const Background& background,
+                   bool all_layers);
 
 }  // namespace roevo
