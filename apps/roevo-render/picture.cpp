@@ -50,7 +50,9 @@ void drawPicture(const PictureSettings& settings) {
     const auto scene = loadScene(settings.scene);
     // A scene that is none of ours has no layers: it is shown as it is
     if (settings.layer_wanted || scene->getByName(SceneNames::kEdges)) showLayer(*scene, settings.layer);
-    const ViewContent content = sceneContent(*scene, settings.view == kTop);
+    const ViewContent content = sceneContent(*scene);
+    // Seen from above, the grid would reach beyond the picture
+    if (settings.view == kTop && !settings.from) cropGrid(*scene, boundsOf(content));
     const float larger = std::max(1.f, static_cast<float>(settings.height) / kPointSizeHeight);
     const bool all_layers = settings.layer == kAllLayers;
     const auto below = preparePoints(*scene, kSuperSampling * larger, background, all_layers);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -126,7 +127,7 @@ void showLayer(COpenGLScene& scene, const std::string& layer) {
                              (held.empty() ? "none" : held));
 }
 
-ViewContent sceneContent(const COpenGLScene& scene, bool with_grid) {
+ViewContent sceneContent(const COpenGLScene& scene) {
     ViewContent content;
     visitObjects(scene, [&](const CRenderizable& object, const mrpt::poses::CPose3D& parent) {
         const auto pose = parent + mrpt::poses::CPose3D(object.getPose());
@@ -134,7 +135,7 @@ ViewContent sceneContent(const COpenGLScene& scene, bool with_grid) {
             addCloud(*coloured, pose, content.cloud);
         else if (const auto* plain = dynamic_cast<const CPointCloud*>(&object))
             addCloud(*plain, pose, content.cloud);
-        else if ((with_grid || !isGrid(object)) && !dynamic_cast<const CAxis*>(&object))
+        else if (!isGrid(object) && !dynamic_cast<const CAxis*>(&object))
             addCorners(object, parent, content.must_see);
     });
     return content;
@@ -168,6 +169,22 @@ void prepareGrid(COpenGLScene& scene, const Background& background) {
         const auto [r, g, b] = background.faded(background.ink(), kFaintGrid);
         object.setColor(r, g, b);
     });
+}
+
+void cropGrid(COpenGLScene& scene, const Eigen::AlignedBox3f& box) {
+    const auto grid = std::dynamic_pointer_cast<CGridPlaneXY>(scene.getByName(SceneNames::kGround));
+    if (!grid) return;
+    const float cell = grid->getGridFrequency();
+    float low[2], high[2];
+    grid->getPlaneLimits(low[0], high[0], low[1], high[1]);
+    for (int axis = 0; axis < 2; ++axis) {
+        low[axis] = std::max(low[axis], std::ceil(box.min()[axis] / cell) * cell);
+        high[axis] = std::min(high[axis], std::floor(box.max()[axis] / cell) * cell);
+    }
+    if (low[0] < high[0] && low[1] < high[1])
+        grid->setPlaneLimits(low[0], high[0], low[1], high[1]);
+    else
+        grid->setVisibility(false);  // the content is smaller than a cell
 }
 
 Colour shownColour(const Colour& colour, const std::string& layer, const Background& background,

@@ -19,9 +19,9 @@ std::vector<std::string> layerNames();
 /// @throws std::runtime_error when the scene does not hold it
 void showLayer(mrpt::opengl::COpenGLScene& scene, const std::string& layer);
 
-/// Points of the scene's point clouds, and the corners of its other objects (axes do not count).
-/// @param with_grid  whether ground grids count
-ViewContent sceneContent(const mrpt::opengl::COpenGLScene& scene, bool with_grid);
+/// Points of the scene's point clouds, and the corners of its other objects (ground grids and axes do not
+/// count).
+ViewContent sceneContent(const mrpt::opengl::COpenGLScene& scene);
 
 /// Makes the points of the scene's clouds `factor` times larger and of one size at any distance, and colours
 /// that could not be told from the background brighter or darker. Where all layers are shown, those that are
@@ -32,6 +32,9 @@ std::vector<mrpt::opengl::CRenderizable::Ptr> preparePoints(mrpt::opengl::COpenG
 
 /// Makes ground grids such as can be seen on the background, faintly.
 void prepareGrid(mrpt::opengl::COpenGLScene& scene, const Background& background);
+
+/// Cuts the map's ground grid down to those whole cells that lie within the box.
+void cropGrid(mrpt::opengl::COpenGLScene& scene, const Eigen::AlignedBox3f& box);
 
 /// Colour in which a point of a layer is shown.
 /// @param layer  name of the object. @param all_layers  whether the others are shown, too

@@ -88,6 +88,12 @@ double View::pixelsPerMetre(int height) const {
     return height / (2 * distance * std::tan(vertical_fov_deg / 2 * kRadians));
 }
 
+Eigen::AlignedBox3f boundsOf(const ViewContent& content) {
+    Eigen::AlignedBox3f box;
+    for (const auto& p : withoutStrays(content)) box.extend(p);
+    return box;
+}
+
 View frameContent(const ViewContent& all, const Eigen::Vector3d& direction, const Eigen::Vector3d& up,
                   double aspect, double vertical_fov_deg) {
     const auto content = withoutStrays(all);
@@ -148,8 +154,7 @@ View lookAt(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
 
 View orbitView(const ViewContent& all, double aspect) {
     const auto content = withoutStrays(all);
-    Eigen::AlignedBox3f box;
-    for (const auto& p : content) box.extend(p);
+    const Eigen::AlignedBox3f box = boundsOf(all);
     const double tan_v = std::tan(kFov / 2 * kRadians) * kMargin, tan_h = tan_v * aspect;
     const auto lookingFrom = [](double azimuth_deg) {
         return lookingAlong(downwards(azimuth_deg, kIsoElevation), Eigen::Vector3d::UnitZ());

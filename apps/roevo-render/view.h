@@ -23,6 +23,9 @@ struct ViewContent {
     std::vector<Eigen::Vector3f> must_see;  ///< shown entirely: trajectory, frusta
 };
 
+/// The box around all that is shown. @throws std::runtime_error when there is nothing to show
+Eigen::AlignedBox3f boundsOf(const ViewContent& content);
+
 /// Looks along `direction` with `up` upwards, from the nearest place that has the content in the picture.
 /// @param aspect  width by height. @throws std::runtime_error when there is nothing to show
 View frameContent(const ViewContent& content, const Eigen::Vector3d& direction, const Eigen::Vector3d& up,
