@@ -1,15 +1,15 @@
-// roevo-render: a picture of a .3Dscene, or a 3-D view of a whole result for a browser, with no display.
+// roevo-render: a picture or a movie of a .3Dscene, or a 3-D view of a whole result for a browser, with no
+// display.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 
 #include "evaluation/trajectory_io.h"
-#include "offscreen.h"
+#include "picture.h"
 #include "programs/atomic_file.h"
 #include "programs/program.h"
+#include "programs/text.h"
 #include "result_folder.h"
-#include "roevo_mrpt/image_conversions.h"
-#include "roevo_mrpt/scene_builder.h"
 #include "scene_content.h"
 #include "web_view.h"
 
@@ -19,14 +19,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kName[] = "roevo-render";
-constexpr float kPointSizeHeight = 800;  // pixels; in higher pictures points grow along
+constexpr double kFarthest = 1e5, kNearest = 1e-6;  // m, of points that are given
 constexpr int kMinSize = 16, kMaxSize = 4096;
 
 struct Settings {
-    std::string scene, input, output, size = "1280x800", view = "iso", layer = "edges", background = "dark",
+    std::string scene, input, output, size = "1280x800", view, layer = "edges", background = "dark",
                                       ground_truth;
     std::vector<std::string> trajectories;
-    double max_size_mb = 15;
+    std::vector<double> from, look_at;
+    double max_size_mb = 15, zoom = 1, seconds = 12;
+    bool no_legend = false;
 };
 
 void parseSize(const std::string& text, int& width, int& height) {
@@ -43,39 +45,59 @@ NamedPath namedPath(const std::string& argument) {
             readTumTrajectory(named.file)};
 }
 
-// The last camera of a trajectory, in the scene's axes (x forward, y left, z up) with an optical camera
-// frame.
-Eigen::Isometry3d lastCamera(const std::string& trajectory_file) {
-    Eigen::Isometry3d T_scene_world = Eigen::Isometry3d::Identity();
-    T_scene_world.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-    return T_scene_world * readTumTrajectory(trajectory_file).back().T_world_camera.isometry();
+// Numbers of an option, which must be finite.
+void requireFinite(const char* option, const std::vector<double>& values, double low, double high) {
+    for (const double value : values)
+        if (!(value >= low && value <= high))
+            throw UsageError(std::string(option) + ": " + plainNumber(value) + " is not from " +
+                             plainNumber(low) + " to " + plainNumber(high));
 }
 
-int drawPicture(const Settings& settings, bool layer_wanted) {
-    int width = 0, height = 0;
-    parseSize(settings.size, width, height);
+std::optional<Eigen::Vector3d> pointOf(const char* option, const std::vector<double>& values) {
+    if (values.empty()) return std::nullopt;
+    requireFinite(option, values, -kFarthest, kFarthest);
+    return Eigen::Vector3d(values[0], values[1], values[2]);
+}
+
+int drawPicture(const Settings& settings, bool layer_wanted, bool is_movie) {
+    PictureSettings picture;
+    picture.output = settings.output;
+    parseSize(settings.size, picture.width, picture.height);
+    if (is_movie && (picture.width % 2 != 0 || picture.height % 2 != 0))
+        throw UsageError("--size: " + settings.size + " is odd; a movie needs an even width and height");
     if (settings.trajectories.size() > 1)
         throw UsageError("--trajectory: a picture follows one trajectory only");
-    const fs::path scene_file =
+    try {
+        Background(settings.background);
+    } catch (const std::invalid_argument& e) {
+        throw UsageError(std::string("--background: ") + e.what());
+    }
+    picture.view = settings.view.empty() ? (is_movie ? "orbit" : "iso") : settings.view;
+    if (is_movie != (picture.view == "orbit"))
+        throw UsageError(
+            "--view: " + picture.view +
+            (is_movie ? " is for pictures (.png); a movie has the view orbit" : " is for movies (.mp4)"));
+    picture.from = pointOf("--from", settings.from);
+    picture.look_at = pointOf("--look-at", settings.look_at);
+    if (picture.from && !picture.look_at) throw UsageError("--from: say where to look, too, by --look-at");
+    if (picture.from && (*picture.from - *picture.look_at).norm() < kNearest)
+        throw UsageError("--from and --look-at are the same point");
+    if (picture.from && !settings.view.empty() && !is_movie)
+        throw UsageError("--view: " + picture.view + " is a place to look from, and so is --from");
+    requireFinite("--zoom", {settings.zoom}, 0.1, 100);
+    requireFinite("--seconds", {settings.seconds}, 1, 600);
+    const fs::path scene =
         settings.scene.empty() ? fs::path(settings.input) / "map.3Dscene" : fs::path(settings.scene);
-    const std::string trajectory_file = settings.trajectories.empty()
-                                            ? (scene_file.parent_path() / "trajectory.txt").string()
-                                            : settings.trajectories.front();
-
-    const auto scene = loadScene(scene_file.string());
-    // A scene that is none of ours has no layers: it is shown as it is
-    if (layer_wanted || scene->getByName(SceneNames::kEdges)) showLayer(*scene, settings.layer);
-    const ViewContent content = sceneContent(*scene);
-    const View view = settings.view == "follow"
-                          ? followView(lastCamera(trajectory_file), content)
-                          : fixedView(settings.view, content, static_cast<double>(width) / height);
-    const Background background = settings.background == "white" ? Background::kWhite : Background::kDark;
-    const float larger = std::max(1.f, static_cast<float>(height) / kPointSizeHeight);
-    preparePoints(*scene, kSuperSampling * larger, background);
-    const cv::Mat picture = renderOffscreen(*scene, view, background, width, height);
-    writeAtomically(settings.output, [&](const std::string& path) { writeImageFile(path, picture); });
-    std::printf("%s: %d x %d pixels, view %s, layer %s, %zu points\n", settings.output.c_str(), width, height,
-                settings.view.c_str(), settings.layer.c_str(), content.cloud.size());
+    picture.scene = scene.string();
+    picture.trajectory = settings.trajectories.empty() ? (scene.parent_path() / "trajectory.txt").string()
+                                                       : settings.trajectories.front();
+    picture.layer = settings.layer;
+    picture.layer_wanted = layer_wanted;
+    picture.background = settings.background;
+    picture.legend = !settings.no_legend;
+    picture.zoom = settings.zoom;
+    picture.seconds = settings.seconds;
+    roevo::drawPicture(picture);
     return 0;
 }
 
@@ -119,26 +141,43 @@ int writeView(const Settings& settings) {
 int run(int argc, char** argv) {
     Settings settings;
     CLI::App app(
-        "Draws a .3Dscene into a PNG, or a result of roevo-odometry into one HTML page to look around in; "
+        "Draws a .3Dscene into a PNG or a movie, or a result of roevo-odometry into one HTML page to look "
+        "around in; "
         "needs no display.",
         kName);
     auto* input = app.add_option_group("input");
     input->add_option("--scene", settings.scene, "Scene for a picture, e.g. map.3Dscene of roevo-odometry");
     input->add_option("--input", settings.input, "Result folder of roevo-odometry, for a picture or a page");
     input->require_option(1);
-    app.add_option("--output", settings.output, "Picture (.png) or page (.html) to write")->required();
+    app.add_option("--output", settings.output, "Picture (.png), movie (.mp4) or page (.html) to write")
+        ->required();
     const CLI::Option* picture_options[] = {
         app.add_option("--size", settings.size, "Of a picture: width and height, pixels")
             ->capture_default_str(),
-        app.add_option("--view", settings.view, "Of a picture: where to look from")
-            ->capture_default_str()
-            ->check(CLI::IsMember({"iso", "top", "front", "follow"})),
+        app.add_option("--view", settings.view,
+                       "Of a picture: where to look from (default: iso); of a movie: orbit, one turn")
+            ->check(CLI::IsMember({"iso", "top", "front", "follow", "orbit"})),
         app.add_option("--layer", settings.layer, "Of a picture: what to show of the map")
             ->capture_default_str()
             ->check(CLI::IsMember(layerNames())),
-        app.add_option("--background", settings.background, "Of a picture: dark, or white as for print")
-            ->capture_default_str()
-            ->check(CLI::IsMember({"dark", "white"}))};
+        app.add_option("--background", settings.background,
+                       "Of a picture: dark, white as for print, black, or #rrggbb")
+            ->capture_default_str(),
+        app.add_option("--look-at", settings.look_at,
+                       "Of a picture: this point is in the middle of what is above the legend; x forward, y "
+                       "left, z up, m")
+            ->expected(3)
+            ->type_name("X Y Z"),
+        app.add_option("--from", settings.from,
+                       "Of a picture: where the camera is, with --look-at; of a movie: where it begins, m")
+            ->expected(3)
+            ->type_name("X Y Z"),
+        app.add_option("--zoom", settings.zoom, "Of a picture: magnifies its middle, 0.1 to 100")
+            ->capture_default_str(),
+        app.add_flag("--no-legend", settings.no_legend, "Of a picture: no legend and no scale bar")};
+    const CLI::Option* seconds =
+        app.add_option("--seconds", settings.seconds, "Of a movie: length of a turn, s, 1 to 600")
+            ->capture_default_str();
     app.add_option(
         "--trajectory", settings.trajectories,
         "[NAME=]FILE. Of a page: more trajectories, aligned with the ground truth or else with the "
@@ -154,22 +193,24 @@ int run(int argc, char** argv) {
     app.footer(
         "Example:\n  roevo-render --scene out/map.3Dscene --output map.png --size 1600x1000 --view iso\n"
         "  roevo-render --input out --output covisibility.png --layer covisibility --view front\n"
+        "  roevo-render --input out --output walk.mp4 --view orbit --background white\n"
         "  roevo-render --input out --output view.html --ground-truth groundtruth.txt --trajectory "
         "other=other.txt");
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
 
     const std::string kind = fs::path(settings.output).extension().string();
-    if (kind != ".png" && kind != ".html")
-        throw UsageError("--output: '" + settings.output + "' must end in .png or .html");
+    const bool is_page = kind == ".html", is_movie = kind == ".mp4";
+    if (!is_page && !is_movie && kind != ".png")
+        throw UsageError("--output: '" + settings.output + "' must end in .png, .mp4 or .html");
     for (const CLI::Option* option : picture_options)
-        if (kind == ".html" && option->count() > 0)
-            throw UsageError(option->get_name() + " is for pictures (.png)");
+        if (is_page && option->count() > 0)
+            throw UsageError(option->get_name() + " is for pictures (.png, .mp4)");
     for (const CLI::Option* option : page_options)
-        if (kind == ".png" && option->count() > 0)
-            throw UsageError(option->get_name() + " is for pages (.html)");
-    if (kind == ".html" && settings.input.empty())
+        if (!is_page && option->count() > 0) throw UsageError(option->get_name() + " is for pages (.html)");
+    if (!is_movie && seconds->count() > 0) throw UsageError("--seconds is for movies (.mp4)");
+    if (is_page && settings.input.empty())
         throw UsageError("a page is made of a result folder: give --input instead of --scene");
-    return kind == ".html" ? writeView(settings) : drawPicture(settings, picture_options[2]->count() > 0);
+    return is_page ? writeView(settings) : drawPicture(settings, picture_options[2]->count() > 0, is_movie);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <mrpt/img/CImage.h>
 #include <mrpt/opengl/CCamera.h>
-#include <mrpt/opengl/CFBORender.h>
 #include <mrpt/poses/CPose3D.h>
 
 #include <memory>
@@ -32,34 +31,51 @@ std::unique_ptr<mrpt::opengl::CFBORender> createRenderer(unsigned width, unsigne
 
 }  // namespace
 
-cv::Mat renderOffscreen(mrpt::opengl::COpenGLScene& scene, const View& view, Background background, int width,
-                        int height) {
-    const int large_width = width * kSuperSampling, large_height = height * kSuperSampling;
-    const auto padded_width = (static_cast<unsigned>(large_width) + kWidthStep - 1) / kWidthStep * kWidthStep;
-    const auto renderer = createRenderer(padded_width, static_cast<unsigned>(large_height));
+OffscreenRenderer::OffscreenRenderer(mrpt::opengl::COpenGLScene& scene, const Background& background,
+                                     cv::Size size)
+    : scene_(scene), size_(size) {
+    const cv::Size large = size * kSuperSampling;
+    const auto padded_width = (static_cast<unsigned>(large.width) + kWidthStep - 1) / kWidthStep * kWidthStep;
+    renderer_ = createRenderer(padded_width, static_cast<unsigned>(large.height));
 
+    const auto& [r, g, b] = background.colour();
+    background_ = 255 * cv::Scalar(b, g, r);
     const auto viewport = scene.getViewport("main");
-    viewport->setCustomBackgroundColor(background == Background::kWhite
-                                           ? mrpt::img::TColorf(1.f, 1.f, 1.f)
-                                           : mrpt::img::TColorf(0.055f, 0.067f, 0.09f));
-    viewport->setViewportClipDistances(static_cast<float>(view.near), static_cast<float>(view.far));
+    viewport->setCustomBackgroundColor(mrpt::img::TColorf(r, g, b));
     auto& lights = viewport->lightParameters();
     compat::setWhiteLight(lights.ambient, 0.6f);
     compat::setWhiteLight(lights.diffuse, 0.7f);
     compat::setWhiteLight(lights.specular, 0.1f);
+}
 
+cv::Mat OffscreenRenderer::drawLarge() {
+    mrpt::img::CImage image;
+    renderer_->render_RGB(scene_, image);
+    return image.asCvMatRef()(cv::Rect({}, size_ * kSuperSampling)).clone();
+}
+
+cv::Mat OffscreenRenderer::draw(const View& view,
+                                const std::vector<mrpt::opengl::CRenderizable::Ptr>& below) {
+    scene_.getViewport("main")->setViewportClipDistances(static_cast<float>(view.near),
+                                                         static_cast<float>(view.far));
     mrpt::opengl::CCamera camera;
     camera.set6DOFMode(true);
     camera.setProjectiveModel(true);
     camera.setProjectiveFOVdeg(static_cast<float>(view.vertical_fov_deg));
     camera.setPose(mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(view.T_scene_camera.matrix())));
-    renderer->setCamera(scene, camera);
+    renderer_->setCamera(scene_, camera);
 
-    mrpt::img::CImage image;
-    renderer->render_RGB(scene, image);
-    const cv::Mat large = image.asCvMatRef()(cv::Rect(0, 0, large_width, large_height));
+    cv::Mat picture = drawLarge();
+    if (!below.empty()) {
+        for (const auto& object : below) object->setVisibility(false);
+        const cv::Mat over = drawLarge();
+        for (const auto& object : below) object->setVisibility(true);
+        cv::Mat untouched;
+        cv::inRange(over, background_ - cv::Scalar::all(0.6), background_ + cv::Scalar::all(0.6), untouched);
+        over.copyTo(picture, ~untouched);
+    }
     cv::Mat shrunk;
-    cv::resize(large, shrunk, {width, height}, 0, 0, cv::INTER_AREA);
+    cv::resize(picture, shrunk, size_, 0, 0, cv::INTER_AREA);
     return shrunk;
 }
 

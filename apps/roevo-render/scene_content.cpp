@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -31,6 +32,10 @@ constexpr LayerName kLayers[] = {{"edges", SceneNames::kEdges},
                                  {"semi-dense", SceneNames::kSemiDense},
                                  {"pseudo-edges", SceneNames::kPseudoEdges}};
 constexpr char kAllLayers[] = "all";
+constexpr float kLineDistance = 0.46f, kSurfaceDistance = 0.13f;  // in brightness, from the background
+// Share of the way to the background, where all layers are shown and for the grid
+constexpr float kFaintSurface = 0.55f, kFaintLines = 0.55f, kFaintPseudoEdges = 0.45f, kFaintGrid = 0.72f;
+constexpr float kWiderEdges = 1.6f;  // where all layers are shown
 
 // Calls visit(object, pose of its parent) for everything that is not a group.
 template <class Container, class Visitor>
@@ -62,6 +67,10 @@ void addCloud(const Cloud& cloud, const mrpt::poses::CPose3D& pose, std::vector<
     }
 }
 
+bool isGrid(const CRenderizable& object) {
+    return dynamic_cast<const CGridPlaneXY*>(&object) || dynamic_cast<const CGridPlaneXZ*>(&object);
+}
+
 void addCorners(const CRenderizable& object, const mrpt::poses::CPose3D& parent,
                 std::vector<Eigen::Vector3f>& points) {
     const auto box = object.getBoundingBox();
@@ -71,18 +80,11 @@ void addCorners(const CRenderizable& object, const mrpt::poses::CPose3D& parent,
                                  corner & 4 ? box.max.z : box.min.z))));
 }
 
-// Lifts a colour towards a minimum brightness, keeping its hue.
-void brighten(float minimum, float& r, float& g, float& b) {
-    const float brightness = std::max({r, g, b});
-    if (brightness >= minimum) return;
-    const float lift = minimum - brightness;
-    r += lift, g += lift, b += lift;
-}
-
-// Takes a colour down to a maximum brightness, keeping its hue.
-void darken(float maximum, float& r, float& g, float& b) {
-    const float share = std::min(1.f, maximum / std::max({r, g, b, 1e-3f}));
-    r *= share, g *= share, b *= share;
+// Of a layer that is shown below the edges.
+float faintnessOf(const std::string& name) {
+    if (name == SceneNames::kSemiDense) return kFaintSurface;
+    if (name == SceneNames::kCovisibility) return kFaintLines;
+    return name == SceneNames::kPseudoEdges ? kFaintPseudoEdges : 0;
 }
 
 }  // namespace
@@ -133,32 +135,64 @@ ViewContent sceneContent(const COpenGLScene& scene) {
             addCloud(*coloured, pose, content.cloud);
         else if (const auto* plain = dynamic_cast<const CPointCloud*>(&object))
             addCloud(*plain, pose, content.cloud);
-        else if (!dynamic_cast<const CGridPlaneXY*>(&object) && !dynamic_cast<const CGridPlaneXZ*>(&object) &&
-                 !dynamic_cast<const CAxis*>(&object))
+        else if (!isGrid(object) && !dynamic_cast<const CAxis*>(&object))
             addCorners(object, parent, content.must_see);
     });
     return content;
 }
 
-void preparePoints(COpenGLScene& scene, float factor, Background background) {
+std::vector<CRenderizable::Ptr> preparePoints(COpenGLScene& scene, float factor, const Background& background,
+                                              bool all_layers) {
+    std::vector<CRenderizable::Ptr> faint;
     visitObjects(scene, [&](CRenderizable& object, const mrpt::poses::CPose3D&) {
         auto* points = dynamic_cast<CRenderizableShaderPoints*>(&object);
         if (!points) return;
+        const std::string name = object.getName();
+        if (all_layers && faintnessOf(name) > 0) faint.push_back(scene.getByName(name));
         points->enableVariablePointSize(false);
-        points->setPointSize(points->getPointSize() * factor);
+        points->setPointSize(points->getPointSize() * factor *
+                             (all_layers && name == SceneNames::kEdges ? kWiderEdges : 1));
         auto* coloured = dynamic_cast<CPointCloudColoured*>(&object);
-        // A surface is seen by its colours, a line by how it differs from the background
-        const bool is_surface = object.getName() == SceneNames::kSemiDense;
         for (std::size_t i = 0; coloured && i < coloured->size(); ++i) {
-            float r, g, b;
-            coloured->getPointColor_fast(i, r, g, b);
-            if (background == Background::kDark)
-                brighten(is_surface ? 0.2f : 0.55f, r, g, b);
-            else
-                darken(is_surface ? 0.85f : 0.55f, r, g, b);
-            coloured->setPointColor_fast(i, r, g, b);
+            Colour c;
+            coloured->getPointColor_fast(i, c[0], c[1], c[2]);
+            c = shownColour(c, name, background, all_layers);
+            coloured->setPointColor_fast(i, c[0], c[1], c[2]);
         }
     });
+    return faint;
+}
+
+void prepareGrid(COpenGLScene& scene, const Background& background) {
+    visitObjects(scene, [&](CRenderizable& object, const mrpt::poses::CPose3D&) {
+        if (!isGrid(object)) return;
+        const auto [r, g, b] = background.faded(background.ink(), kFaintGrid);
+        object.setColor(r, g, b);
+    });
+}
+
+void cropGrid(COpenGLScene& scene, const Eigen::AlignedBox3f& box) {
+    const auto grid = std::dynamic_pointer_cast<CGridPlaneXY>(scene.getByName(SceneNames::kGround));
+    if (!grid) return;
+    const float cell = grid->getGridFrequency();
+    float low[2], high[2];
+    grid->getPlaneLimits(low[0], high[0], low[1], high[1]);
+    for (int axis = 0; axis < 2; ++axis) {
+        low[axis] = std::max(low[axis], std::ceil(box.min()[axis] / cell) * cell);
+        high[axis] = std::min(high[axis], std::floor(box.max()[axis] / cell) * cell);
+    }
+    if (low[0] < high[0] && low[1] < high[1])
+        grid->setPlaneLimits(low[0], high[0], low[1], high[1]);
+    else
+        grid->setVisibility(false);  // the content is smaller than a cell
+}
+
+Colour shownColour(const Colour& colour, const std::string& layer, const Background& background,
+                   bool all_layers) {
+    // A surface is seen by its colours, a line by how it differs from the background
+    const float distance = layer == SceneNames::kSemiDense ? kSurfaceDistance : kLineDistance;
+    const Colour seen = background.standingOut(colour, distance);
+    return all_layers ? background.faded(seen, faintnessOf(layer)) : seen;
 }
 
 }  // namespace roevo

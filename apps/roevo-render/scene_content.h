@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "background.h"
 #include "view.h"
 
 namespace roevo {
@@ -23,7 +24,21 @@ void showLayer(mrpt::opengl::COpenGLScene& scene, const std::string& layer);
 ViewContent sceneContent(const mrpt::opengl::COpenGLScene& scene);
 
 /// Makes the points of the scene's clouds `factor` times larger and of one size at any distance, and colours
-/// that could not be told from the background brighter or darker.
-void preparePoints(mrpt::opengl::COpenGLScene& scene, float factor, Background background);
+/// that could not be told from the background brighter or darker. Where all layers are shown, those that are
+/// not the map's edges are faint.
+/// @return the objects that the edges are to be drawn over
+std::vector<mrpt::opengl::CRenderizable::Ptr> preparePoints(mrpt::opengl::COpenGLScene& scene, float factor,
+                                                            const Background& background, bool all_layers);
+
+/// Makes ground grids such as can be seen on the background, faintly.
+void prepareGrid(mrpt::opengl::COpenGLScene& scene, const Background& background);
+
+/// Cuts the map's ground grid down to those whole cells that lie within the box.
+void cropGrid(mrpt::opengl::COpenGLScene& scene, const Eigen::AlignedBox3f& box);
+
+/// Colour in which a point of a layer is shown.
+/// @param layer  name of the object. @param all_layers  whether the others are shown, too
+Colour shownColour(const Colour& colour, const std::string& layer, const Background& background,
+                   bool all_layers);
 
 }  // namespace roevo

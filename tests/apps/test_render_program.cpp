@@ -77,7 +77,7 @@ class RenderProgram : public testing::Test {
 TEST_F(RenderProgram, EveryViewFillsThePicture) {
     for (const std::string view : {"iso", "top", "front"}) {
         const auto result =
-            render({"--view", view, "--size", "402x300"});  // a width that is no multiple of 4
+            render({"--view", view, "--no-legend", "--size", "402x300"});  // a width that is no multiple of 4
         ASSERT_EQ(result.exit_code, 0) << view << ' ' << result.all();
         const cv::Mat picture = cv::imread(folder_ / "room.png");
         ASSERT_EQ(picture.size(), cv::Size(402, 300)) << view;
@@ -133,7 +133,7 @@ TEST_F(RenderProgram, ShowsTheLayerThatIsWanted) {
     content.point_size = 4;
     saveScene(folder_ / "room.3Dscene", *buildScene(content));
     const auto shown = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments{"--view", "front", "--size", "400x300"};
+        std::vector<std::string> arguments{"--view", "front", "--no-legend", "--size", "400x300"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const auto result = render(arguments);
         EXPECT_EQ(result.exit_code, 0) << result.all();

@@ -18,7 +18,9 @@ namespace {
 using mrpt::img::TColor;
 using Points = std::vector<Eigen::Vector3f>;
 
-const TColor kTrajectoryColour(230, 60, 30), kReferenceColour(40, 170, 60), kKeyframeColour(40, 110, 240);
+TColor toMrpt(const Rgb& colour) {
+    return TColor(colour[0], colour[1], colour[2]);
+}
 
 /// The box that holds the bulk of the points: a few stray ones must not make everything else small.
 struct Extent {
@@ -82,10 +84,10 @@ void insertKeyframes(compat::Scene& scene, const SceneContent& content, float si
     auto tubes = mrpt::opengl::CSetOfTriangles::Create();
     lines->setName(SceneNames::kKeyframeLines);
     tubes->setName(SceneNames::kKeyframes);
-    lines->setColor_u8(kKeyframeColour);
+    lines->setColor_u8(toMrpt(SceneColours::kKeyframes));
     for (const KeyframeInfo& keyframe : content.keyframes) {
         const Points stroke = frustum(content.camera, content.T_scene_world * keyframe.T_world_camera, size);
-        appendTube(*tubes, stroke, 0.02f * size, kKeyframeColour);
+        appendTube(*tubes, stroke, 0.02f * size, toMrpt(SceneColours::kKeyframes));
         for (std::size_t i = 1; i < stroke.size(); i++)
             lines->appendLine(stroke[i - 1].x(), stroke[i - 1].y(), stroke[i - 1].z(), stroke[i].x(),
                               stroke[i].y(), stroke[i].z());
@@ -133,8 +135,8 @@ compat::Scene::Ptr buildScene(const SceneContent& content) {
     insertGround(*scene, extent);
     insertEdgeLayers(*scene, content);
     if (!reference.empty())
-        scene->insert(path(SceneNames::kReference, reference, path_radius, kReferenceColour));
-    scene->insert(path(SceneNames::kTrajectory, trajectory, path_radius, kTrajectoryColour));
+        scene->insert(path(SceneNames::kReference, reference, path_radius, toMrpt(SceneColours::kReference)));
+    scene->insert(path(SceneNames::kTrajectory, trajectory, path_radius, toMrpt(SceneColours::kTrajectory)));
     insertKeyframes(*scene, content, std::clamp(0.03f * extent.diagonal(), 0.03f, 0.3f));
     aimCamera(*scene, extent);
     return scene;

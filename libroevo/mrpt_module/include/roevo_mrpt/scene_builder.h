@@ -46,6 +46,11 @@ struct SceneNames {
     static constexpr const char* kGround = "ground";
 };
 
+/// Colours of a scene's objects.
+struct SceneColours {
+    static constexpr Rgb kTrajectory{230, 60, 30}, kReference{40, 170, 60}, kKeyframes{40, 110, 240};
+};
+
 /// The map's layers (each a CPointCloudColoured, only there when it has points, except for the edges):
 /// - edges: those that are no pseudo-edges, with points put in between so that they look like lines, and
 ///   fainter where the map trusts them less;
