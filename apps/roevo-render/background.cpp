@@ -7,9 +7,8 @@
 namespace roevo {
 namespace {
 
-// The letters' distance from the middle: grey text on grey would be none.
-constexpr float kDarkInk = 0.13f, kLightInk = 0.92f;
-constexpr float kMiddle = 0.45f;  // backgrounds brighter than this are written on in dark
+constexpr float kDarkInk = 0.13f, kLightInk = 0.92f;  // brightness of text
+constexpr float kMiddle = 0.45f;                      // backgrounds brighter than this are written on in dark
 
 std::string digitsOf(const std::string& text) {
     if (text == "dark") return "0e1117";

@@ -68,7 +68,7 @@ int drawPicture(const Settings& settings, bool layer_wanted, bool is_movie) {
     if (settings.trajectories.size() > 1)
         throw UsageError("--trajectory: a picture follows one trajectory only");
     try {
-        Background(settings.background);
+        picture.background = Background(settings.background);
     } catch (const std::invalid_argument& e) {
         throw UsageError(std::string("--background: ") + e.what());
     }
@@ -93,7 +93,6 @@ int drawPicture(const Settings& settings, bool layer_wanted, bool is_movie) {
                                                        : settings.trajectories.front();
     picture.layer = settings.layer;
     picture.layer_wanted = layer_wanted;
-    picture.background = settings.background;
     picture.legend = !settings.no_legend;
     picture.zoom = settings.zoom;
     picture.seconds = settings.seconds;

@@ -46,7 +46,7 @@ View chosenView(const PictureSettings& settings, const ViewContent& content, dou
 }  // namespace
 
 void drawPicture(const PictureSettings& settings) {
-    const Background background(settings.background);
+    const Background& background = settings.background;
     const auto scene = loadScene(settings.scene);
     // A scene that is none of ours has no layers: it is shown as it is
     if (settings.layer_wanted || scene->getByName(SceneNames::kEdges)) showLayer(*scene, settings.layer);

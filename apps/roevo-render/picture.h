@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "background.h"
+
 namespace roevo {
 
 /// What a picture or a movie shows, and how.
@@ -11,7 +13,8 @@ struct PictureSettings {
     std::string scene;       ///< .3Dscene
     std::string trajectory;  ///< whose last camera the view `follow` follows
     int width = 0, height = 0;
-    std::string view, layer, background = "dark";
+    std::string view, layer;
+    Background background{"dark"};
     bool layer_wanted = false;  ///< whether the scene must have it
     bool legend = true;
     std::optional<Eigen::Vector3d> from, look_at;  ///< instead of the view's; from only together with look_at

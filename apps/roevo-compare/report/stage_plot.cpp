@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kWidth = 960, kBarHeight = 30, kBesideHeight = 56;  // px
 constexpr std::size_t kLongestLabel = 42;                         // characters
-constexpr double kMarginByCharacter = 0.75;                       // gnuplot counts in widths of a wide one
+constexpr double kMarginByCharacter = 0.95;                       // gnuplot counts in widths of a wide one
 constexpr double kPixelsByCharacter = 6.7;                        // of a label, on the whole
 constexpr double kPixelsOfMargin = 8.4;                           // of a character of a margin
 constexpr double kClipAt = 5;  // times the median bar: what is longer is cut off, so that others stay legible
