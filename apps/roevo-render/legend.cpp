@@ -64,8 +64,10 @@ std::vector<LegendEntry> legendOf(mrpt::opengl::COpenGLScene& scene, const Backg
         std::dynamic_pointer_cast<mrpt::opengl::CGridPlaneXY>(scene.getByName(SceneNames::kGround));
     if (grid && grid->isVisible()) {
         const auto c = grid->getColor();
-        entries.push_back({"grid " + plainNumber(std::round(1000 * grid->getGridFrequency()) / 1000) + " m",
-                           {{static_cast<float>(c.R), static_cast<float>(c.G), static_cast<float>(c.B)}}});
+        entries.push_back(
+            {"grid " + plainNumber(std::round(1000 * static_cast<double>(grid->getGridFrequency())) / 1000) +
+                 " m",
+             {{static_cast<float>(c.R), static_cast<float>(c.G), static_cast<float>(c.B)}}});
     }
     return entries;
 }
