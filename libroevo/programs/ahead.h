@@ -1,8 +1,6 @@
 #pragma once
 /// A pipeline: other threads make items, the caller works on them.
 
-#include <sched.h>
-
 #include <algorithm>
 #include <condition_variable>
 #include <deque>
@@ -14,13 +12,9 @@
 #include <utility>
 #include <vector>
 
-namespace roevo {
+#include "roevo/options.h"
 
-/// Processors that this process may use.
-inline int processorCount() {
-    cpu_set_t allowed;
-    return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : 2;
-}
+namespace roevo {
 
 /// Items made ahead by other threads, a few at most, and handed out in order. An item may take two steps:
 /// each is done to one item after the other, by one thread at a time, but both go on at once. With one thread
@@ -36,7 +30,7 @@ class Ahead {
     ///                 next() throws it after the items before it
     /// @param threads  that work at a time, the caller's among them. On a single processor more would only
     ///                 take time from the work that is being timed
-    explicit Ahead(Make make, Finish finish = nullptr, int threads = processorCount())
+    explicit Ahead(Make make, Finish finish = nullptr, int threads = threadCount(0))
         : make_(std::move(make)), finish_(std::move(finish)) {
         const int useful = finish_ ? 2 : 1;
         for (int i = 0; i < std::min(threads - 1, useful); ++i) workers_.emplace_back([this] { work(); });
