@@ -26,7 +26,7 @@ struct SensorOptions {
     double readout_sigma = 0.01;      ///< how far from 0 the learned read-out time may well be, s, one sigma
     double readout_memory = 0.995;    ///< share of what was learned that is kept from frame to frame
     double readout_time = 0;     ///< time from the first to the last row of a rolling shutter, s (0: global)
-    double blur_time = 0.005;    ///< one sigma of when an edge was seen (exposure, stamps), s; 0: sharp
+    double blur_time = 0.0035;    ///< one sigma of when an edge was seen (exposure, stamps), s; 0: sharp
     double reference_row = 0.5;  ///< row whose time the stamp means, as a share of the height
 
     /// sigma_z at a depth, m.
