@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace roevo {
 namespace {
@@ -27,6 +26,10 @@ double belief(double value, double variance) {
     return value * value / (value * value + kDoubt * variance);
 }
 
+int rounded(double value) {
+    return static_cast<int>(value + (value < 0 ? -0.5 : 0.5));
+}
+
 /// Whether what was added to a side's sums is background, if it is of at least this weight.
 bool isBackground(const pixels::SideSums& from, const pixels::SideSums& to, double least) {
     const double seen = to.seen - from.seen, behind = to.behind - from.behind;
@@ -39,24 +42,21 @@ void EdgeSides::sample(const pixels::DepthView& depth, const pixels::EdgePoint& 
                        Strip& sums) {
     const bool by_column = std::abs(at.normal_x) >= std::abs(at.normal_y);
     const double run = by_column ? at.normal_x : at.normal_y;
-    const int centre = static_cast<int>(std::lround(by_column ? at.x : at.y));
-    const auto steps = [&](double reach) {
-        return static_cast<int>(std::lround(scale * reach * std::abs(run)));
-    };
+    const int centre = rounded(by_column ? at.x : at.y);
+    const auto steps = [&](double reach) { return rounded(scale * reach * std::abs(run)); };
     const int near = steps(kReach);
     const Sums minus_before = sums.minus.close, plus_before = sums.plus.close;
-    pixels::SideReach reach{by_column,      centre - near, centre + near,
-                            scale * kClear, jump,          std::numeric_limits<double>::infinity()};
+    pixels::SideReach reach{by_column, centre - near, centre + near, scale * kClear, jump, 0};
     const auto& kernels = pixels::best();
     kernels.sides(depth, at, reach, sums.minus.close, sums.plus.close);
     const bool plus = isBackground(minus_before, sums.minus.close, 1),
                minus = isBackground(plus_before, sums.plus.close, 1);
     if (plus == minus) return;
     // That side alone. A surface that recedes leaves the jump further out
-    const int far = steps(kFurther), back = 1;
+    const int far = steps(kFurther);
     const bool ascending = plus == (run > 0);
-    reach.first = centre - (ascending ? back : far);
-    reach.last = centre + (ascending ? far : back);
+    reach.first = centre - (ascending ? 1 : far);
+    reach.last = centre + (ascending ? far : 1);
     reach.widening = scale * kReach;
     Sums unused;
     kernels.sides(depth, at, reach, plus ? unused : sums.minus.wide, plus ? sums.plus.wide : unused);
@@ -108,7 +108,7 @@ void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first,
     const std::size_t count = positions.size();
     const pixels::DepthView view{depth.ptr<float>(), static_cast<std::ptrdiff_t>(depth.step1()), depth.cols,
                                  depth.rows};
-    strips_.resize(count + 1);
+    if (strips_.size() <= count) strips_.resize(count + 1);
     strips_[0] = Strip();
     for (std::size_t k = 0; k < count; ++k) {
         strips_[k + 1] = strips_[k];

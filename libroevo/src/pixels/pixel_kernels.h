@@ -65,7 +65,7 @@ struct SideReach {
     int first, last;
     double clear;     ///< px
     float jump;       ///< relative step of depth beyond which is another surface
-    double widening;  ///< px from the edge at which the step may be twice as large; can be infinite
+    double widening;  ///< px from the edge at which the step may be twice as large; 0: it never is
 };
 
 /// Sums over samples on one side of an edge: distances s from the edge (px) and inverse depths q (relative to

@@ -1,17 +1,45 @@
 // The surfaces on both sides of an edge's point; what pixel_kernels_impl.h says of itself holds here.
 #include "edge_kernels_impl.h"
 
-// Four samples: two columns (or rows) of two pixels, in the order in which they are summed
+// Four samples: two columns (or rows) of two pixels, in the order in which they are summed. Intrinsics where
+// the compiler's conversions are slow.
 typedef double FourDoubles __attribute__((vector_size(32)));
 typedef std::int64_t FourLongs __attribute__((vector_size(32)));
 typedef float FourFloats __attribute__((vector_size(16)));
 typedef std::int32_t FourInts __attribute__((vector_size(16)));
 
-inline FourFloats pickFour(const float* values, FourInts index) {
+/// values[index], of whole numbers.
+inline FourFloats pickFour(const float* values, FourDoubles index) {
 #ifdef __AVX2__
-    return (FourFloats)_mm_i32gather_ps(values, (__m128i)index, 4);
+    return (FourFloats)_mm_i32gather_ps(values, _mm256_cvttpd_epi32((__m256d)index), 4);
 #else
-    return FourFloats{values[index[0]], values[index[1]], values[index[2]], values[index[3]]};
+    const FourInts i = __builtin_convertvector(index, FourInts);
+    return FourFloats{values[i[0]], values[i[1]], values[i[2]], values[i[3]]};
+#endif
+}
+
+inline FourDoubles floorOf(FourDoubles v) {
+#ifdef __AVX2__
+    return (FourDoubles)_mm256_floor_pd((__m256d)v);
+#else
+    const FourDoubles whole = __builtin_convertvector(__builtin_convertvector(v, FourInts), FourDoubles);
+    return whole > v ? whole - 1 : whole;
+#endif
+}
+
+inline FourDoubles asDoubles(FourFloats v) {
+#ifdef __AVX2__
+    return (FourDoubles)_mm256_cvtps_pd((__m128)v);
+#else
+    return __builtin_convertvector(v, FourDoubles);
+#endif
+}
+
+inline FourFloats asFloats(FourDoubles v) {
+#ifdef __AVX2__
+    return (FourFloats)_mm256_cvtpd_ps((__m256d)v);
+#else
+    return __builtin_convertvector(v, FourFloats);
 #endif
 }
 
@@ -23,6 +51,15 @@ inline unsigned bitsOf(FourLongs condition) {
     for (int l = 0; l < 4; ++l) bits |= static_cast<unsigned>(condition[l] & 1) << l;
     return bits;
 #endif
+}
+
+/// 0 where the condition is false.
+inline FourDoubles only(FourLongs condition, FourDoubles v) {
+    return (FourDoubles)((FourLongs)v & condition);
+}
+
+inline FourDoubles magnitudeOf(FourDoubles v) {
+    return (FourDoubles)((FourLongs)v & INT64_MAX);
 }
 
 /// Sums in the order of SideSums.
@@ -48,49 +85,47 @@ inline void transpose(FourDoubles a, FourDoubles b, FourDoubles c, FourDoubles d
     out[3] = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
 
-void sides(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& minus_sums,
-           SideSums& plus_sums) {
-    constexpr FourInts kFirst = {0, 0, 1, 1}, kSecond = {0, 1, 0, 1};
+template <bool kWidens>
+void sumSides(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& minus_sums,
+              SideSums& plus_sums) {
+    constexpr FourDoubles kFirst = {0, 0, 1, 1}, kSecond = {0, 1, 0, 1};
     const bool by_column = reach.by_column;
     const double at_main = by_column ? at.x : at.y, at_other = by_column ? at.y : at.x;
-    const double n_main = by_column ? at.normal_x : at.normal_y,
-                 n_other = by_column ? at.normal_y : at.normal_x;
+    const double n_main = by_column ? at.normal_x : at.normal_y;
+    const double n_other = by_column ? at.normal_y : at.normal_x;
     const double slope = n_other / n_main;
-    const auto row = static_cast<std::int32_t>(depth.stride);
-    const std::int32_t along = by_column ? 1 : row, across = by_column ? row : 1;
-    const std::int32_t size = by_column ? depth.width : depth.height,
-                       other_size = by_column ? depth.height : depth.width;
-    const std::int32_t first = reach.first < 0 ? 0 : reach.first,
-                       last = reach.last < size ? reach.last : size - 1;
-    const float z = at.depth, step = reach.jump * z;
+    const auto row = static_cast<double>(depth.stride);
+    const double along = by_column ? 1 : row, across = by_column ? row : 1;
+    const int size = by_column ? depth.width : depth.height;
+    const int first = reach.first < 0 ? 0 : reach.first, last = reach.last < size ? reach.last : size - 1;
+    const double last_main = last, last_other = (by_column ? depth.height : depth.width) - 1;
+    const float z = at.depth;
+    const auto step = static_cast<double>(reach.jump * z);
     SideAccumulator minus(minus_sums), plus(plus_sums);
-    for (std::int32_t column = first; column <= last; column += 2) {
-        const FourInts i = column + kFirst;
-        const FourDoubles from_point = __builtin_convertvector(i, FourDoubles) - at_main;
-        const FourDoubles j = at_other + from_point * slope;
-        const FourInts towards_zero = __builtin_convertvector(j, FourInts);
-        const FourLongs above = __builtin_convertvector(towards_zero, FourDoubles) > j;
-        const FourInts k = towards_zero + __builtin_convertvector(above, FourInts) + kSecond;
-        const FourDoubles on_other = __builtin_convertvector(k, FourDoubles);
-        const FourDoubles signed_distance = n_main * from_point + n_other * (on_other - at_other);
-        const FourDoubles distance = signed_distance < 0 ? -signed_distance : signed_distance;
-        const FourInts inside = (i <= last) & (k >= 0) & (k < other_size);
-        const FourFloats there = pickFour(depth.data, inside & (i * along + k * across));
-        const FourInts known = inside & (there > 0) & (there <= __FLT_MAX__);
-        const FourLongs counts = __builtin_convertvector(known, FourLongs) & (distance >= reach.clear);
-        const FourFloats behind = there - z, apart = behind < 0 ? -behind : behind;
-        const FourFloats widened = 1 + __builtin_convertvector(distance / reach.widening, FourFloats);
-        const FourLongs own = counts & __builtin_convertvector(apart <= widened * reach.jump * z, FourLongs);
-        const FourLongs beyond = counts & __builtin_convertvector(behind > step, FourLongs);
-        const FourDoubles off = j - on_other, weight = 1 - (off < 0 ? -off : off);
-        const FourDoubles w = (FourDoubles)((FourLongs)weight & own);
-        const FourDoubles relative = __builtin_convertvector(z / there, FourDoubles) - 1;
-        const FourDoubles q = (FourDoubles)((FourLongs)relative & own);
+    FourDoubles i = first + kFirst;
+    for (int column = first; column <= last; column += 2, i += 2) {
+        const FourDoubles from_point = i - at_main, j = at_other + from_point * slope;
+        const FourDoubles k = floorOf(j) + kSecond;
+        const FourDoubles signed_distance = n_main * from_point + n_other * (k - at_other);
+        const FourDoubles distance = magnitudeOf(signed_distance);
+        const FourLongs inside = (i <= last_main) & (k >= 0) & (k <= last_other);
+        const FourFloats there = pickFour(depth.data, only(inside, i * along + k * across));
+        const FourDoubles there_known = asDoubles(there), behind = asDoubles(there - z);
+        const FourLongs counts = inside & (there_known > 0) &
+                                 (there_known <= static_cast<double>(__FLT_MAX__)) &
+                                 (distance >= reach.clear);
+        FourLongs own = counts;
+        if constexpr (kWidens)
+            own &=
+                magnitudeOf(behind) <= asDoubles((1 + asFloats(distance / reach.widening)) * reach.jump * z);
+        else
+            own &= magnitudeOf(behind) <= step;
+        const FourDoubles weight = 1 - magnitudeOf(j - k);
+        const FourDoubles w = only(own, weight), q = only(own, asDoubles(z / there) - 1);
         const FourDoubles ws = w * distance, wq = w * q;
         FourDoubles firsts[4], lasts[4];
         transpose(w, ws, wq, ws * distance, firsts);
-        transpose(ws * q, wq * q, (FourDoubles)((FourLongs)weight & counts),
-                  (FourDoubles)((FourLongs)weight & beyond), lasts);
+        transpose(ws * q, wq * q, only(counts, weight), only(counts & (behind > step), weight), lasts);
         const unsigned on_plus = bitsOf(signed_distance > 0);
         for (int l = 0; l < 4; ++l) {
             SideAccumulator& side = (on_plus >> l & 1) != 0 ? plus : minus;
@@ -100,4 +135,9 @@ void sides(const DepthView& depth, const EdgePoint& at, const SideReach& reach, 
     }
     minus.storeTo(minus_sums);
     plus.storeTo(plus_sums);
+}
+
+void sides(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& minus,
+           SideSums& plus) {
+    (reach.widening > 0 ? sumSides<true> : sumSides<false>)(depth, at, reach, minus, plus);
 }
