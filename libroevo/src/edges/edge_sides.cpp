@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pixels/nearest.h"
+
 namespace roevo {
 namespace {
 
@@ -26,10 +28,6 @@ double belief(double value, double variance) {
     return value * value / (value * value + kDoubt * variance);
 }
 
-int rounded(double value) {
-    return static_cast<int>(value + (value < 0 ? -0.5 : 0.5));
-}
-
 /// Whether what was added to a side's sums is background, if it is of at least this weight.
 bool isBackground(const pixels::SideSums& from, const pixels::SideSums& to, double least) {
     const double seen = to.seen - from.seen, behind = to.behind - from.behind;
@@ -42,8 +40,8 @@ void EdgeSides::sample(const pixels::DepthView& depth, const pixels::EdgePoint& 
                        Strip& sums) {
     const bool by_column = std::abs(at.normal_x) >= std::abs(at.normal_y);
     const double run = by_column ? at.normal_x : at.normal_y;
-    const int centre = rounded(by_column ? at.x : at.y);
-    const auto steps = [&](double reach) { return rounded(scale * reach * std::abs(run)); };
+    const int centre = nearestInteger(by_column ? at.x : at.y);
+    const auto steps = [&](double reach) { return nearestInteger(scale * reach * std::abs(run)); };
     const int near = steps(kReach);
     const Sums minus_before = sums.minus.close, plus_before = sums.plus.close;
     pixels::SideReach reach{by_column, centre - near, centre + near, scale * kClear, jump, 0};
