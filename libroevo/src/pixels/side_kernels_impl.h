@@ -43,7 +43,8 @@ inline FourFloats asFloats(FourDoubles v) {
 #endif
 }
 
-inline unsigned bitsOf(FourLongs condition) {
+/// One bit for each lane that is true.
+inline unsigned laneBits(FourLongs condition) {
 #ifdef __AVX2__
     return static_cast<unsigned>(_mm256_movemask_pd((__m256d)condition));
 #else
@@ -63,6 +64,7 @@ inline FourDoubles magnitudeOf(FourDoubles v) {
 }
 
 /// Sums in the order of SideSums.
+static_assert(sizeof(SideSums) == 2 * sizeof(FourDoubles));
 struct SideAccumulator {
     FourDoubles first, last;
     explicit SideAccumulator(const SideSums& sums)
@@ -126,7 +128,7 @@ void sumSides(const DepthView& depth, const EdgePoint& at, const SideReach& reac
         FourDoubles firsts[4], lasts[4];
         transpose(w, ws, wq, ws * distance, firsts);
         transpose(ws * q, wq * q, only(counts, weight), only(counts & (behind > step), weight), lasts);
-        const unsigned on_plus = bitsOf(signed_distance > 0);
+        const unsigned on_plus = laneBits(signed_distance > 0);
         for (int l = 0; l < 4; ++l) {
             SideAccumulator& side = (on_plus >> l & 1) != 0 ? plus : minus;
             side.first += firsts[l];
