@@ -207,5 +207,80 @@ TEST(EdgeKernels, DepthsThatJumpAreTold) {
     }
 }
 
+/// What sides() should add: pixel by pixel.
+void plainSides(const cv::Mat& depth, const pixels::EdgePoint& at, const pixels::SideReach& reach,
+                pixels::SideSums& minus, pixels::SideSums& plus) {
+    const Eigen::Vector2d point(at.x, at.y), normal(at.normal_x, at.normal_y);
+    const int main = reach.by_column ? 0 : 1;
+    for (int y = 0; y < depth.rows; ++y) {
+        for (int x = 0; x < depth.cols; ++x) {
+            const Eigen::Vector2d p(x, y);
+            const double away = p[main] - point[main];
+            const double line = point[1 - main] + away * normal[1 - main] / normal[main];
+            const double share = 1 - std::abs(p[1 - main] - line), distance = normal.dot(p - point);
+            const float z = depth.at<float>(y, x);
+            if (p[main] < reach.first || p[main] > reach.last || share <= 0 ||
+                std::abs(distance) < reach.clear || !(z > 0 && std::isfinite(z)))
+                continue;
+            pixels::SideSums& sums = distance > 0 ? plus : minus;
+            sums.seen += share;
+            if (z - at.depth > reach.jump * at.depth) sums.behind += share;
+            const double s = std::abs(distance), q = static_cast<double>(at.depth / z) - 1;
+            const double widened = reach.widening > 0 ? 1 + s / reach.widening : 1;
+            if (std::abs(z - at.depth) > static_cast<float>(widened) * reach.jump * at.depth) continue;
+            const double more[] = {share, share * s, share * q, share * s * s, share * s * q, share * q * q};
+            double* const targets[] = {&sums.count, &sums.s, &sums.q, &sums.ss, &sums.sq, &sums.qq};
+            for (int k = 0; k < 6; ++k) *targets[k] += more[k];
+        }
+    }
+}
+
+TEST(EdgeKernels, SidesAreSummedPixelByPixel) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(0, 1);
+    cv::Mat depth(23, 31, CV_32FC1);
+    double seen = 0, behind = 0, own = 0;
+    for (int repeat = 0; repeat < 2000; ++repeat) {
+        for (int y = 0; y < depth.rows; ++y) {
+            for (int x = 0; x < depth.cols; ++x) {
+                const double kind = unit(random);
+                depth.at<float>(y, x) = kind < 0.05   ? 0.0F
+                                        : kind < 0.07 ? NAN
+                                        : kind < 0.09
+                                            ? INFINITY
+                                            : static_cast<float>((x > 15 ? 2.0 : 2.2) + 0.1 * unit(random));
+            }
+        }
+        const double angle = repeat % 8 == 0 ? M_PI_2 * (repeat % 4) : 2 * M_PI * unit(random);
+        const pixels::EdgePoint at{31 * unit(random), 23 * unit(random), std::cos(angle), std::sin(angle),
+                                   static_cast<float>(2 + 0.1 * unit(random))};
+        pixels::SideReach reach{
+            std::abs(at.normal_x) >= std::abs(at.normal_y), 0, 0, 0.6, 0.03F, repeat % 3 == 0 ? 4.0 : 0.0};
+        const int centre = static_cast<int>(reach.by_column ? at.x : at.y);
+        reach.first = centre - repeat % 9;
+        reach.last = centre + repeat / 2 % 9;
+        std::vector<pixels::SideSums> found;
+        pixels::SideSums expected[2];
+        plainSides(depth, at, reach, expected[0], expected[1]);
+        for (const auto* table : tables()) {
+            const std::size_t i = found.size();
+            found.resize(i + 2);
+            table->sides({depth.ptr<float>(), 31, 31, 23}, at, reach, found[i], found[i + 1]);
+            EXPECT_EQ(std::memcmp(&found[0], &found[i], 2 * sizeof found[0]), 0) << table->name;
+        }
+        for (int side = 0; side < 2; ++side) {
+            const auto* plain = &expected[side].count;
+            const auto* sums = &found[static_cast<std::size_t>(side)].count;
+            for (int k = 0; k < 8; ++k)
+                EXPECT_NEAR(sums[k], plain[k], 1e-9) << repeat << ' ' << side << ' ' << k;
+            seen += expected[side].seen;
+            behind += expected[side].behind;
+            own += expected[side].count;
+        }
+    }
+    EXPECT_GT(behind, 0.2 * seen);
+    EXPECT_GT(own, 0.2 * seen);
+}
+
 }  // namespace
 }  // namespace roevo

@@ -30,8 +30,8 @@ struct Cubic {
 }  // namespace
 
 bool PinholeCamera::isDistorted() const {
-    return lens == LensModel::kKannalaBrandt || isRational() ||
-           std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0; });
+    return std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0; }) ||
+           lens == LensModel::kKannalaBrandt || isRational();
 }
 
 PinholeCamera PinholeCamera::undistorted() const {

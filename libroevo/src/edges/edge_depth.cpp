@@ -2,44 +2,54 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
+#include <cstring>
 
+#include "pixels/nearest.h"
 #include "pixels/pixel_kernels.h"
 
 namespace roevo {
 namespace {
 
 constexpr int kMaxRadius = 15;
-constexpr int kMostAcross = 5;     ///< pixels to each side; of larger patches every n-th is looked at
-constexpr int kMinForeground = 3;  ///< fewer near pixels are speckle
-struct Sample {
-    float z, inverse, dx, dy;
-};
+constexpr int kMostAcross = 5;             ///< pixels to each side; of larger patches every n-th is looked at
+constexpr std::size_t kMinForeground = 3;  ///< fewer near pixels are speckle
+/// Position relative to the patch's origin, inverse depth, and nothing.
+typedef float Sample __attribute__((vector_size(16)));
 
 /// Inverse depth at the patch's origin of the least-squares plane 1/z = a + b dx + c dy, or of the mean where
 /// the samples do not span a plane.
 float planeAtOrigin(const Sample* samples, int count) {
-    float sum_x = 0, sum_y = 0, sum_q = 0;
+    Sample sum{};
+    for (int i = 0; i < count; ++i) sum += samples[i];
+    const auto n = static_cast<float>(count);
+    const Sample mean = sum * (1 / n);
+    Sample squares{}, by_inverse{};  // xx xy yy, and xq yq
     for (int i = 0; i < count; ++i) {
-        sum_x += samples[i].dx;
-        sum_y += samples[i].dy;
-        sum_q += samples[i].inverse;
+        const Sample d = samples[i] - mean;
+        squares += __builtin_shufflevector(d, d, 0, 0, 1, 3) * __builtin_shufflevector(d, d, 0, 1, 1, 3);
+        by_inverse += d * d[2];
     }
-    const float scale = 1 / static_cast<float>(count);
-    const float mx = sum_x * scale, my = sum_y * scale, mq = sum_q * scale;
-    float xx = 0, xy = 0, yy = 0, xq = 0, yq = 0;
-    for (int i = 0; i < count; ++i) {
-        const float dx = samples[i].dx - mx, dy = samples[i].dy - my, dq = samples[i].inverse - mq;
-        xx += dx * dx;
-        xy += dx * dy;
-        yy += dy * dy;
-        xq += dx * dq;
-        yq += dy * dq;
-    }
+    const float xx = squares[0], xy = squares[1], yy = squares[2], xq = by_inverse[0], yq = by_inverse[1];
     const float determinant = xx * yy - xy * xy;
-    if (count < 6 || determinant < 0.05F * static_cast<float>(count * count)) return mq;
+    if (count < 6 || determinant < 0.05F * static_cast<float>(count * count)) return mean[2];
     const float b = (xq * yy - yq * xy) / determinant, c = (yq * xx - xq * xy) / determinant;
-    return mq - b * mx - c * my;
+    return mean[2] - b * mean[0] - c * mean[1];
+}
+
+/// A depth that is not negative and the pixel it is of, as a number that orders by depth, then row, then
+/// column.
+std::uint64_t keyOf(float z, int x, int y) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &z, sizeof bits);
+    return std::uint64_t{bits} << 32 | static_cast<std::uint32_t>(y) << 16 | static_cast<std::uint32_t>(x);
+}
+
+float depthOf(std::uint64_t key) {
+    const auto bits = static_cast<std::uint32_t>(key >> 32);
+    float z;
+    std::memcpy(&z, &bits, sizeof z);
+    return z;
 }
 
 /// A square of depths around pixel (x, y).
@@ -65,44 +75,44 @@ float depthAtEdge(float inverse, float nearest, float farthest, const Limits& li
 EdgeDepth nearestSurface(const cv::Mat& depth, const Square& square, float u, float v, const Limits& limits) {
     const int radius = square.radius;
     const int step = std::max(1, (radius + kMostAcross - 1) / kMostAcross);
-    std::array<Sample, (2 * kMaxRadius + 1) * (2 * kMaxRadius + 1)> samples;
-    int count = 0;
-    float nearest = limits.far, farthest = limits.near;
+    constexpr std::size_t kMostSamples = (2 * kMaxRadius + 1) * (2 * kMaxRadius + 1);
+    std::array<std::uint64_t, kMostSamples> keys;
+    std::size_t count = 0;
     for (int y = std::max(0, square.y - radius); y <= std::min(depth.rows - 1, square.y + radius);
          y += step) {
         const auto* row = depth.ptr<float>(y);
         for (int x = std::max(0, square.x - radius); x <= std::min(depth.cols - 1, square.x + radius);
              x += step) {
             const float z = row[x];
-            if (!(z >= limits.near && z <= limits.far)) continue;
-            samples[static_cast<std::size_t>(count++)] = {z, 1 / z, static_cast<float>(x) - u,
-                                                          static_cast<float>(y) - v};
-            nearest = std::min(nearest, z);
-            farthest = std::max(farthest, z);
+            if (z >= limits.near && z <= limits.far) keys[count++] = keyOf(z, x, y);
         }
     }
     if (count < kMinForeground) return {};
+    const auto [least, most] = std::minmax_element(keys.begin(), keys.begin() + count);
     EdgeDepth result;
-    int begin = 0, end = count;
+    std::size_t begin = 0, end = count;
+    float nearest = depthOf(*least), farthest = depthOf(*most);
     if (farthest > nearest * limits.jump) {
-        std::sort(samples.begin(), samples.begin() + count, [](const Sample& a, const Sample& b) {
-            return a.z != b.z ? a.z < b.z : (a.dy != b.dy ? a.dy < b.dy : a.dx < b.dx);
-        });
+        std::sort(keys.begin(), keys.begin() + count);
         end = 1;
         while (end < count) {
-            if (samples[static_cast<std::size_t>(end)].z >
-                samples[static_cast<std::size_t>(end) - 1].z * limits.jump) {
+            if (depthOf(keys[end]) > depthOf(keys[end - 1]) * limits.jump) {
                 if (end - begin >= kMinForeground) break;
                 begin = end;  // speckle in front of everything else
             }
             ++end;
         }
         if (end - begin < kMinForeground) return {};
-        nearest = samples[static_cast<std::size_t>(begin)].z;
-        farthest = samples[static_cast<std::size_t>(end) - 1].z;
+        nearest = depthOf(keys[begin]);
+        farthest = depthOf(keys[end - 1]);
         result.occluding = end < count;
     }
-    result.depth = depthAtEdge(planeAtOrigin(samples.data() + begin, end - begin), nearest, farthest, limits);
+    std::array<Sample, kMostSamples> samples;
+    for (std::size_t i = begin; i < end; ++i)
+        samples[i - begin] = Sample{static_cast<float>(keys[i] & 0xFFFF) - u,
+                                    static_cast<float>(keys[i] >> 16 & 0xFFFF) - v, 1 / depthOf(keys[i]), 0};
+    result.depth =
+        depthAtEdge(planeAtOrigin(samples.data(), static_cast<int>(end - begin)), nearest, farthest, limits);
     return result;
 }
 
@@ -110,7 +120,7 @@ EdgeDepth nearestSurface(const cv::Mat& depth, const Square& square, float u, fl
 
 EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOptions& edges,
                           const SensorOptions& sensor) {
-    const Square square{static_cast<int>(std::lround(u)), static_cast<int>(std::lround(v)),
+    const Square square{nearestInteger(static_cast<double>(u)), nearestInteger(static_cast<double>(v)),
                         std::min(edges.depth_patch_radius, kMaxRadius)};
     const Limits limits{static_cast<float>(sensor.min_depth), static_cast<float>(sensor.depth_limit),
                         1 + static_cast<float>(edges.depth_jump)};
@@ -119,10 +129,11 @@ EdgeDepth foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOpti
     if (size <= pixels::kMostPatch && left >= 0 && top >= 0 && left + pixels::kMostPatch < depth.cols &&
         top + size <= depth.rows) {
         pixels::DepthPatch patch;
-        pixels::best().depthPatch(depth.ptr<float>(top) + left, static_cast<std::ptrdiff_t>(depth.step1()),
-                                  size, limits.near, limits.far, limits.jump,
-                                  u - static_cast<float>(square.x), v - static_cast<float>(square.y), patch);
-        if (patch.count < kMinForeground) return {};
+        pixels::best().depthPatch(depth.ptr<float>(top) + left,
+                                  static_cast<std::ptrdiff_t>(depth.step[0] / sizeof(float)), size,
+                                  limits.near, limits.far, limits.jump, u - static_cast<float>(square.x),
+                                  v - static_cast<float>(square.y), patch);
+        if (patch.count < static_cast<int>(kMinForeground)) return {};
         if (patch.farthest <= patch.nearest * limits.jump)
             return {depthAtEdge(patch.inverse, patch.nearest, patch.farthest, limits), false};
     }

@@ -68,19 +68,21 @@ int EdgeGrid::nearest(float u, float v, float radius, Accept&& accept, int guess
         best_squared = squared;
     };
     if (guess >= 0) consider(static_cast<std::size_t>(guess));
-    for (int step = 0;; ++step) {  // rows 0, -1, +1, -2, +2 ...
-        const int dy = (step & 1) != 0 ? -(step + 1) / 2 : step / 2;
+    for (int away = 0;; ++away) {  // rows 0, -1, +1, -2, +2 ...
         // Points are within half a pixel of their cell's centre, the query within half a pixel of its own
-        const auto gap = static_cast<float>(std::max(0, std::abs(dy) - 1));
+        const auto gap = static_cast<float>(std::max(0, away - 1));
         const float left = best_squared - gap * gap;
         if (left <= 0) break;
-        const int y = cv + dy;
-        if (y < 0 || y >= height_) continue;
         const int reach = static_cast<int>(std::sqrt(left)) + 1, first = cu - reach;
-        for (std::uint64_t row = occupancy(first, y, 2 * reach + 1); row != 0; row &= row - 1) {
-            const int x = first + __builtin_ctzll(row);
-            consider(static_cast<std::size_t>(cell_[static_cast<std::size_t>(y * width_ + x)]));
-        }
+        const auto look = [&](int y) {
+            if (y < 0 || y >= height_) return;
+            for (std::uint64_t row = occupancy(first, y, 2 * reach + 1); row != 0; row &= row - 1) {
+                const int x = first + __builtin_ctzll(row);
+                consider(static_cast<std::size_t>(cell_[static_cast<std::size_t>(y * width_ + x)]));
+            }
+        };
+        look(cv - away);
+        if (away > 0) look(cv + away);
     }
     return best;
 }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "pixels/nearest.h"
 
 namespace roevo {
 namespace {
@@ -27,83 +28,48 @@ double belief(double value, double variance) {
     return value * value / (value * value + kDoubt * variance);
 }
 
-/// Calls take(signed distance from the edge, depth, weight) for the pixels with depth within `reach` along
-/// the normal, but not for those next to the edge. Column by column (or row by row), between the two pixels
-/// that the normal passes: where edges run along rows or columns, the nearest one would be off to the same
-/// side all along.
-template <typename Take>
-void visit(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, double reach, double clear,
-           const cv::Mat& depth, const Take& take) {
-    const bool by_column = std::abs(normal.x()) >= std::abs(normal.y());
-    const int main = by_column ? 0 : 1, other = 1 - main;
-    const double slope = normal[other] / normal[main];
-    const int steps = static_cast<int>(std::lround(reach * std::abs(normal[main])));
-    const int centre = static_cast<int>(std::lround(pixel[main]));
-    const int size[2] = {depth.cols, depth.rows};
-    const auto row = static_cast<std::ptrdiff_t>(depth.step1());
-    const std::ptrdiff_t along = by_column ? 1 : row, across = by_column ? row : 1;
-    const auto* depths = depth.ptr<float>();
-    for (int i = std::max(0, centre - steps); i <= std::min(size[main] - 1, centre + steps); ++i) {
-        const double j = pixel[other] + (i - pixel[main]) * slope;
-        const int towards_zero = static_cast<int>(j), below = towards_zero - (towards_zero > j ? 1 : 0);
-        for (int k = std::max(0, below); k <= std::min(size[other] - 1, below + 1); ++k) {
-            const float there = depths[i * along + k * across];
-            const double distance = normal[main] * (i - pixel[main]) + normal[other] * (k - pixel[other]);
-            if (std::abs(distance) >= clear && there > 0 && there <= std::numeric_limits<float>::max())
-                take(distance, there, 1 - std::abs(j - k));
-        }
-    }
+/// Whether what was added to a side's sums is background, if it is of at least this weight.
+bool isBackground(const pixels::SideSums& from, const pixels::SideSums& to, double least) {
+    const double seen = to.seen - from.seen, behind = to.behind - from.behind;
+    return seen >= least && behind > kMostlyBehind * seen;
 }
 
 }  // namespace
 
-void EdgeSides::Sums::add(double distance, double value, double weight) {
-    count += weight;
-    s += weight * distance;
-    q += weight * value;
-    ss += weight * distance * distance;
-    sq += weight * distance * value;
-    qq += weight * value * value;
-}
-
-bool EdgeSides::Side::isBackground(double least) const {
-    return seen >= least && behind > kMostlyBehind * seen;
-}
-
-void EdgeSides::sample(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, float z,
-                       const cv::Mat& depth, float jump, double scale, Strip& sums) {
-    const Strip before = sums;
-    visit(pixel, normal, scale * kReach, scale * kClear, depth,
-          [&](double distance, float there, double weight) {
-              Side& side = distance > 0 ? sums.plus : sums.minus;
-              side.seen += weight;
-              if (there - z > jump * z) side.behind += weight;
-              if (std::abs(there - z) > jump * z) return;
-              side.close.add(std::abs(distance), static_cast<double>(z / there) - 1, weight);
-          });
-    const Strip own = sums - before;
-    const bool plus = own.minus.isBackground(1), minus = own.plus.isBackground(1);
+void EdgeSides::sample(const pixels::DepthView& depth, const pixels::EdgePoint& at, float jump, double scale,
+                       Strip& sums) {
+    const bool by_column = std::abs(at.normal_x) >= std::abs(at.normal_y);
+    const double run = by_column ? at.normal_x : at.normal_y;
+    const int centre = nearestInteger(by_column ? at.x : at.y);
+    const auto steps = [&](double reach) { return nearestInteger(scale * reach * std::abs(run)); };
+    const int near = steps(kReach);
+    const Sums minus_before = sums.minus.close, plus_before = sums.plus.close;
+    pixels::SideReach reach{by_column, centre - near, centre + near, scale * kClear, jump, 0};
+    const auto& kernels = pixels::best();
+    kernels.sides(depth, at, reach, sums.minus.close, sums.plus.close);
+    const bool plus = isBackground(minus_before, sums.minus.close, 1),
+               minus = isBackground(plus_before, sums.plus.close, 1);
     if (plus == minus) return;
-    visit(pixel, normal, scale * kFurther, scale * kClear, depth,
-          [&](double distance, float there, double weight) {
-              const double away = plus ? distance : -distance;
-              // A surface that recedes leaves the jump further out
-              if (away < 0 ||
-                  std::abs(there - z) > (1 + static_cast<float>(away / (scale * kReach))) * jump * z)
-                  return;
-              (plus ? sums.plus : sums.minus).wide.add(away, static_cast<double>(z / there) - 1, weight);
-          });
+    // That side alone. A surface that recedes leaves the jump further out
+    const int far = steps(kFurther);
+    const bool ascending = plus == (run > 0);
+    reach.first = centre - (ascending ? 1 : far);
+    reach.last = centre + (ascending ? far : 1);
+    reach.widening = scale * kReach;
+    Sums unused;
+    kernels.sides(depth, at, reach, plus ? unused : sums.minus.wide, plus ? sums.plus.wide : unused);
 }
 
-EdgeSides::Meeting EdgeSides::fit(const Sums& sums) {
-    if (sums.count < kMinSamples) return {};
-    const double mean_s = sums.s / sums.count, mean_q = sums.q / sums.count;
-    const double ss = sums.ss - sums.s * mean_s, sq = sums.sq - sums.s * mean_q,
-                 qq = sums.qq - sums.q * mean_q;
-    if (ss < 0.1 * sums.count) return {};
+EdgeSides::Meeting EdgeSides::fit(const Sums& from, const Sums& to) {
+    const double count = to.count - from.count, s = to.s - from.s, q = to.q - from.q;
+    if (count < kMinSamples) return {};
+    const double mean_s = s / count, mean_q = q / count;
+    const double ss = (to.ss - from.ss) - s * mean_s, sq = (to.sq - from.sq) - s * mean_q,
+                 qq = (to.qq - from.qq) - q * mean_q;
+    if (ss < 0.1 * count) return {};
     const double slope = sq / ss;
-    const double variance = kCorrelated * std::max(0.0, qq - slope * sq) / (sums.count - 2) + kLeastVariance;
-    return {true, mean_q - slope * mean_s, variance * (1 / sums.count + mean_s * mean_s / ss)};
+    const double variance = kCorrelated * std::max(0.0, qq - slope * sq) / (count - 2) + kLeastVariance;
+    return {true, mean_q - slope * mean_s, variance * (1 / count + mean_s * mean_s / ss)};
 }
 
 double EdgeSides::correction(const Meeting& plus, const Meeting& minus) {
@@ -117,30 +83,38 @@ double EdgeSides::correction(const Meeting& plus, const Meeting& minus) {
     return step_belief * nearer + (1 - step_belief) * bend_belief * bend;
 }
 
-double EdgeSides::correction(const Side& only) {
-    const Meeting close = fit(only.close), wide = fit(only.wide);
+double EdgeSides::correction(const Side& from, const Side& to) {
+    const Meeting close = fit(from.close, to.close);
     if (!close.known) return 0;
+    const Meeting wide = fit(from.wide, to.wide);
     const double apart = wide.value - close.value;
     const bool agree = wide.known && apart * apart <= kAgree * kAgree * close.variance;
     const Meeting& best = agree ? wide : close;
     return best.value * belief(best.value, best.variance);
 }
 
-double EdgeSides::correction(const Strip& strip) {
-    const bool plus = strip.minus.isBackground(kMinSeen), minus = strip.plus.isBackground(kMinSeen);
-    if (plus != minus) return correction(plus ? strip.plus : strip.minus);
-    return correction(fit(strip.plus.close), fit(strip.minus.close));
+double EdgeSides::correction(const Strip& from, const Strip& to) {
+    const bool plus = isBackground(from.minus.close, to.minus.close, kMinSeen),
+               minus = isBackground(from.plus.close, to.plus.close, kMinSeen);
+    if (plus != minus) return plus ? correction(from.plus, to.plus) : correction(from.minus, to.minus);
+    return correction(fit(from.plus.close, to.plus.close), fit(from.minus.close, to.minus.close));
 }
 
 void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first,
-                        const std::vector<Eigen::Vector2d>& pixels, const cv::Mat& depth, float jump,
+                        const std::vector<Eigen::Vector2d>& positions, const cv::Mat& depth, float jump,
                         double scale, std::vector<float>& z) {
-    const std::size_t count = pixels.size();
-    strips_.assign(count + 1, Strip());
+    const std::size_t count = positions.size();
+    const pixels::DepthView view{depth.ptr<float>(), static_cast<std::ptrdiff_t>(depth.step1()), depth.cols,
+                                 depth.rows};
+    if (strips_.size() <= count) strips_.resize(count + 1);
+    strips_[0] = Strip();
     for (std::size_t k = 0; k < count; ++k) {
         strips_[k + 1] = strips_[k];
-        const Eigen::Vector2d normal(edges.normal_x[first + k], edges.normal_y[first + k]);
-        if (z[k] > 0) sample(pixels[k], normal, z[k], depth, jump, scale, strips_[k + 1]);
+        if (!(z[k] > 0)) continue;
+        const pixels::EdgePoint point{positions[k].x(), positions[k].y(),
+                                      static_cast<double>(edges.normal_x[first + k]),
+                                      static_cast<double>(edges.normal_y[first + k]), z[k]};
+        sample(view, point, jump, scale, strips_[k + 1]);
     }
     const auto most = static_cast<double>(jump);
     const auto window = static_cast<std::size_t>(std::lround(scale * kWindow));
@@ -150,7 +124,7 @@ void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first,
         // As many before as after, so that a depth that changes along the edge does not lean to one side
         const std::size_t reach = std::min({window, std::max(k, least), std::max(count - 1 - k, least)});
         const std::size_t from = k > reach ? k - reach : 0, to = std::min(count, k + reach + 1);
-        const double value = std::clamp(correction(strips_[to] - strips_[from]), -most, most);
+        const double value = std::clamp(correction(strips_[from], strips_[to]), -most, most);
         z[k] = static_cast<float>(static_cast<double>(z[k]) / (1 + value));
     }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "edges/organized_edges.h"
+#include "pixels/pixel_kernels.h"
 
 namespace roevo {
 
@@ -21,49 +22,36 @@ class EdgeSides {
   public:
     /// @param edges   with normals
     /// @param first   the edge's first point
-    /// @param pixels  of the edge's points in `depth`, px; a lens that distorts hardly turns normals
+    /// @param positions  of the edge's points in `depth`, px; a lens that distorts hardly turns normals
     /// @param depth   CV_32FC1, m, 0 where unknown
     /// @param jump    relative step of depth beyond which is what the edge does not belong to
     /// @param scale   PinholeCamera::pixelScale()
     /// @param z       depths of the points, m, 0 where unknown (those stay); corrected in place
-    void correct(const OrganizedEdges& edges, std::size_t first, const std::vector<Eigen::Vector2d>& pixels,
-                 const cv::Mat& depth, float jump, double scale, std::vector<float>& z);
+    void correct(const OrganizedEdges& edges, std::size_t first,
+                 const std::vector<Eigen::Vector2d>& positions, const cv::Mat& depth, float jump,
+                 double scale, std::vector<float>& z);
 
   private:
-    /// Of samples (distance from the edge, px; inverse depth relative to the edge point's, minus 1).
-    struct Sums {
-        double count = 0, s = 0, q = 0, ss = 0, sq = 0, qq = 0;
-        void add(double distance, double value, double weight);
-        Sums operator-(const Sums& o) const {
-            return {count - o.count, s - o.s, q - o.q, ss - o.ss, sq - o.sq, qq - o.qq};
-        }
-    };
+    using Sums = pixels::SideSums;
     /// What the normals of an edge's points pass on one side.
     struct Side {
-        Sums close;         ///< samples of the edge's own surfaces
-        Sums wide;          ///< further ones too, where the other side is background
-        double seen = 0;    ///< weight of all close samples, on whatever surface
-        double behind = 0;  ///< of those of them that are background
-        Side operator-(const Side& o) const {
-            return {close - o.close, wide - o.wide, seen - o.seen, behind - o.behind};
-        }
-        bool isBackground(double least) const;  ///< by samples of at least this weight
+        Sums close;  ///< near the edge
+        Sums wide;   ///< further out too, where the other side is background
     };
     struct Strip {
         Side plus, minus;  ///< along the normal, and against it
-        Strip operator-(const Strip& other) const { return {plus - other.plus, minus - other.minus}; }
     };
     /// Where a side's line meets the edge, and the variance of that.
     struct Meeting {
         bool known = false;
         double value = 0, variance = 0;
     };
-    static void sample(const Eigen::Vector2d& pixel, const Eigen::Vector2d& normal, float z,
-                       const cv::Mat& depth, float jump, double scale, Strip& sums);
-    static Meeting fit(const Sums& sums);
+    static void sample(const pixels::DepthView& depth, const pixels::EdgePoint& at, float jump, double scale,
+                       Strip& sums);
+    static Meeting fit(const Sums& from, const Sums& to);
     static double correction(const Meeting& plus, const Meeting& minus);
-    static double correction(const Side& only);
-    static double correction(const Strip& strip);
+    static double correction(const Side& from, const Side& to);
+    static double correction(const Strip& from, const Strip& to);
 
     std::vector<Strip> strips_;  ///< of all points before a point
 };

@@ -5,7 +5,7 @@
 namespace roevo {
 
 void OrganizedEdges::clear() {
-    for (auto* array : {&x, &y, &gradient_x, &gradient_y, &normal_x, &normal_y, &strength}) array->clear();
+    for (auto* array : arrays()) array->clear();
     edge_of.clear();
     begin.assign(1, 0);
 }
@@ -25,9 +25,31 @@ void OrganizedEdges::finishEdge() {
 }
 
 void OrganizedEdges::resize(std::size_t count) {
-    for (auto* array : {&x, &y, &gradient_x, &gradient_y, &normal_x, &normal_y, &strength})
-        array->resize(count);
+    for (auto* array : arrays()) array->resize(count);
     edge_of.resize(count);
+}
+
+void OrganizedEdges::reserve(std::size_t count) {
+    for (auto* array : arrays()) array->reserve(count);
+    edge_of.reserve(count);
+}
+
+void OrganizedEdges::addEdge(const OrganizedEdges& from, std::size_t first,
+                             const std::vector<std::size_t>& further) {
+    const std::size_t before = size(), count = before + further.size();
+    const auto copy = [&](const std::vector<float>& source, std::vector<float>& target) {
+        target.resize(count);
+        for (std::size_t k = 0; k < further.size(); ++k) target[before + k] = source[first + further[k]];
+    };
+    copy(from.x, x);
+    copy(from.y, y);
+    copy(from.gradient_x, gradient_x);
+    copy(from.gradient_y, gradient_y);
+    copy(from.normal_x, normal_x);
+    copy(from.normal_y, normal_y);
+    copy(from.strength, strength);
+    edge_of.resize(count, numEdges());
+    finishEdge();
 }
 
 void computeNormals(OrganizedEdges& edges, int span) {

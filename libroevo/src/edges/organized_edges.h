@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -47,6 +48,14 @@ struct OrganizedEdges {
     /// Adds a point to the edge being built; finishEdge() closes it.
     void addPoint(float px, float py, float gx, float gy, float magnitude);
     void finishEdge();
+    void reserve(std::size_t count);
+    /// Adds an edge of points of another image: number `first` and so many further on.
+    void addEdge(const OrganizedEdges& from, std::size_t first, const std::vector<std::size_t>& further);
+
+  private:
+    std::array<std::vector<float>*, 7> arrays() {
+        return {&x, &y, &gradient_x, &gradient_y, &normal_x, &normal_y, &strength};
+    }
 };
 
 /// Unit normal to a chord (u, v) of an edge, px, on the side of the image gradient, Eqs. (4)-(6).

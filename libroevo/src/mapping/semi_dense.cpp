@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/core/mat.hpp>
 
+#include "pixels/nearest.h"
+
 namespace roevo {
 namespace {
 
@@ -18,8 +20,8 @@ cv::Mat1b maskAround(const OrganizedEdges& edges, const PinholeCamera& camera, i
     std::vector<int> reaches;
     for (int dy = -radius; dy <= radius; ++dy) reaches.push_back(halfWidth(radius, dy));
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        const auto u = static_cast<int>(std::lround(edges.x[i])),
-                   v = static_cast<int>(std::lround(edges.y[i]));
+        const auto u = nearestInteger(static_cast<double>(edges.x[i])),
+                   v = nearestInteger(static_cast<double>(edges.y[i]));
         for (int dy = -radius; dy <= radius; ++dy) {
             const int reach = reaches[static_cast<std::size_t>(dy + radius)];
             const int from = std::max(0, u - reach), to = std::min(camera.width - 1, u + reach);
@@ -35,11 +37,6 @@ struct Sample {
     int u, v, real_u, real_v;
 };
 
-/// The nearest pixel; of two that are as near, that away from 0.
-int nearest(double coordinate) {
-    return static_cast<int>(coordinate + (coordinate < 0 ? -0.5 : 0.5));
-}
-
 /// False where the real camera has no depth.
 bool hasDepth(const cv::Mat& depth, const PinholeCamera& camera, Sample& sample) {
     sample.real_u = sample.u;
@@ -49,8 +46,8 @@ bool hasDepth(const cv::Mat& depth, const PinholeCamera& camera, Sample& sample)
         if (!(real.x() > -0.5 && real.x() < camera.width - 0.5 && real.y() > -0.5 &&
               real.y() < camera.height - 0.5))
             return false;
-        sample.real_u = nearest(real.x());
-        sample.real_v = nearest(real.y());
+        sample.real_u = nearestInteger(real.x());
+        sample.real_v = nearestInteger(real.y());
     }
     const float z = depth.ptr<float>(sample.real_v)[sample.real_u];
     return z > 0 && std::isfinite(z);

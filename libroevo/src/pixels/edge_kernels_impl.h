@@ -115,6 +115,30 @@ inline float planeAt(float u, float v, float n, Lanes sums) {
     return mq + b * (u - mx) + c * (v - my);
 }
 
+inline Lanes lesserOf(Lanes a, Lanes b) {
+#ifdef __AVX2__
+    return (Lanes)_mm256_min_ps((__m256)a, (__m256)b);
+#else
+    return a < b ? a : b;
+#endif
+}
+
+inline Lanes greaterOf(Lanes a, Lanes b) {
+#ifdef __AVX2__
+    return (Lanes)_mm256_max_ps((__m256)a, (__m256)b);
+#else
+    return a > b ? a : b;
+#endif
+}
+
+/// What `choose` leaves of all lanes, in each.
+template <class Choose>
+inline Lanes reduce(Lanes v, const Choose& choose) {
+    v = choose(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+    v = choose(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
+    return choose(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
+}
+
 void depthPatch(const float* depth, std::ptrdiff_t stride, int size, float near, float far, float jump,
                 float u, float v, DepthPatch& out) {
     constexpr IntLanes kLane = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -125,15 +149,12 @@ void depthPatch(const float* depth, std::ptrdiff_t stride, int size, float near,
         const Lanes z = load(depth + r * stride);
         const IntLanes known = inside & (z >= near) & (z <= far);
         rows[r] = known ? z : Lanes{};
-        nearest = known & (z < nearest) ? z : nearest;
-        farthest = known & (z > farthest) ? z : farthest;
+        nearest = lesserOf(known ? z : splat(far), nearest);
+        farthest = greaterOf(rows[r], farthest);
         count += known ? splat(1) : Lanes{};
     }
-    out = {static_cast<int>(sumLanes(count)), far, near, 0};
-    for (int l = 0; l < kLanes; ++l) {
-        out.nearest = nearest[l] < out.nearest ? nearest[l] : out.nearest;
-        out.farthest = farthest[l] > out.farthest ? farthest[l] : out.farthest;
-    }
+    out = {static_cast<int>(sumLanes(count)), reduce(nearest, lesserOf)[0], reduce(farthest, greaterOf)[0],
+           0};
     if (out.count == 0 || out.farthest > out.nearest * jump) return;
     // Sums of columns first; inverse depths relative to the nearest one, which keeps them small
     const float base = 1 / out.nearest;

@@ -45,6 +45,37 @@ struct DepthPatch {
     float inverse;            ///< 1/m, of their plane, or of their mean; unless some jump
 };
 
+/// A depth image, m.
+struct DepthView {
+    const float* data;
+    std::ptrdiff_t stride;  ///< pixels
+    int width, height;
+};
+
+/// A point of an edge in such an image, px, m.
+struct EdgePoint {
+    double x, y, normal_x, normal_y;
+    float depth;
+};
+
+/// Which pixels sides() looks at: those next to the normal in columns (or rows, whatever the normal rather
+/// runs along) `first` to `last`, but for those outside the image and those nearer to the edge than `clear`.
+struct SideReach {
+    bool by_column;
+    int first, last;
+    double clear;     ///< px
+    float jump;       ///< relative step of depth beyond which is another surface
+    double widening;  ///< px from the edge at which the step may be twice as large; 0: it never is
+};
+
+/// Sums over samples on one side of an edge: distances s from the edge (px) and inverse depths q (relative to
+/// the edge's, minus 1) of those on the edge's own surface, by their weights.
+struct SideSums {
+    double count = 0, s = 0, q = 0, ss = 0;
+    double sq = 0, qq = 0;
+    double seen = 0, behind = 0;  ///< weights on whatever surface, and on the background
+};
+
 struct Table {
     const char* name;
     /// One row of the 3x3 Sobel gradient, the outermost pixels repeated, and its Euclidean norm.
@@ -76,6 +107,9 @@ struct Table {
     /// @param jump    factor between depths that are not of one surface
     void (*depthPatch)(const float* depth, std::ptrdiff_t stride, int size, float near, float far, float jump,
                        float u, float v, DepthPatch& out);
+    /// Adds what the normal of an edge's point passes to the sums of both sides, in the order of columns.
+    void (*sides)(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& minus,
+                  SideSums& plus);
 };
 
 const Table& baseline();

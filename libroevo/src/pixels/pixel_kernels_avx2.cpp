@@ -4,11 +4,11 @@
 
 namespace roevo::pixels {
 namespace {
-#include "edge_kernels_impl.h"
+#include "side_kernels_impl.h"
 }  // namespace
 
 const Table* avx2() {
-    static const Table table{"avx2", gradient, ridges, remap, halve, refine, normals, depthPatch};
+    static const Table table{"avx2", gradient, ridges, remap, halve, refine, normals, depthPatch, sides};
     return __builtin_cpu_supports("avx2") ? &table : nullptr;
 }
 

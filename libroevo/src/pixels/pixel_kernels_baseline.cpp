@@ -2,11 +2,11 @@
 
 namespace roevo::pixels {
 namespace {
-#include "edge_kernels_impl.h"
+#include "side_kernels_impl.h"
 }  // namespace
 
 const Table& baseline() {
-    static const Table table{"baseline", gradient, ridges, remap, halve, refine, normals, depthPatch};
+    static const Table table{"baseline", gradient, ridges, remap, halve, refine, normals, depthPatch, sides};
     return table;
 }
 

@@ -10,22 +10,46 @@
 namespace roevo {
 namespace {
 
-/// Adds point `i` at depth `z` to the edge being built.
-void addPoint(const OrganizedEdges& edges, std::size_t i, float z, const EdgeDepth& patch,
-              const PinholeCamera& camera, const RowMotion& rows, const SensorOptions& sensor,
-              EdgePoints3D& out) {
-    out.image.addPoint(edges.x[i], edges.y[i], edges.gradient_x[i], edges.gradient_y[i], edges.strength[i]);
-    out.image.normal_x.push_back(edges.normal_x[i]);
-    out.image.normal_y.push_back(edges.normal_y[i]);
-    const Eigen::Vector3d p = rows.toReference(camera.backProject(edges.x[i], edges.y[i], z), edges.y[i]);
-    out.points.add(p);
-    out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
-    out.correction.push_back(z - patch.depth);
-    out.occluding.push_back(patch.occluding ? 1 : 0);
-    out.source.push_back(static_cast<std::int32_t>(i));
+/// Points of one image edge: where the lens put them, what is there, and the depth corrected by the sides.
+struct DepthsOfEdge {
+    std::vector<Eigen::Vector2d> pixels;
+    std::vector<EdgeDepth> patches;
+    std::vector<float> z;
+
+    void clear() {
+        pixels.clear();
+        patches.clear();
+        z.clear();
+    }
+};
+
+/// Adds those points of the edge that begins at `first` as an edge.
+void addPiece(const OrganizedEdges& edges, std::size_t first, const std::vector<std::size_t>& piece,
+              const DepthsOfEdge& depths, const PinholeCamera& camera, const RowMotion& rows,
+              const SensorOptions& sensor, EdgePoints3D& out) {
+    out.image.addEdge(edges, first, piece);
+    for (const std::size_t k : piece) {
+        const std::size_t i = first + k;
+        const float z = depths.z[k];
+        const Eigen::Vector3d p = rows.toReference(camera.backProject(edges.x[i], edges.y[i], z), edges.y[i]);
+        out.points.add(p);
+        out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
+        out.correction.push_back(z - depths.patches[k].depth);
+        out.occluding.push_back(depths.patches[k].occluding ? 1 : 0);
+        out.source.push_back(static_cast<std::int32_t>(i));
+    }
 }
 
 }  // namespace
+
+void EdgePoints3D::reserve(std::size_t count) {
+    image.reserve(count);
+    points.reserve(count);
+    correction.reserve(count);
+    weight.reserve(count);
+    occluding.reserve(count);
+    source.reserve(count);
+}
 
 float EdgePoints3D::medianDepth() const {
     if (size() == 0) return 0;
@@ -46,30 +70,25 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
     EdgePoints3D out;
     out.image.clear();
     EdgeSides sides;
-    // Of the points of one edge: where the lens put them, what is there, and the depth corrected by the sides
-    std::vector<Eigen::Vector2d> pixels;
-    std::vector<EdgeDepth> patches;
-    std::vector<float> z;
-    std::vector<std::size_t> piece;  // those of the piece being built
+    out.reserve(edges.size());
+    DepthsOfEdge depths;
+    const auto& [pixels, patches, z] = depths;
+    std::vector<std::size_t> piece;  // points of the piece being built
     for (int e = 0; e < edges.numEdges(); ++e) {
         const IndexRange own = edges.pointsOf(e);
-        pixels.clear();
-        patches.clear();
-        z.clear();
+        depths.clear();
         for (std::size_t i = own.first; i < own.end; ++i) {
             const Eigen::Vector2d pixel = camera.distortPixel({edges.x[i], edges.y[i]});
-            pixels.push_back(pixel);
-            patches.push_back(foregroundDepth(depth, static_cast<float>(pixel.x()),
-                                              static_cast<float>(pixel.y()), edge_options, sensor));
-            z.push_back(patches.back().depth);
+            depths.pixels.push_back(pixel);
+            depths.patches.push_back(foregroundDepth(depth, static_cast<float>(pixel.x()),
+                                                     static_cast<float>(pixel.y()), edge_options, sensor));
+            depths.z.push_back(patches.back().depth);
         }
-        if (edge_options.two_sided_depth) sides.correct(edges, own.first, pixels, depth, jump, scale, z);
+        if (edge_options.two_sided_depth)
+            sides.correct(edges, own.first, pixels, depth, jump, scale, depths.z);
         const auto endPiece = [&] {
-            if (piece.size() >= least_piece) {
-                for (const std::size_t k : piece)
-                    addPoint(edges, own.first + k, z[k], patches[k], camera, rows, sensor, out);
-                out.image.finishEdge();
-            }
+            if (piece.size() >= least_piece)
+                addPiece(edges, own.first, piece, depths, camera, rows, sensor, out);
             piece.clear();
         };
         for (std::size_t k = 0; k < z.size(); ++k) {
