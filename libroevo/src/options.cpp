@@ -190,8 +190,6 @@ std::vector<OptionField> optionFields(OdometryOptions& o) {
          &e.canny_low_ratio},
         {"edges", "min_high_threshold", "Sobel units", "floor of the high threshold", 1, 1000,
          &e.min_high_threshold},
-        {"edges", "threshold_smoothing", "", "share of the previous frame's threshold that is kept", 0, 0.99,
-         &e.threshold_smoothing},
         {"edges", "angle_deg", "deg", "oriented BFS: largest angle between neighbouring gradients", 1, 90,
          &e.angle_deg},
         {"edges", "min_length", "px", "shortest organized edge", 3, 1000, &e.min_length},

@@ -108,7 +108,6 @@ cv::Mat shapes() {
 
 TEST(Organize, IsTheSameOnASecondCall) {
     EdgeOptions options;
-    options.threshold_smoothing = 0;
     EdgeExtractor extractor(options);
     OrganizedEdges first, second;
     EdgeMask mask;
@@ -165,22 +164,21 @@ TEST(Organize, StrengthIsGreyLevelsPerPixel) {
     for (const float strength : edges.strength) EXPECT_NEAR(strength, 12, 0.8);
 }
 
-TEST(Organize, EveryFrameKeepsItsShareOfThePreviousThreshold) {
-    EdgeOptions options;
-    options.threshold_smoothing = 0.75;
-    EdgeExtractor extractor(options);
-    OrganizedEdges edges;
-    EdgeMask mask;
-    extractor.extract(shapes(), edges, mask);
-    const double first = extractor.highThreshold();
+TEST(Organize, KeepsNothingOfTheImageBefore) {
     cv::Mat faint;
     shapes().convertTo(faint, CV_8U, 0.4, 80);
-    EdgeExtractor fresh(options);
-    fresh.extract(faint, edges, mask);
-    const double alone = fresh.highThreshold();
-    ASSERT_LT(alone, 0.8 * first);
-    extractor.extract(faint, edges, mask);
-    EXPECT_NEAR(extractor.highThreshold(), 0.75 * first + 0.25 * alone, 1e-9);
+    OrganizedEdges alone, after;
+    EdgeMask mask;
+    EdgeExtractor(EdgeOptions()).extract(faint, alone, mask);
+    EdgeExtractor extractor{EdgeOptions()};
+    for (const cv::Mat& before : {shapes(), cv::Mat(cv::Mat::zeros(120, 160, CV_8UC1))}) {
+        extractor.extract(before, after, mask);
+        extractor.extract(faint, after, mask);
+        EXPECT_EQ(after.x, alone.x);
+        EXPECT_EQ(after.y, alone.y);
+        EXPECT_EQ(after.begin, alone.begin);
+    }
+    EXPECT_GT(alone.numEdges(), 3);
 }
 
 TEST(Organize, ABlackImageHasNoEdges) {

@@ -31,7 +31,7 @@ struct FeatureFrame {
     Pose T_world_odometry = Pose::Identity();  ///< as the odometry has it in the end
 };
 
-/// Makes them of the frames of one recording, in time order: thresholds of edges are smoothed over time.
+/// Makes them of the frames of one recording.
 class FeatureExtractor {
   public:
     FeatureExtractor(const PinholeCamera& camera, const OdometryOptions& options)

@@ -26,7 +26,7 @@ struct SensorOptions {
     double readout_sigma = 0.01;      ///< how far from 0 the learned read-out time may well be, s, one sigma
     double readout_memory = 0.995;    ///< share of what was learned that is kept from frame to frame
     double readout_time = 0;     ///< time from the first to the last row of a rolling shutter, s (0: global)
-    double blur_time = 0.0035;    ///< one sigma of when an edge was seen (exposure, stamps), s; 0: sharp
+    double blur_time = 0.0035;   ///< one sigma of when an edge was seen (exposure, stamps), s; 0: sharp
     double reference_row = 0.5;  ///< row whose time the stamp means, as a share of the height
 
     /// sigma_z at a depth, m.
@@ -41,9 +41,8 @@ struct EdgeOptions {
     double canny_high_factor = 0.7;  ///< high threshold = factor x Otsu
     double canny_low_ratio = 0.5;    ///< low threshold = ratio x high
     double min_high_threshold = 24;  ///< floor of the high threshold, Sobel units (8 per grey level of ramp)
-    double threshold_smoothing = 0.7;  ///< share of the previous frame's threshold that is kept
-    double angle_deg = 20;             ///< oriented BFS: largest angle between neighbouring gradients
-    int min_length = 10;               ///< shortest organized edge, px
+    double angle_deg = 20;           ///< oriented BFS: largest angle between neighbouring gradients
+    int min_length = 10;             ///< shortest organized edge, px
     int tangent_span = 4;         ///< tangents are taken between the points this many places before and after
     int depth_patch_radius = 2;   ///< foreground depth is looked for in a square of this radius, px
     double depth_jump = 0.03;     ///< relative depth step that separates foreground from background

@@ -9,22 +9,18 @@
 
 namespace roevo {
 
-/// Grey image to organized edges: gradient, Otsu thresholds smoothed over time, Canny, adjacency, oriented
-/// BFS, ordering, normals. Keeps its buffers; one per image stream.
+/// Grey image to organized edges: gradient, Otsu thresholds, Canny, adjacency, oriented BFS, ordering,
+/// normals. Keeps its buffers, and nothing else of an image.
 class EdgeExtractor {
   public:
     explicit EdgeExtractor(const EdgeOptions& options) : options_(options) {}
     /// @param mask  the pixels that the edges were made of
-    /// @param frames  of 30 Hz since the image before
-    void extract(const cv::Mat& grey, OrganizedEdges& out, EdgeMask& mask, double frames = 1);
-    double highThreshold() const { return high_; }
+    void extract(const cv::Mat& grey, OrganizedEdges& out, EdgeMask& mask);
 
   private:
     EdgeOptions options_;
     Gradient gradient_;
     EdgeOrganizer organizer_;
-    double high_ = 0;        ///< 0 before the first image
-    bool had_none_ = false;  ///< the threshold comes from an image without contrast
 };
 
 }  // namespace roevo

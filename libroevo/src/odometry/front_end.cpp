@@ -4,8 +4,7 @@ namespace roevo {
 
 void FrontEnd::process(Frame& frame) {
     const cv::Mat& grey = undistorter_.apply(frame.images.grey, frame.ideal_grey);
-    extractor_.extract(grey, frame.edges, frame.mask, kFrameRate * (frame.timestamp() - last_timestamp_));
-    last_timestamp_ = frame.timestamp();
+    extractor_.extract(grey, frame.edges, frame.mask);
     frame.grid.build(frame.edges, grey.cols, grey.rows);
     frame.pyramid.build(grey, levels_);
 }

@@ -20,7 +20,6 @@ class FrontEnd {
     Undistorter undistorter_;
     EdgeExtractor extractor_;
     int levels_;
-    double last_timestamp_ = 0;  ///< s
 };
 
 }  // namespace roevo
