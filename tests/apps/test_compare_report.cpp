@@ -343,17 +343,17 @@ TEST(CompareReport, StatesWhatItCannotWrite) {
 TEST(ScenePicture, IsDrawnByTheRendererOrSaysWhy) {
     const TemporaryFolder folder;
     test::writeFile(folder / "broken.3Dscene", "no scene");
-    const ScenePicture broken = renderScene(folder / "broken.3Dscene", "edges");
-    EXPECT_EQ(broken.png, "");
+    const Rendered broken = renderScene(folder / "broken.3Dscene", "edges");
+    EXPECT_EQ(broken.bytes, "");
     EXPECT_NE(broken.fault, "");
 
     test::writeTumFolder(folder / "recording", test::slidingRecording(5));
     const auto run =
         test::runProgram("roevo-odometry", {"--input", folder / "recording", "--output", folder / "run"});
     ASSERT_EQ(run.exit_code, 0) << run.all();
-    const ScenePicture picture = renderScene(folder / "run/map.3Dscene", "edges");
+    const Rendered picture = renderScene(folder / "run/map.3Dscene", "edges");
     EXPECT_EQ(picture.fault, "");
-    EXPECT_EQ(picture.png.substr(0, 4), "\x89PNG");
+    EXPECT_EQ(picture.bytes.substr(0, 4), "\x89PNG");
     EXPECT_NE(renderScene(folder / "run/map.3Dscene", "no-such-layer").fault, "");
 
     // In the page as it is
@@ -361,7 +361,7 @@ TEST(ScenePicture, IsDrawnByTheRendererOrSaysWhy) {
     sequence.runs[0].scene = "map.3Dscene";
     sequence.run_folders = {folder / "run"};
     const WrittenComparison out({sequence});
-    EXPECT_TRUE(contains(out.html, "src=\"data:image/png;base64," + base64(picture.png).substr(0, 40)));
+    EXPECT_TRUE(contains(out.html, "src=\"data:image/png;base64," + base64(picture.bytes).substr(0, 40)));
     EXPECT_EQ(loadedBy(out.html), std::vector<std::string>());
 
     // Interrupted, it takes its folder of pictures along

@@ -59,6 +59,8 @@ sup a { text-decoration: none; }
 figure { margin: 0; min-width: 0; }
 figcaption { font-size: 13px; color: var(--muted); margin: 2px 0 0; overflow-wrap: anywhere; }
 .plot { display: block; width: 100%; height: auto; }
+.view a { display: inline-block; margin: 2px 6px 2px 0; padding: 5px 14px; border-radius: 6px; background: var(--ours);
+  color: #fff; text-decoration: none; font-weight: 600; }
 .pair, .maps { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 14px 20px; align-items: start; }
 .maps img { display: block; width: 100%; height: auto; }
 .methods { margin: 0; }
@@ -80,7 +82,11 @@ ul.lines li { margin: 3px 0; }
   .dense th[scope=col] { min-width: 40px; }
   .dense th:first-child { min-width: 110px; }
 }
-@media (max-width: 560px) { .pair, .maps { grid-template-columns: minmax(0, 1fr); } }
+@media (max-width: 560px) {
+  .pair, .maps { grid-template-columns: minmax(0, 1fr); }
+  .wide div { overflow-x: auto; }
+  .wide .plot { width: 660px; }
+}
 @page { size: A4; margin: 14mm 13mm; }
 @media print {
   * { -webkit-print-color-adjust: exact; print-color-adjust: exact; }
