@@ -15,9 +15,10 @@ namespace {
 
 constexpr std::size_t kMaxIntervals = 800;  // of a line, each with its largest error
 constexpr int kWidth = 960, kHeight = 300, kAxesHeight = 480, kDriftWidth = 480;  // px
-const std::string kMargins = "unset key\nset lmargin 9\nset rmargin 2\nset tmargin 1\nset bmargin 2.6\n";
+const std::string kMargins = "unset key\nset lmargin 10\nset rmargin 2\nset tmargin 1\nset bmargin 2.6\n";
 constexpr double kMinError = 1e-3;  // cm, deg: what is less is of no interest, and has no logarithm
-constexpr double kMinDrift = 1e-4;  // %, deg/m
+constexpr double kAxesFoot = 0.08, kAxesShare = (1 - kAxesFoot) / 3;  // of the picture with the axes
+constexpr double kMinDrift = 1e-3;                                    // %, deg/m
 constexpr double kShortestPath = 0.1, kLongestPath = 1e4;  // m: as long as rooms and buildings need
 constexpr std::size_t kFewestPieces = 10;                  // of a path length
 constexpr double kDegrees = 180 / 3.14159265358979323846;
@@ -148,14 +149,14 @@ Figure draw(const std::vector<Line>& lines, const std::string& script, int width
 }
 
 Figure overTime(const SequenceResults& results, const Legend& legend, std::vector<double> Line::*values,
-                const std::string& what, const std::string& unit) {
+                const std::string& what, const std::string& unit, const std::string& note = {}) {
     const std::vector<Line> lines = linesOf(results, legend);
     if (lines.empty()) return kNothing;
     const std::string script =
         kMargins + timeRange(lines) + "set xlabel 'time [s]' offset 0,0.4\nset ylabel '" + what + " [" +
         unit + "]'\n" + logarithmic('y', rangeOf(lines, values)) +
         plotOf(lines, [&](const Line& line) { return thinned(line.times, line.*values); });
-    return draw(lines, script, kWidth, kHeight, results.sequence->name + ": " + what + " over time");
+    return draw(lines, script, kWidth, kHeight, results.sequence->name + ": " + what + " over time", note);
 }
 
 // The largest error along an axis, cm.
@@ -209,7 +210,9 @@ Figure errorFigure(const SequenceResults& results, const Legend& legend) {
 }
 
 Figure angularErrorFigure(const SequenceResults& results, const Legend& legend) {
-    return overTime(results, legend, &Line::angles, "angular error", "deg");
+    return overTime(
+        results, legend, &Line::angles, "angular error", "deg",
+        "After the alignment of the positions: a constant turn between the two cameras is part of it.");
 }
 
 Figure axisErrorFigure(const SequenceResults& results, const Legend& legend) {
@@ -220,10 +223,15 @@ Figure axisErrorFigure(const SequenceResults& results, const Legend& legend) {
     // Half of the lines whole, so that one that runs away does not squash them
     const double extent = 1.1 * percentile(extents, 0.5);
     std::string script = kMargins + timeRange(lines) + "set yrange " + rangeText(-extent, extent) +
-                         "set xzeroaxis lc rgb '#666666'\nset multiplot layout 3,1\n";
+                         "set xzeroaxis lc rgb '#666666'\nset bmargin 0.4\nset multiplot\n";
     std::string leaving;
     for (std::size_t k = 0; k < 3; ++k) {
-        if (k == 2) script += "set xlabel 'time [s]' offset 0,0.4\n";
+        // The axis of time is written once, in the room of the lowest picture
+        script += "set origin 0," + exactNumber(kAxesFoot + (2 - static_cast<double>(k)) * kAxesShare) +
+                  "\nset size 1," + exactNumber(kAxesShare) + "\nset format x ''\n";
+        if (k == 2)
+            script += "set origin 0,0\nset size 1," + exactNumber(kAxesFoot + kAxesShare) +
+                      "\nset bmargin 2.6\nset format x '%g'\nset xlabel 'time [s]' offset 0,0.4\n";
         script += std::string("set ylabel '") + "xyz"[k] + " [cm]'\n" +
                   plotOf(lines, [&](const Line& line) { return thinned(line.times, line.axes[k]); });
     }

@@ -46,7 +46,7 @@ td { white-space: nowrap; position: relative; }
 td.best { font-weight: 700; background: var(--tint); color: var(--ours); }
 td.weak { font-style: italic; color: var(--muted); }
 td.text, th.text { text-align: left; white-space: normal; }
-th.text[scope=col] { max-width: none; }
+th.text[scope=col] { max-width: none; min-width: 300px; }
 sup { position: absolute; top: 2px; right: 2px; font-size: 10px; line-height: 1; font-weight: 400; font-style: normal; }
 sup a { text-decoration: none; }
 .notes { font-size: 12.5px; line-height: 1.4; color: var(--muted); margin: 6px 0 0; padding-left: 22px; max-width: 100ch;
@@ -63,7 +63,7 @@ figcaption { font-size: 13px; color: var(--muted); margin: 2px 0 0; overflow-wra
   color: #fff; text-decoration: none; font-weight: 600; }
 .pair, .maps { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 14px 20px; align-items: start; }
 .maps img { display: block; width: 100%; height: auto; }
-.methods { margin: 0; }
+.methods { margin: 0; overflow-wrap: anywhere; }
 .methods dt { font-weight: 600; display: flex; align-items: center; gap: 9px; margin-top: 10px; }
 .methods dd { margin: 0 0 0 39px; max-width: 90ch; }
 ul.lines { padding-left: 20px; max-width: 90ch; }
