@@ -11,13 +11,14 @@
     const named = e => e.tagName + '.' + (e.getAttribute('class') || '') + ' ' + e.textContent.slice(0, 40);
     // Of what can be scrolled sideways by itself, that alone has to fit
     const inScroller = e => e.parentElement && (/auto|scroll/.test(getComputedStyle(e.parentElement).overflowX) || inScroller(e.parentElement));
+    const spills = e => getComputedStyle(e).overflowX == 'visible' && e.clientWidth > 0 && e.scrollWidth > e.clientWidth && e.getBoundingClientRect().left + e.scrollWidth > e.ownerDocument.documentElement.clientWidth + 0.5;
     const leaves = (inner, outer) => inner.width > 0 && (inner.left < outer.left - 1 || inner.right > outer.right + 1 || inner.top < outer.top - 1 || inner.bottom > outer.bottom + 1);
     const report = page => {
         const root = page.document.documentElement, texts = [...page.document.querySelectorAll('.plot text')];
         const box = e => e.getBoundingClientRect(), plot = e => e.closest('.plot');
         return {
             overflow: root.scrollWidth - root.clientWidth,
-            beyond: [...page.document.querySelectorAll('body *')].filter(e => !e.closest('svg *') && !inScroller(e) && (box(e).right > root.clientWidth + 0.5 || box(e).left < -0.5)).map(named),
+            beyond: [...page.document.querySelectorAll('body *')].filter(e => !e.closest('svg *') && !inScroller(e) && (box(e).right > root.clientWidth + 0.5 || box(e).left < -0.5 || spills(e))).map(named),
             hidden: [...page.document.querySelectorAll('body *')].filter(e => getComputedStyle(e).overflowX == 'hidden' && e.scrollWidth > e.clientWidth && !e.closest('svg')).map(named),
             cut: texts.filter(e => leaves(box(e), box(plot(e)))).map(named),
             smallest: Math.min(...texts.map(e => parseFloat(getComputedStyle(e).fontSize) * box(plot(e)).width / plot(e).viewBox.baseVal.width)),

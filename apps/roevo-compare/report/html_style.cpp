@@ -13,7 +13,7 @@ h1 { font-size: 30px; line-height: 1.2; margin: 0 0 6px; letter-spacing: -0.01em
 h2 { font-size: 22px; line-height: 1.25; margin: 52px 0 12px; padding-top: 14px; border-top: 2px solid var(--ink);
   overflow-wrap: anywhere; }
 h3 { font-size: 16px; margin: 26px 0 6px; }
-p { margin: 6px 0; max-width: 76ch; }
+p { margin: 6px 0; max-width: 76ch; overflow-wrap: anywhere; }
 a { color: var(--ours); }
 code, pre { font: 13px/1.45 ui-monospace, "SF Mono", Menlo, Consolas, "Liberation Mono", monospace; }
 pre { background: #f5f7f9; border: 1px solid var(--rule); padding: 10px 12px; white-space: pre-wrap;
