@@ -240,11 +240,11 @@ TEST(CompareReport, DrawsWhatThereIs) {
     if (test::runProgram("/usr/bin/env", {"gnuplot", "--version"}).exit_code != 0)
         GTEST_SKIP() << "no gnuplot";
     const WrittenComparison out(everyKind());
-    // every/kind and the odd one: top, side, error, cumulative, stages; one frame, no truth and elsewhere: no
-    // error
-    EXPECT_EQ(count(out.html, "class=\"plot\""), 5u + 5 + 3 + 3 + 3);
-    EXPECT_EQ(count(out.html, "class=\"legend\""), 4u + 4 + 2 + 2 + 2) << "top and side share theirs";
-    EXPECT_TRUE(contains(out.html, "Leaving the picture: Runaway<")) << "and nobody else";
+    // every/kind and the odd one: top, side, four of errors, stages (too few pieces of any path length); one
+    // frame, no truth and elsewhere: no error
+    EXPECT_EQ(count(out.html, "class=\"plot\""), 7u + 7 + 3 + 3 + 3);
+    EXPECT_EQ(count(out.html, "class=\"legend\""), 6u + 6 + 2 + 2 + 2) << "top and side share theirs";
+    EXPECT_TRUE(contains(out.html, "Leaving the picture: Runaway <a")) << "and nobody else";
     EXPECT_FALSE(contains(out.html, "No plots"));
     EXPECT_TRUE(contains(out.html, "no picture: the scene map.3Dscene is missing"));
 }
@@ -276,7 +276,7 @@ TEST(CompareReport, TheFullestModeHasTheBoldestLineInWhateverOrder) {
     }
 }
 
-// A gnuplot that fails with the first and the third of five plots.
+// A gnuplot that fails with the first and the third of seven plots.
 TEST(CompareReport, APlotThatFailsCostsOnlyThatPlot) {
     const std::string gnuplot = findProgram("gnuplot");
     if (gnuplot.empty()) GTEST_SKIP() << "no gnuplot";
@@ -289,7 +289,7 @@ TEST(CompareReport, APlotThatFailsCostsOnlyThatPlot) {
     std::filesystem::permissions(folder / "gnuplot", std::filesystem::perms::owner_all);
     const WithPath with(folder.path().string() + ":" + std::getenv("PATH"));
     const WrittenComparison out({makeSequence("s", {makeRun("roevo-tr", 0.01), makeRun("b", 0.02)})});
-    EXPECT_EQ(count(out.html, "class=\"plot\""), 3u);
+    EXPECT_EQ(count(out.html, "class=\"plot\""), 5u);
     EXPECT_TRUE(contains(out.html, "No plot (s: trajectories, Top view): gnuplot failed: out of ink"));
     EXPECT_TRUE(contains(out.html, "No plot (s: position error over time): gnuplot failed: out of ink"));
     EXPECT_FALSE(contains(out.html, "No plots"));

@@ -31,12 +31,12 @@ void writeComparison(const std::string& folder, const std::vector<SequenceCompar
                 pages.emplace_back(page, htmlReport({result}, info, page_folder, beside));
                 add(page_folder, beside);
             }
+    writeTextAtomically(file("table.csv"), csv);
+    writeTextAtomically(file("table.md"), md);
     for (const auto& [page, text] : pages) {
         std::filesystem::create_directories(std::filesystem::path(page).parent_path());
         writeTextAtomically(page, text);
     }
-    writeTextAtomically(file("table.csv"), csv);
-    writeTextAtomically(file("table.md"), md);
     writeTextAtomically(file("report.html"), html);
 }
 
