@@ -14,7 +14,7 @@ namespace roevo {
 namespace {
 
 constexpr int kLegendLine = 24, kLegendLeft = 20, kLegendText = 52;  // px
-constexpr double kPixelsByCharacter = 7.6;                           // of 14 px, on the whole
+constexpr double kPixelsByCharacter = 8.6;                           // of 14 px, on the whole
 
 // An <svg> element for a page that holds many, from gnuplot's document.
 std::string inlined(const std::string& svg, int width, int height) {
