@@ -53,7 +53,7 @@ target_include_directories(test_study_ablation PRIVATE ${CMAKE_CURRENT_SOURCE_DI
 roevo_test(test_compare
   SOURCES apps/test_method_run.cpp apps/test_rows.cpp apps/test_process.cpp apps/test_supervised_run.cpp
           apps/test_compare_sequences.cpp apps/test_compare_program.cpp apps/test_compare_terminal.cpp
-          apps/test_compare_ba_first.cpp apps/test_compare_trajectories.cpp
+          apps/test_compare_ba_first.cpp apps/test_compare_trajectories.cpp apps/test_compare_browser.cpp
   LIBS roevo_compare roevo_programs roevo_test_support nlohmann_json::nlohmann_json)
 add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog rawlog-simulate)
 

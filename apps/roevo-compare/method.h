@@ -50,7 +50,9 @@ class Method {
     };
     virtual std::optional<Background> background() const { return std::nullopt; }
 
-    /// Writes a 3-D scene of the map, when the method has one. @return whether it did
+    /// Writes a 3-D scene of the map, when the method has one, and beside it what roevo-render makes a page
+    /// of.
+    /// @return whether it did
     virtual bool writeScene(const std::string& /*path*/) { return false; }
 };
 

@@ -11,7 +11,8 @@ add_library(roevo_methods STATIC
   methods/opencv_rgbd.cpp)
 target_include_directories(roevo_methods PUBLIC ${PROJECT_SOURCE_DIR}/apps ${CMAKE_CURRENT_SOURCE_DIR})
 # Baselines share parts of the core: how frames are checked, the tracker, the motion model.
-target_link_libraries(roevo_methods PUBLIC roevo_internal PRIVATE roevo_mrpt roevo_build_flags)
+target_link_libraries(roevo_methods PUBLIC roevo_internal
+                      PRIVATE roevo_evaluation roevo_mrpt roevo_programs nlohmann_json::nlohmann_json roevo_build_flags)
 
 # Baselines of libraries that need not be there: without its library a method is known, and says why it cannot be run.
 find_package(mrpt-vision QUIET)

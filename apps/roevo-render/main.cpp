@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "evaluation/association.h"
 #include "evaluation/trajectory_io.h"
 #include "picture.h"
 #include "programs/atomic_file.h"
@@ -24,7 +25,7 @@ constexpr int kMinSize = 16, kMaxSize = 4096;
 
 struct Settings {
     std::string scene, input, output, size = "1280x800", view, layer = "edges", background = "dark",
-                                      ground_truth;
+                                      ground_truth, title, name;
     std::vector<std::string> trajectories;
     std::vector<double> from, look_at;
     double max_size_mb = 15, zoom = 1, seconds = 12;
@@ -38,11 +39,11 @@ void parseSize(const std::string& text, int& width, int& height) {
         throw UsageError("--size: '" + text + "' is not WIDTHxHEIGHT with 16 to 4096 pixels, e.g. 1280x800");
 }
 
-// A trajectory that is not named has the name of its file.
-NamedPath namedPath(const std::string& argument) {
+// A trajectory that is not named has the name of its file. @param times  of rows that have none
+NamedPath namedPath(const std::string& argument, const RowTimes& times) {
     const NamedFile named = splitNamedFile(argument);
     return {named.name.empty() ? fs::path(named.file).stem().string() : named.name,
-            readTumTrajectory(named.file)};
+            readTrajectory(named.file, {}, times)};
 }
 
 // Numbers of an option, which must be finite.
@@ -103,7 +104,7 @@ int drawPicture(const Settings& settings, bool layer_wanted, bool is_movie) {
 // The ground truth that was asked for, or the one that the run was compared with, if it is still there.
 NamedPath groundTruth(const std::string& file, const ResultFolder& result) {
     constexpr char kTruth[] = "ground truth";
-    if (!file.empty()) return {kTruth, readTumTrajectory(file)};
+    if (!file.empty()) return {kTruth, readTrajectory(file)};
     if (result.ground_truth.empty()) return {kTruth, {}};
     try {
         return {kTruth, readTumTrajectory(result.ground_truth)};
@@ -117,12 +118,15 @@ NamedPath groundTruth(const std::string& file, const ResultFolder& result) {
 int writeView(const Settings& settings) {
     AtomicFile page(settings.output);
     page.stream();  // what cannot be written is said before the work is done
-    const ResultFolder result = readResultFolder(settings.input);
+    ResultFolder result = readResultFolder(settings.input);
+    if (!settings.title.empty()) result.name = settings.title;
     WebViewSettings view_settings;
+    if (!settings.name.empty()) view_settings.name = settings.name;
     view_settings.truth = groundTruth(settings.ground_truth, result);
     view_settings.max_size_mb = settings.max_size_mb;
     for (const std::string& argument : settings.trajectories)
-        view_settings.others.push_back(namedPath(argument));
+        view_settings.others.push_back(
+            namedPath(argument, {stampsOf(result.trajectory), settings.input + "/trajectory.txt"}));
     const WebView view = makeWebView(result, view_settings);
     page.stream() << view.html;
     page.commit();
@@ -179,12 +183,16 @@ int run(int argc, char** argv) {
             ->capture_default_str();
     app.add_option(
         "--trajectory", settings.trajectories,
-        "[NAME=]FILE. Of a page: more trajectories, aligned with the ground truth or else with the "
-        "result's. Of a picture with the view 'follow': look from behind its last camera (default: "
+        "[NAME=]FILE, TUM, EuRoC or KITTI. Of a page: more trajectories, aligned with the ground truth or "
+        "else with the result's (KITTI: with a row for each of its poses). Of a picture with the view "
+        "'follow': look from behind its last camera (default: "
         "trajectory.txt beside the scene)");
     const CLI::Option* page_options[] = {
         app.add_option("--ground-truth", settings.ground_truth,
                        "Of a page: true trajectory (default: the one that the odometry was compared with)"),
+        app.add_option("--title", settings.title, "Of a page: its title (default: the recording's name)"),
+        app.add_option("--name", settings.name,
+                       "Of a page: name of the result's own trajectory (default: final)"),
         app.add_option("--max-size", settings.max_size_mb,
                        "Of a page: points are left out where the file would be larger, MB")
             ->capture_default_str()

@@ -19,9 +19,11 @@ void readSummary(const std::string& path, ResultFolder& result) {
     std::ifstream in(path, std::ios::binary);
     const auto json = nlohmann::json::parse(in, nullptr, false);
     try {
-        fs::path input = json.at("input").at("path").get<std::string>();
-        if (input.filename().empty()) input = input.parent_path();  // "folder/"
-        result.name = input.filename().string();
+        if (json.contains("input")) {  // a run of roevo-compare has neither this nor a ground truth
+            fs::path input = json.at("input").at("path").get<std::string>();
+            if (input.filename().empty()) input = input.parent_path();  // "folder/"
+            result.name = input.filename().string();
+        }
         result.mode = json.at("mode").get<std::string>();
         const auto& camera = json.at("camera");
         PinholeCamera pinhole;
@@ -29,7 +31,7 @@ void readSummary(const std::string& path, ResultFolder& result) {
         pinhole.fx = camera.at("fx").get<double>(), pinhole.fy = camera.at("fy").get<double>();
         pinhole.cx = camera.at("cx").get<double>(), pinhole.cy = camera.at("cy").get<double>();
         if (pinhole.check().empty()) result.camera = pinhole;
-        const auto& truth = json.at("ground_truth");
+        const auto truth = json.value("ground_truth", nlohmann::json());
         if (truth.is_object() && truth.contains("ate_m"))  // else it could not be compared
             result.ground_truth = truth.at("file").get<std::string>();
     } catch (const nlohmann::json::exception&) {

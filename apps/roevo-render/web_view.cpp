@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kMegabyte = 1e6;
-constexpr char kFinal[] = "final", kLive[] = "live";
+constexpr char kLive[] = "live";
 
 std::vector<float> positionsOf(const std::vector<StampedPose>& poses, const Pose& T_scene_world) {
     std::vector<float> values;
@@ -56,7 +56,7 @@ Json pathJson(const ViewPath& path, const std::string& role, const Pose& T_scene
 }
 
 Json pathsJson(const ResultFolder& result, const WebViewSettings& settings, const Pose& T_scene_world) {
-    std::vector<NamedPath> paths{{kFinal, result.trajectory}};
+    std::vector<NamedPath> paths{{settings.name, result.trajectory}};
     if (!result.live.empty()) paths.push_back({kLive, result.live});
     const std::size_t foreign = paths.size();
     paths.insert(paths.end(), settings.others.begin(), settings.others.end());

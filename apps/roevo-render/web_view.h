@@ -15,6 +15,7 @@ struct WebView {
 };
 
 struct WebViewSettings {
+    std::string name = "final";     ///< of the result's own trajectory
     std::vector<NamedPath> others;  ///< trajectories of other programs
     NamedPath truth;                ///< may be empty
     double max_size_mb = 15;        ///< 10^6 bytes; points are left out of what would be larger

@@ -21,6 +21,13 @@ RelativeError relativePoseErrorOverTime(const std::vector<StampedPose>& referenc
                                         const std::vector<StampedPose>& estimate,
                                         const std::vector<PosePair>& pairs, double interval);
 
+/// Over `length` m of the reference's path, as KITTI's benchmark does: i is every pair, j the one behind it
+/// by the path that is nearest to that, left out when none is within a tenth of it. Errors are divided by the
+/// path from i to j: m/m and degrees/m.
+RelativeError relativePoseErrorOverDistance(const std::vector<StampedPose>& reference,
+                                            const std::vector<StampedPose>& estimate,
+                                            const std::vector<PosePair>& pairs, double length);
+
 /// From each pair to the next.
 RelativeError relativePoseErrorPerFrame(const std::vector<StampedPose>& reference,
                                         const std::vector<StampedPose>& estimate,

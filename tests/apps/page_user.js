@@ -56,7 +56,5 @@
     found.names = [...document.querySelectorAll('#path-list .name')].map(e => e.textContent);
     found.loaded = performance.getEntriesByType('resource').length;
     found.overflow = document.documentElement.scrollWidth - innerWidth;
-    const result = document.body.appendChild(document.createElement('pre'));
-    result.id = 'found';
-    result.textContent = JSON.stringify(found);
+    tell(found);
 })();

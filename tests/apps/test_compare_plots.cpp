@@ -94,6 +94,67 @@ TEST_F(Plots, TheCumulativeCurveRisesWhereTheErrorsAre) {
     EXPECT_NEAR((bottom - level) / (bottom - top), 0.5, 0.02);
 }
 
+TEST_F(Plots, ErrorsAlongTheAxesAreThoseOfTheAxes) {
+    // Each zigzags along one axis only, with the same phase
+    const double extents[3] = {0.01, 0.02, 0.04};
+    for (int axis = 0; axis < 3; ++axis) {
+        auto poses = walk();
+        for (std::size_t i = 0; i < poses.size(); ++i)
+            poses[i].T_world_camera.translation()[axis] += (i % 2 ? 1 : -1) * extents[axis];
+        add("abc" + std::to_string(axis), poses);
+    }
+    const SequenceResults r = results();
+    const Figure figure = axisErrorFigure(r, legendOf(r));
+    const auto extentOf = [&](int line, char panel) {
+        const std::string id = "gnuplot_plot_" + std::to_string(line) + panel;
+        const std::size_t at = figure.svg.find(id + '"');
+        EXPECT_NE(at, std::string::npos) << id;
+        if (at == std::string::npos) return 0.;
+        Figure one{"gnuplot_plot_1" + figure.svg.substr(at + id.size()), "", ""};
+        double low = INFINITY, high = -INFINITY;
+        for (const auto& piece : piecesOf(one, 1))
+            for (const Point& point : piece) low = std::min(low, point.y), high = std::max(high, point.y);
+        return high - low;
+    };
+    const double unit = extentOf(2, 'b');  // 4 cm, px
+    EXPECT_GT(unit, 30);
+    EXPECT_NEAR(extentOf(1, 'a') / unit, 0.5, 0.05);
+    for (const auto& [line, panel] : {std::pair(1, 'b'), {1, 'c'}, {2, 'a'}, {2, 'c'}, {3, 'a'}, {3, 'b'}})
+        EXPECT_LT(extentOf(line, panel), 0.1 * unit) << line << panel;
+    EXPECT_NE(figure.note.find("Leaving the picture: label of abc2"), std::string::npos) << figure.note;
+}
+
+TEST_F(Plots, AnglesAndPathLengthsAreDrawn) {
+    // Turned by 2 degrees from the 50th pose on; 10 % too long (the alignment has nothing to do with that)
+    auto poses = walk();
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        if (i >= 50)
+            poses[i].T_world_camera =
+                poses[i].T_world_camera * Pose(Eigen::AngleAxisd(2 * kPi / 180, Eigen::Vector3d::UnitX()));
+    add("turned", poses);
+    poses = walk();
+    for (StampedPose& pose : poses) pose.T_world_camera.translation() *= 1.1;
+    add("longer", poses);
+    const SequenceResults r = results();
+    const Legend legend = legendOf(r);
+    const auto angles = piecesOf(angularErrorFigure(r, legend), 1);
+    ASSERT_EQ(angles.size(), 1u);
+    EXPECT_GT(angles[0].front().y - angles[0].back().y, 100) << "from nothing up to 2 degrees";
+    EXPECT_NEAR(angles[0][60].y, angles[0].back().y, 1) << "and there it stays";
+    EXPECT_LT(std::abs(angles[0][48].y - angles[0][51].y), angles[0].front().y - angles[0].back().y + 1);
+
+    const auto figures = relativeErrorFigures(r, legend);
+    ASSERT_EQ(figures.size(), 2u);
+    const auto longer = piecesOf(figures[0], 2);
+    ASSERT_EQ(longer.size(), 1u);
+    EXPECT_GE(longer[0].size(), 4u) << "0.1, 0.2, 0.5, 1, 2 m of 6 m";
+    EXPECT_NEAR(longer[0][2].y, longer[0][1].y, 12) << "10 % of every length that is nearly straight";
+    const auto turned = piecesOf(figures[1], 1);
+    ASSERT_EQ(turned.size(), 1u);
+    EXPECT_GT(turned[0].back().y - turned[0].front().y, 0)
+        << "one turn counts less by metre the longer the way";
+}
+
 TEST_F(Plots, LinesEndWhereNothingIsKnown) {
     auto poses = walk();
     for (std::size_t i = 0; i < poses.size(); ++i)

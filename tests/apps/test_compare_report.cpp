@@ -240,11 +240,11 @@ TEST(CompareReport, DrawsWhatThereIs) {
     if (test::runProgram("/usr/bin/env", {"gnuplot", "--version"}).exit_code != 0)
         GTEST_SKIP() << "no gnuplot";
     const WrittenComparison out(everyKind());
-    // every/kind and the odd one: top, side, error, cumulative, stages; one frame, no truth and elsewhere: no
-    // error
-    EXPECT_EQ(count(out.html, "class=\"plot\""), 5u + 5 + 3 + 3 + 3);
-    EXPECT_EQ(count(out.html, "class=\"legend\""), 4u + 4 + 2 + 2 + 2) << "top and side share theirs";
-    EXPECT_TRUE(contains(out.html, "Leaving the picture: Runaway<")) << "and nobody else";
+    // every/kind and the odd one: top, side, four of errors, stages (too few pieces of any path length); one
+    // frame, no truth and elsewhere: no error
+    EXPECT_EQ(count(out.html, "class=\"plot\""), 7u + 7 + 3 + 3 + 3);
+    EXPECT_EQ(count(out.html, "class=\"legend\""), 6u + 6 + 2 + 2 + 2) << "top and side share theirs";
+    EXPECT_TRUE(contains(out.html, "Leaving the picture: Runaway <a")) << "and nobody else";
     EXPECT_FALSE(contains(out.html, "No plots"));
     EXPECT_TRUE(contains(out.html, "no picture: the scene map.3Dscene is missing"));
 }
@@ -276,7 +276,7 @@ TEST(CompareReport, TheFullestModeHasTheBoldestLineInWhateverOrder) {
     }
 }
 
-// A gnuplot that fails with the first and the third of five plots.
+// A gnuplot that fails with the first and the third of seven plots.
 TEST(CompareReport, APlotThatFailsCostsOnlyThatPlot) {
     const std::string gnuplot = findProgram("gnuplot");
     if (gnuplot.empty()) GTEST_SKIP() << "no gnuplot";
@@ -289,7 +289,7 @@ TEST(CompareReport, APlotThatFailsCostsOnlyThatPlot) {
     std::filesystem::permissions(folder / "gnuplot", std::filesystem::perms::owner_all);
     const WithPath with(folder.path().string() + ":" + std::getenv("PATH"));
     const WrittenComparison out({makeSequence("s", {makeRun("roevo-tr", 0.01), makeRun("b", 0.02)})});
-    EXPECT_EQ(count(out.html, "class=\"plot\""), 3u);
+    EXPECT_EQ(count(out.html, "class=\"plot\""), 5u);
     EXPECT_TRUE(contains(out.html, "No plot (s: trajectories, Top view): gnuplot failed: out of ink"));
     EXPECT_TRUE(contains(out.html, "No plot (s: position error over time): gnuplot failed: out of ink"));
     EXPECT_FALSE(contains(out.html, "No plots"));
@@ -343,17 +343,17 @@ TEST(CompareReport, StatesWhatItCannotWrite) {
 TEST(ScenePicture, IsDrawnByTheRendererOrSaysWhy) {
     const TemporaryFolder folder;
     test::writeFile(folder / "broken.3Dscene", "no scene");
-    const ScenePicture broken = renderScene(folder / "broken.3Dscene", "edges");
-    EXPECT_EQ(broken.png, "");
+    const Rendered broken = renderScene(folder / "broken.3Dscene", "edges");
+    EXPECT_EQ(broken.bytes, "");
     EXPECT_NE(broken.fault, "");
 
     test::writeTumFolder(folder / "recording", test::slidingRecording(5));
     const auto run =
         test::runProgram("roevo-odometry", {"--input", folder / "recording", "--output", folder / "run"});
     ASSERT_EQ(run.exit_code, 0) << run.all();
-    const ScenePicture picture = renderScene(folder / "run/map.3Dscene", "edges");
+    const Rendered picture = renderScene(folder / "run/map.3Dscene", "edges");
     EXPECT_EQ(picture.fault, "");
-    EXPECT_EQ(picture.png.substr(0, 4), "\x89PNG");
+    EXPECT_EQ(picture.bytes.substr(0, 4), "\x89PNG");
     EXPECT_NE(renderScene(folder / "run/map.3Dscene", "no-such-layer").fault, "");
 
     // In the page as it is
@@ -361,7 +361,7 @@ TEST(ScenePicture, IsDrawnByTheRendererOrSaysWhy) {
     sequence.runs[0].scene = "map.3Dscene";
     sequence.run_folders = {folder / "run"};
     const WrittenComparison out({sequence});
-    EXPECT_TRUE(contains(out.html, "src=\"data:image/png;base64," + base64(picture.png).substr(0, 40)));
+    EXPECT_TRUE(contains(out.html, "src=\"data:image/png;base64," + base64(picture.bytes).substr(0, 40)));
     EXPECT_EQ(loadedBy(out.html), std::vector<std::string>());
 
     // Interrupted, it takes its folder of pictures along

@@ -52,7 +52,8 @@ TEST_F(EvalPage, HasTableAndFiguresAndNeedsNothingElse) {
     const auto run = eval({"--align", "sim3", "--plot", folder_ / "p.html"});
     ASSERT_EQ(run.exit_code, 0) << run.all();
     const std::string page = test::readFile(folder_ / "p.html");
-    EXPECT_EQ(count(page, "class=\"plot\""), 4u) << "top, side, over time, cumulative";
+    EXPECT_EQ(count(page, "class=\"plot\""), 8u)
+        << "top, side; position, axes, angle, cumulative; translation and rotation over path length";
     EXPECT_EQ(count(page, "<td class=\"best\">1.000</td>"), 4u) << "rmse and mean of both, in cm";
     EXPECT_EQ(count(page, "<td>1.9998</td>"), 2u) << "the scale, made a little less by the noise";
     EXPECT_NE(page.find("&lt;b&gt;&amp;&quot;half&quot;"), std::string::npos) << "a name as it is";

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <random>
@@ -100,6 +101,39 @@ TEST(Evaluation, RelativeErrorsMeasureDriftPerSecondAndPerFrame) {
     EXPECT_NEAR(e.rpe_frame.rotation.rmse, 0.1, 1e-9);
     EXPECT_NEAR(e.rpe_second.rotation.mean, 1.0, 0.01);  // ten frames, axes a little apart
     EXPECT_LT(e.rpe_frame.translation.rmse, 1e-12);
+}
+
+TEST(Evaluation, RelativeErrorsMeasureDriftPerMetre) {
+    // Along x, which the camera turns about: at first 1 cm per frame, then it stands, then 3 cm per frame.
+    // The estimate is 3 % too long and turns 0.5 degrees per metre too far.
+    std::vector<StampedPose> reference, estimate;
+    std::vector<double> path;
+    double x = 0;
+    for (int i = 0; i < 220; ++i) {
+        const auto turned = [&](double deg) {
+            return Eigen::AngleAxisd(deg * kPi / 180, Eigen::Vector3d::UnitX());
+        };
+        path.push_back(x);
+        reference.push_back({0.1 * i, Eigen::Translation3d(x, 0, 0) * turned(7 * x)});
+        estimate.push_back({0.1 * i, Eigen::Translation3d(1.03 * x, 0, 0) * turned(7.5 * x)});
+        x += i < 100 ? 0.01 : i < 120 ? 0 : 0.03;
+    }
+    const auto pairs = associate(reference, estimate, 0.02);
+    for (const double length : {0.1, 0.5, 2.0}) {
+        const RelativeError e = relativePoseErrorOverDistance(reference, estimate, pairs, length);
+        std::size_t count = 0;
+        for (const double from : path)
+            count += std::any_of(path.begin(), path.end(),
+                                 [&](double to) { return std::abs(to - from - length) <= 0.1 * length; });
+        EXPECT_EQ(e.translation.count, count) << length;
+        EXPECT_GT(count, 50u) << length;
+        for (const double value : {e.translation.min, e.translation.max})
+            EXPECT_NEAR(value, 0.03, 1e-9) << length;
+        for (const double value : {e.rotation.min, e.rotation.max}) EXPECT_NEAR(value, 0.5, 1e-9) << length;
+    }
+    EXPECT_EQ(relativePoseErrorOverDistance(reference, estimate, pairs, 5).translation.count, 0u)
+        << "too long";
+    EXPECT_EQ(relativePoseErrorOverDistance(reference, estimate, {}, 1).translation.count, 0u);
 }
 
 TEST(Evaluation, ShorterThanASecondHasNoErrorPerSecond) {

@@ -106,6 +106,40 @@ TEST_F(RenderPage, AlignsAllWithTheGroundTruth) {
     EXPECT_TRUE(paths[4]["errors"].is_null());
 }
 
+TEST_F(RenderPage, TakesTrajectoriesOfOtherFormatsAndNames) {
+    // Rows without times are of the result's poses; nanoseconds are the same times
+    std::string kitti, euroc;
+    for (const StampedPose& pose : test::moved(test::kElsewhere, test::circle(1.25))) {
+        const auto matrix = pose.T_world_camera.isometry().matrix();
+        char text[200];
+        for (int k = 0; k < 12; ++k) {
+            std::snprintf(text, sizeof text, "%.12f%s", matrix(k / 4, k % 4), k < 11 ? " " : "\n");
+            kitti += text;
+        }
+        const Eigen::Vector3d p = pose.T_world_camera.translation();
+        const Eigen::Quaterniond q = pose.T_world_camera.rotation();
+        std::snprintf(text, sizeof text, "%lld,%.12f,%.12f,%.12f,%.12f,%.12f,%.12f,%.12f\n",
+                      std::llround(pose.timestamp * 1e9), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+        euroc += text;
+    }
+    test::writeFile(folder_ / "other.kitti", kitti);
+    test::writeFile(folder_ / "other.csv", euroc);
+    writeTumTrajectory(folder_ / "truth.txt", test::circle(1.1));
+    const auto run = render({"--title", "a room", "--name", "mine", "--ground-truth", folder_ / "truth.txt",
+                             "--trajectory", folder_ / "other.kitti", "e=" + (folder_ / "other.csv")});
+    ASSERT_EQ(run.exit_code, 0) << run.all();
+    EXPECT_EQ(data()["title"], "a room");
+    const json paths = data()["paths"];
+    const char* name[] = {"mine", "live", "other", "e", "ground truth"};
+    ASSERT_EQ(paths.size(), 5u);
+    for (std::size_t p = 0; p < 5; ++p) EXPECT_EQ(paths[p]["name"], name[p]);
+    for (const std::size_t p : {2, 3}) EXPECT_NEAR(paths[p]["ate"].get<double>(), 0.15, 1e-6) << p;
+
+    test::writeFile(folder_ / "other.kitti", kitti.substr(0, kitti.find('\n') + 1));
+    expectError(render({"--trajectory", folder_ / "other.kitti"}), 1, kName,
+                {"other.kitti", "trajectory.txt"});
+}
+
 TEST_F(RenderPage, TakesTheGroundTruthOfTheRunOrGoesWithout) {
     writeTumTrajectory(folder_ / "truth.txt", test::circle(1.1));
     writeSummary(folder_ / "truth.txt");

@@ -76,6 +76,38 @@ TEST(SceneBuilder, ComesBackFromAFileWithEverythingInIt) {
     EXPECT_GT(camera.getPointingAtX(), 1);
 }
 
+TEST(SceneBuilder, TheGroundTruthIsDashedAroundTheTrajectory) {
+    SceneContent content = someContent();
+    content.trajectory.clear();
+    for (int i = 0; i < 200; ++i) {
+        StampedPose pose;
+        pose.timestamp = i;
+        pose.T_world_camera.translation().x() =
+            0.01 * i + (i < 100 ? 0 : 1);  // a step as long as both halves
+        content.trajectory.push_back(pose);
+    }
+    content.reference = content.trajectory;
+    const auto scene = buildScene(content);
+    const auto drawn =
+        [&](const char* name) {  // m of the tube, and its radius; y of the scene is -x of the world
+            const auto tubes = find<mrpt::opengl::CSetOfTriangles>(*scene, name);
+            double length = 0, radius = 0;
+            for (std::size_t i = 0; i < tubes->getTrianglesCount(); ++i) {
+                mrpt::opengl::TTriangle triangle;
+            tubes->getTriangle(i, triangle);
+            const auto& v = triangle.vertices;
+                radius = std::max(radius, static_cast<double>(v[0].xyzrgba.pt.z));
+                if (i % 12 == 0) length += std::abs(v[2].xyzrgba.pt.y - v[1].xyzrgba.pt.y);
+            }
+            return std::pair(length, radius);
+        };
+    const auto [length, radius] = drawn(SceneNames::kTrajectory);
+    const auto [dashes, dash_radius] = drawn(SceneNames::kReference);
+    EXPECT_NEAR(length, 2.99, 1e-3);
+    EXPECT_NEAR(dashes, length / 2, 0.1);
+    EXPECT_GT(dash_radius, 1.2 * radius);
+}
+
 TEST(SceneBuilder, FrustaSitWhereTheKeyframesAre) {
     SceneContent content = someContent();
     content.T_scene_world = Pose::Identity();

@@ -1,9 +1,13 @@
 #include "roevo_method.h"
 
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
+#include "evaluation/trajectory_io.h"
 #include "odometry_frame.h"
+#include "programs/atomic_file.h"
 #include "roevo/odometry.h"
 #include "roevo_mrpt/scene_builder.h"
 
@@ -58,6 +62,24 @@ class RoevoMethod : public Method {
         content.keyframes = odometry_.keyframes();
         content.camera = odometry_.camera().undistorted();
         saveScene(path, *buildScene(content));
+
+        const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+        savePly(folder / "map.ply", content.map);
+        savePointsPly(folder / "map_semi_dense.ply", content.semi_dense);
+        std::vector<StampedPose> keyframes;
+        for (const KeyframeInfo& k : content.keyframes) keyframes.push_back({k.timestamp, k.T_world_camera});
+        writeTumTrajectory(folder / "keyframes.txt", keyframes);
+        const PinholeCamera& c = content.camera;
+        writeTextAtomically(folder / "summary.json", nlohmann::ordered_json{{"mode", toString(mode())},
+                                                                            {"camera",
+                                                                             {{"width", c.width},
+                                                                              {"height", c.height},
+                                                                              {"fx", c.fx},
+                                                                              {"fy", c.fy},
+                                                                              {"cx", c.cx},
+                                                                              {"cy", c.cy}}}}
+                                                             .dump(2) +
+                                                         "\n");
         return true;
     }
 

@@ -111,6 +111,7 @@ Figure cumulativeFigure(const Metric& metric, const std::vector<SequenceResults>
     std::string script = axis(metric, samples) +
                          "set yrange [0:100]\nset ylabel 'recordings [%]'\nset lmargin 9\nset bmargin 3\n";
     std::string plot;
+    std::vector<std::pair<std::string, LineStyle>> lines;
     for (std::size_t m = 0; m < samples.size(); ++m) {
         const Sample& sample = samples[m];
         std::vector<std::vector<double>> rows;
@@ -122,10 +123,13 @@ Figure cumulativeFigure(const Metric& metric, const std::vector<SequenceResults>
         script += gnuplotData(block, rows);
         plot += (plot.empty() ? "plot $" : ", $") + block + " using 1:2 with steps " +
                 gnuplotStyle(legend.styles[m]);
+        lines.emplace_back(legend.methods[m].label, legend.styles[m]);
     }
-    return drawFigure(
+    Figure figure = drawFigure(
         script + plot + "\n", kWidth, kCurveHeight, metric.title + ", cumulative",
         "Share of the recordings whose error is at most so much. One without a result never gets there.");
+    figure.lines = lines;
+    return figure;
 }
 
 }  // namespace roevo

@@ -6,6 +6,8 @@
 
 namespace roevo {
 
+class PageFiles;
+
 /// table.csv: one row per sequence and method with every figure, SI units and milliseconds, named in the
 /// head. What was not measured is empty, and a reason column says why.
 std::string csvTable(const std::vector<SequenceResults>& results);
@@ -14,10 +16,12 @@ std::string csvTable(const std::vector<SequenceResults>& results);
 std::string markdownTables(const std::vector<SequenceResults>& results, const ComparisonInfo& info);
 
 /// report.html, well-formed XML, with plots and pictures inside and nothing to be loaded.
+/// @param files     plots as files and 3-D views, to lie beside it
 /// @param folder    where it will lie: links to the runs are relative to it
 /// @param baseline  an earlier comparison; may be empty
 std::string htmlReport(const std::vector<SequenceResults>& results, const ComparisonInfo& info,
-                       const std::string& folder, const std::vector<SequenceResults>& baseline = {});
+                       const std::string& folder, PageFiles& files,
+                       const std::vector<SequenceResults>& baseline = {});
 
 /// Where a report of many has the page of one of its recordings: in its folder `pages`.
 std::string pageFile(const std::string& folder, const SequenceComparison& sequence);

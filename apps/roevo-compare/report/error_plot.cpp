@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -13,29 +14,37 @@ namespace roevo {
 namespace {
 
 constexpr std::size_t kMaxIntervals = 800;  // of a line, each with its largest error
-constexpr int kWidth = 960, kHeight = 300;  // px
-constexpr char kMargins[] = "unset key\nset lmargin 9\nset rmargin 2\nset tmargin 1\nset bmargin 2.6\n";
-constexpr double kMinError = 1e-3;  // cm: what is less is of no interest, and has no logarithm
+constexpr int kWidth = 960, kHeight = 300, kAxesHeight = 480, kDriftWidth = 480;  // px
+const std::string kMargins = "unset key\nset lmargin 10\nset rmargin 2\nset tmargin 1\nset bmargin 2.6\n";
+constexpr double kMinError = 1e-3;  // cm, deg: what is less is of no interest, and has no logarithm
+constexpr double kAxesFoot = 0.08, kAxesShare = (1 - kAxesFoot) / 3;  // of the picture with the axes
+constexpr double kMinDrift = 1e-3;                                    // %, deg/m
+constexpr double kShortestPath = 0.1, kLongestPath = 1e4;  // m: as long as rooms and buildings need
+constexpr std::size_t kFewestPieces = 10;                  // of a path length
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+const Figure kNothing{"", "", "No run has errors that could be drawn."};
+
+using Rows = std::vector<std::vector<double>>;
 
 struct Line {
+    std::size_t run;
     std::string name;
     LineStyle style;
-    std::vector<double> times, errors;  // s since the sequence's first pose; cm
+    std::vector<double> times, errors, angles;  // s since the sequence's first pose; cm; deg
+    std::array<std::vector<double>, 3> axes;    // cm, along those of the ground truth's world
 };
 
-std::vector<std::vector<double>> thinned(const Line& line) {
-    const std::size_t step = (line.times.size() + kMaxIntervals - 1) / kMaxIntervals;
-    const double gap = largestStep(line.times) * static_cast<double>(step);
-    std::vector<std::vector<double>> rows;
-    for (std::size_t i = 0; i < line.times.size(); i += step) {
-        const std::size_t end = std::min(i + step, line.times.size());
-        const auto begin = line.errors.begin();
-        const auto worst =
-            static_cast<std::size_t>(std::max_element(begin + static_cast<std::ptrdiff_t>(i),
-                                                      begin + static_cast<std::ptrdiff_t>(end)) -
-                                     begin);
-        if (!rows.empty() && line.times[worst] - rows.back()[0] > gap) rows.push_back({NAN, NAN});
-        rows.push_back({line.times[worst], std::max(line.errors[worst], kMinError)});
+// The largest value of each interval.
+Rows thinned(const std::vector<double>& times, const std::vector<double>& values) {
+    const std::size_t step = (times.size() + kMaxIntervals - 1) / kMaxIntervals;
+    const double gap = largestStep(times) * static_cast<double>(step);
+    Rows rows;
+    for (std::size_t i = 0; i < times.size(); i += step) {
+        std::size_t worst = i;
+        for (std::size_t k = i; k < std::min(i + step, times.size()); ++k)
+            if (std::abs(values[k]) > std::abs(values[worst])) worst = k;
+        if (!rows.empty() && times[worst] - rows.back()[0] > gap) rows.push_back({NAN, NAN});
+        rows.push_back({times[worst], values[worst]});
     }
     return rows;
 }
@@ -49,14 +58,17 @@ std::vector<Line> linesOf(const SequenceResults& results, const Legend& legend) 
         const Evaluation& evaluation = *results.evaluated[i].evaluation;
         const MethodRun& run = results.sequence->runs[i];
         const std::size_t m = legend.indexOf(run.method);
-        Line line{legend.methods[m].label, legend.styles[m], {}, {}};
+        Line line{i, legend.methods[m].label, legend.styles[m], {}, {}, {}, {}};
         for (const PosePair& pair : evaluation.pairs) {
             const StampedPose& pose = run.trajectory[pair.estimate];
-            const Eigen::Vector3d centre =
-                evaluation.ate.T_reference_estimate * pose.T_world_camera.translation();
-            const Eigen::Vector3d truth = reference[pair.reference].T_world_camera.translation();
+            const Pose estimate = evaluation.ate.T_reference_estimate * pose.T_world_camera;
+            const Pose& truth = reference[pair.reference].T_world_camera;
+            const Eigen::Vector3d difference = 100 * (estimate.translation() - truth.translation());
             line.times.push_back(pose.timestamp);
-            line.errors.push_back(100 * (centre - truth).norm());
+            line.errors.push_back(std::max(difference.norm(), kMinError));
+            line.angles.push_back(
+                std::max(kDegrees * truth.rotation().angularDistance(estimate.rotation()), kMinError));
+            for (std::size_t k = 0; k < 3; ++k) line.axes[k].push_back(difference[static_cast<int>(k)]);
         }
         start = std::min(start, line.times.front());
         lines.push_back(std::move(line));
@@ -85,65 +97,176 @@ std::string ticsOf(char axis, double low, double high) {
 }
 
 // What of the errors is shown. Where a line passes through zero it would reach down for ever.
-std::pair<double, double> rangeOf(const std::vector<Line>& lines) {
+std::pair<double, double> rangeOf(const std::vector<Line>& lines, std::vector<double> Line::*values) {
     std::vector<double> all;
-    for (const Line& line : lines) all.insert(all.end(), line.errors.begin(), line.errors.end());
+    for (const Line& line : lines) all.insert(all.end(), (line.*values).begin(), (line.*values).end());
     const double low = std::max(percentile(all, 0.01), kMinError);
     return {low, std::max(percentile(all, 1) * 1.3, 10 * low)};
 }
 
-std::vector<std::vector<double>> cumulative(const Line& line) {
+Rows cumulative(const Line& line) {
     std::vector<double> errors = line.errors;
     std::sort(errors.begin(), errors.end());
-    std::vector<std::vector<double>> rows;
+    Rows rows;
     for (const std::size_t i : evenly(errors.size(), kMaxIntervals))
-        rows.push_back({std::max(errors[i], kMinError),
-                        100 * static_cast<double>(i + 1) / static_cast<double>(errors.size())});
+        rows.push_back({errors[i], 100 * static_cast<double>(i + 1) / static_cast<double>(errors.size())});
     return rows;
 }
 
-std::string plotOf(const std::vector<Line>& lines,
-                   const std::function<std::vector<std::vector<double>>(const Line&)>& rows) {
+std::string rangeText(double low, double high) {
+    return "[" + exactNumber(low) + ":" + exactNumber(high) + "]\n";
+}
+
+std::string timeRange(const std::vector<Line>& lines) {
+    double end = 1e-3;
+    for (const Line& line : lines) end = std::max(end, line.times.back());
+    return "set xrange " + rangeText(0, end);
+}
+
+std::string logarithmic(char axis, std::pair<double, double> range) {
+    const std::string name(1, axis);
+    return "set logscale " + name + "\nset format " + name + " '%g'\nset " + name + "range " +
+           rangeText(range.first, range.second) + ticsOf(axis, range.first, range.second);
+}
+
+std::string plotOf(const std::vector<Line>& lines, const std::function<Rows(const Line&)>& rows,
+                   const std::string& with = "lines ") {
     std::string data, plot;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const std::string block = "line" + std::to_string(i);
         data += gnuplotData(block, rows(lines[i]));
-        plot += (i == 0 ? "plot " : ", ") + std::string("$") + block + " using 1:2 with lines " +
+        plot += (i == 0 ? "plot " : ", ") + std::string("$") + block + " using 1:2 with " + with +
                 gnuplotStyle(lines[i].style);
     }
     return data + plot + "\n";
 }
 
+Figure draw(const std::vector<Line>& lines, const std::string& script, int width, int height,
+            const std::string& name, const std::string& note = {}) {
+    Figure figure = drawFigure(script, width, height, name, note);
+    for (const Line& line : lines) figure.lines.emplace_back(line.name, line.style);
+    return figure;
+}
+
+Figure overTime(const SequenceResults& results, const Legend& legend, std::vector<double> Line::*values,
+                const std::string& what, const std::string& unit, const std::string& note = {}) {
+    const std::vector<Line> lines = linesOf(results, legend);
+    if (lines.empty()) return kNothing;
+    const std::string script =
+        kMargins + timeRange(lines) + "set xlabel 'time [s]' offset 0,0.4\nset ylabel '" + what + " [" +
+        unit + "]'\n" + logarithmic('y', rangeOf(lines, values)) +
+        plotOf(lines, [&](const Line& line) { return thinned(line.times, line.*values); });
+    return draw(lines, script, kWidth, kHeight, results.sequence->name + ": " + what + " over time", note);
+}
+
+// The largest error along an axis, cm.
+double extentOf(const Line& line) {
+    double extent = kMinError;
+    for (const auto& axis : line.axes)
+        for (const double error : axis) extent = std::max(extent, std::abs(error));
+    return extent;
+}
+
+// Path lengths of 1, 2 and 5 times a power of ten over which a run has enough pieces, m.
+struct Drift {
+    Rows translation, rotation;  // length, m; error, % and deg/m
+};
+Drift driftOf(const SequenceResults& results, std::size_t run) {
+    const auto& pairs = results.evaluated[run].evaluation->pairs;
+    Drift drift;
+    for (double decade = kShortestPath; decade < kLongestPath; decade *= 10)
+        for (const double step : {1., 2., 5.}) {
+            const RelativeError error = relativePoseErrorOverDistance(
+                results.sequence->reference, results.sequence->runs[run].trajectory, pairs, step * decade);
+            if (error.translation.count < kFewestPieces) continue;
+            drift.translation.push_back({step * decade, std::max(100 * error.translation.mean, kMinDrift)});
+            drift.rotation.push_back({step * decade, std::max(error.rotation.mean, kMinDrift)});
+        }
+    return drift;
+}
+
+Figure driftFigure(const std::vector<Line>& lines, const std::vector<Drift>& drifts, Rows Drift::*rows,
+                   const std::string& label, const std::string& name) {
+    double low = INFINITY, high = 0, shortest = INFINITY, longest = 0;
+    for (const Drift& drift : drifts)
+        for (const auto& row : drift.*rows) {
+            shortest = std::min(shortest, row[0]), longest = std::max(longest, row[0]);
+            low = std::min(low, row[1]), high = std::max(high, row[1]);
+        }
+    std::size_t i = 0;
+    const std::string script =
+        kMargins + logarithmic('x', {shortest / 1.1, longest * 1.1}) +
+        logarithmic('y', {low / 1.3, high * 1.3}) +
+        "set xlabel 'path length [m]' offset 0,0.4\nset ylabel '" + label + "'\n" +
+        plotOf(
+            lines, [&](const Line&) { return drifts[i++].*rows; }, "linespoints pt 7 ps 0.4 ");
+    return draw(lines, script, kDriftWidth, kHeight, name);
+}
+
 }  // namespace
 
 Figure errorFigure(const SequenceResults& results, const Legend& legend) {
-    const std::vector<Line> lines = linesOf(results, legend);
-    if (lines.empty()) return {"", "", "No run has errors that could be drawn."};
+    return overTime(results, legend, &Line::errors, "position error", "cm");
+}
 
-    double end = 0;
-    for (const Line& line : lines) end = std::max(end, line.times.back());
-    const auto [low, high] = rangeOf(lines);
-    std::string script = std::string(kMargins) +
-                         "set logscale y\nset xlabel 'time [s]' offset 0,0.4\n"
-                         "set ylabel 'position error [cm]'\nset format y '%g'\nset xrange [0:" +
-                         exactNumber(std::max(end, 1e-3)) + "]\nset yrange [" + exactNumber(low) + ":" +
-                         exactNumber(high) + "]\n" + ticsOf('y', low, high);
-    script += plotOf(lines, thinned);
-    return drawFigure(script, kWidth, kHeight, results.sequence->name + ": position error over time", "");
+Figure angularErrorFigure(const SequenceResults& results, const Legend& legend) {
+    return overTime(
+        results, legend, &Line::angles, "angular error", "deg",
+        "After the alignment of the positions: a constant turn between the two cameras is part of it.");
+}
+
+Figure axisErrorFigure(const SequenceResults& results, const Legend& legend) {
+    const std::vector<Line> lines = linesOf(results, legend);
+    if (lines.empty()) return kNothing;
+    std::vector<double> extents;
+    for (const Line& line : lines) extents.push_back(extentOf(line));
+    // Half of the lines whole, so that one that runs away does not squash them
+    const double extent = 1.1 * percentile(extents, 0.5);
+    std::string script = kMargins + timeRange(lines) + "set yrange " + rangeText(-extent, extent) +
+                         "set xzeroaxis lc rgb '#666666'\nset bmargin 0.4\nset multiplot\n";
+    std::string leaving;
+    for (std::size_t k = 0; k < 3; ++k) {
+        // The axis of time is written once, in the room of the lowest picture
+        script += "set origin 0," + exactNumber(kAxesFoot + (2 - static_cast<double>(k)) * kAxesShare) +
+                  "\nset size 1," + exactNumber(kAxesShare) + "\nset format x ''\n";
+        if (k == 2)
+            script += "set origin 0,0\nset size 1," + exactNumber(kAxesFoot + kAxesShare) +
+                      "\nset bmargin 2.6\nset format x '%g'\nset xlabel 'time [s]' offset 0,0.4\n";
+        script += std::string("set ylabel '") + "xyz"[k] + " [cm]'\n" +
+                  plotOf(lines, [&](const Line& line) { return thinned(line.times, line.axes[k]); });
+    }
+    for (const Line& line : lines)
+        if (extentOf(line) > extent) leaving += (leaving.empty() ? "" : ", ") + line.name;
+    return draw(lines, script + "unset multiplot\n", kWidth, kAxesHeight,
+                results.sequence->name + ": position error along the axes over time",
+                "Estimate minus ground truth along the axes of the ground truth’s world." +
+                    (leaving.empty() ? "" : " Leaving the picture: " + leaving));
 }
 
 Figure cumulativeErrorFigure(const SequenceResults& results, const Legend& legend) {
     const std::vector<Line> lines = linesOf(results, legend);
-    if (lines.empty()) return {"", "", "No run has errors that could be drawn."};
+    if (lines.empty()) return kNothing;
+    const std::string script = kMargins + logarithmic('x', rangeOf(lines, &Line::errors)) +
+                               "set xlabel 'position error [cm]' offset 0,0.4\nset ylabel 'poses [%]'\n"
+                               "set yrange [0:100]\n" +
+                               plotOf(lines, cumulative);
+    return draw(lines, script, kWidth, kHeight, results.sequence->name + ": cumulative position error",
+                "Share of the paired poses whose error is at most so much.");
+}
 
-    const auto [low, high] = rangeOf(lines);
-    std::string script = std::string(kMargins) +
-                         "set logscale x\nset xlabel 'position error [cm]' offset 0,0.4\n"
-                         "set ylabel 'poses [%]'\nset format x '%g'\nset yrange [0:100]\nset xrange [" +
-                         exactNumber(low) + ":" + exactNumber(high) + "]\n" + ticsOf('x', low, high);
-    script += plotOf(lines, cumulative);
-    return drawFigure(script, kWidth, kHeight, results.sequence->name + ": cumulative position error",
-                      "Share of the paired poses whose error is at most so much.");
+std::vector<Figure> relativeErrorFigures(const SequenceResults& results, const Legend& legend) {
+    std::vector<Line> lines;
+    std::vector<Drift> drifts;
+    for (Line& line : linesOf(results, legend)) {
+        Drift drift = driftOf(results, line.run);
+        if (drift.translation.empty()) continue;
+        lines.push_back(std::move(line));
+        drifts.push_back(std::move(drift));
+    }
+    if (lines.empty()) return {};
+    const std::string name = results.sequence->name + ": relative error over path length, ";
+    return {driftFigure(lines, drifts, &Drift::translation, "translation [%]", name + "translation"),
+            driftFigure(lines, drifts, &Drift::rotation, "rotation [deg/m]", name + "rotation")};
 }
 
 }  // namespace roevo

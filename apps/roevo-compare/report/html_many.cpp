@@ -65,7 +65,8 @@ std::string legendOf(const Legend& legend) {
     return "<ul class=\"legend\">" + items + "</ul>\n";
 }
 
-std::string distributions(const std::vector<SequenceResults>& results, const Legend& legend) {
+std::string distributions(const std::vector<SequenceResults>& results, const Legend& legend,
+                          PageFiles& files) {
     std::string html = "<section id=\"Distributions\">\n<h2>Distributions</h2>\n" +
                        setTable(distributionTable(results, legend.methods), "distribution");
     try {
@@ -73,8 +74,8 @@ std::string distributions(const std::vector<SequenceResults>& results, const Leg
             const Metric& metric = shownMetrics()[m];
             if (!anyHas(metric, results)) continue;  // of recordings shorter than 1 s
             html += "<div class=\"block\"><h3>" + htmlText(metric.title) + "</h3>\n" +
-                    setFigure(boxFigure(metric, results, legend)) + legendOf(legend) +
-                    setFigure(cumulativeFigure(metric, results, legend)) + "</div>\n";
+                    setFigure(boxFigure(metric, results, legend), &files) + legendOf(legend) +
+                    setFigure(cumulativeFigure(metric, results, legend), &files) + "</div>\n";
         }
     } catch (const NoGnuplot& e) {
         html += remark(std::string("No plots: ") + e.what());
@@ -146,10 +147,10 @@ bool hasTrajectories(const SequenceComparison& sequence) {
 }
 
 std::string htmlReportOfMany(const std::vector<SequenceResults>& results, const Legend& legend,
-                             const ComparisonInfo& info, const std::string& folder,
+                             const ComparisonInfo& info, const std::string& folder, PageFiles& files,
                              const std::vector<SequenceResults>& baseline) {
     return pageHead() + header(results, legend, info, !baseline.empty()) + "<main>\n" +
-           changesSection(results, baseline) + distributions(results, legend) + failures(results) +
+           changesSection(results, baseline) + distributions(results, legend, files) + failures(results) +
            worst(results, legend, folder) + ranking(results, legend) + methodList(legend) +
            protocolSection(allPinned(results)) + repeating(info) + "</main>\n</body>\n</html>\n";
 }

@@ -1,8 +1,10 @@
 #include "roevo-compare/report/html_parts.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "programs/text.h"
 
@@ -10,6 +12,7 @@ namespace roevo {
 namespace {
 
 constexpr std::size_t kManyColumns = 8;  // more are set closer
+constexpr int kWideFigure = 600;         // px
 
 std::string colourText(unsigned rgb) {
     char text[8];
@@ -130,13 +133,36 @@ std::string stageLegend(const Figure& figure) {
            "fill=\"#222222\"/></svg>processor time, all threads</li></ul>\n";
 }
 
-std::string setFigure(const Figure& figure) {
+std::string PageFiles::add(const std::string& folder, const std::string& name, const std::string& extension,
+                           std::string bytes) {
+    std::string plain;
+    for (const char c : name)
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '.')
+            plain += c;
+        else if (!plain.empty() && plain.back() != '_')
+            plain += '_';
+    const auto address = [&](int copy) {
+        return folder + "/" + plain + (copy > 1 ? "_" + std::to_string(copy) : "") + extension;
+    };
+    int copy = 1;
+    const auto is_taken = [&](const auto& file) { return file.first == address(copy); };
+    while (std::any_of(files_.begin(), files_.end(), is_taken)) ++copy;
+    files_.emplace_back(address(copy), std::move(bytes));
+    return files_.back().first;
+}
+
+std::string setFigure(const Figure& figure, PageFiles* files) {
     if (figure.svg.empty()) return "<p class=\"remark\">" + htmlText(figure.note) + "</p>\n";
     const std::string picture =
         replaceAll(figure.svg, "<svg class=\"plot\"",
                    "<svg class=\"plot\" role=\"img\" aria-label=\"" + htmlText(figure.name) + "\"");
-    return "<figure>" + picture +
-           (figure.note.empty() ? "" : "<figcaption>" + htmlText(figure.note) + "</figcaption>") +
+    std::string caption = htmlText(figure.note);
+    if (files != nullptr)
+        caption += (caption.empty() ? "<a href=\"" : " <a href=\"") +
+                   files->add("figures", figure.name, ".svg", standaloneSvg(figure)) + "\">SVG</a>";
+    // A wide one is scrolled on a small screen, where its text would become too small
+    return std::string("<figure") + (figure.width > kWideFigure ? " class=\"wide\"" : "") + "><div>" +
+           picture + "</div>" + (caption.empty() ? "" : "<figcaption>" + caption + "</figcaption>") +
            "</figure>\n";
 }
 

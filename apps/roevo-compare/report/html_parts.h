@@ -24,8 +24,23 @@ std::string lineSample(const LineStyle& style);
 /// Colours and marks of the plot of stages.
 std::string stageLegend(const Figure& figure);
 
-/// A figure, or the words why there is none.
-std::string setFigure(const Figure& figure);
+/// Files that lie beside a page and that it links to.
+class PageFiles {
+  public:
+    /// Takes a file in. @param name  in words, e.g. "fr1_xyz: position error over time"
+    /// @return its address seen from the page, `folder/fr1_xyz_position_error_over_time.svg`, of its own
+    std::string add(const std::string& folder, const std::string& name, const std::string& extension,
+                    std::string bytes);
+    /// Addresses and bytes.
+    const std::vector<std::pair<std::string, std::string>>& all() const { return files_; }
+
+  private:
+    std::vector<std::pair<std::string, std::string>> files_;
+};
+
+/// A figure, or the words why there is none. @param files  where given, the figure is also one of these, with
+/// a link to it
+std::string setFigure(const Figure& figure, PageFiles* files = nullptr);
 
 /// `<tag>text</tag>`, the text escaped.
 std::string element(const std::string& tag, const std::string& text);

@@ -80,11 +80,13 @@ std::string ranking(const std::vector<SequenceResults>& results, const Legend& l
 }  // namespace
 
 std::string htmlReport(const std::vector<SequenceResults>& results, const ComparisonInfo& info,
-                       const std::string& folder, const std::vector<SequenceResults>& baseline) {
+                       const std::string& folder, PageFiles& files,
+                       const std::vector<SequenceResults>& baseline) {
     const auto methods = tableMethods(results);
     const Legend legend{methods, lineStyles(methods)};
-    if (results.size() > kManySequences) return htmlReportOfMany(results, legend, info, folder, baseline);
-    SequenceWriter writer(legend, folder, results.size() > 1);
+    if (results.size() > kManySequences)
+        return htmlReportOfMany(results, legend, info, folder, files, baseline);
+    SequenceWriter writer(legend, folder, results.size() > 1, files);
     std::string sequences;
     for (std::size_t s = 0; s < results.size(); ++s) sequences += writer.write(results[s], s + 1);
     std::string html = pageHead() + header(results, legend, info);

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "roevo-compare/report/documents.h"
-#include "roevo-compare/report/plots.h"
+#include "roevo-compare/report/html_parts.h"
 
 namespace roevo {
 
@@ -27,7 +27,7 @@ std::string changesSection(const std::vector<SequenceResults>& results,
 /// The report of more than kManySequences recordings: distributions, failures, the worst ones.
 /// @throws Interrupted after a signal
 std::string htmlReportOfMany(const std::vector<SequenceResults>& results, const Legend& legend,
-                             const ComparisonInfo& info, const std::string& folder,
+                             const ComparisonInfo& info, const std::string& folder, PageFiles& files,
                              const std::vector<SequenceResults>& baseline);
 
 }  // namespace roevo

@@ -2,26 +2,32 @@
 #include <string>
 #include <vector>
 
-#include "roevo-compare/report/plots.h"
+#include "roevo-compare/report/html_parts.h"
 
 namespace roevo {
 
 /// Table of all figures of a sequence, each method linked with the folder of its run.
 std::string allFigures(const SequenceResults& results, const std::string& id, const std::string& folder);
 
-/// Trajectories from above and from the side, with their legend. @throws NoGnuplot; Interrupted
-std::string trajectoryBlock(const SequenceResults& results, const Legend& legend, const std::string& title);
-
-/// Position errors over time, and their cumulative curve; empty without any. @param alignment  in words
+/// Trajectories from above and from the side, with their legend. @param files  see setFigure()
 /// @throws NoGnuplot; Interrupted
-std::string errorBlocks(const SequenceResults& results, const Legend& legend, const std::string& alignment);
+std::string trajectoryBlock(const SequenceResults& results, const Legend& legend, const std::string& title,
+                            PageFiles* files = nullptr);
+
+/// Position errors over time, in all and by axis, and their cumulative curve, angular errors over time,
+/// relative errors by path length; empty without any. @param alignment  in words. @param files  see
+/// setFigure()
+/// @throws NoGnuplot; Interrupted
+std::string errorBlocks(const SequenceResults& results, const Legend& legend, const std::string& alignment,
+                        PageFiles* files = nullptr);
 
 /// Writes the sections of the sequences of one report: facts, figures, trajectories, errors, times, maps.
 class SequenceWriter {
   public:
     /// @param folder      of the report
     /// @param with_table  of all figures; not when the summary shows it already
-    SequenceWriter(const Legend& legend, std::string folder, bool with_table);
+    /// @param files       takes plots and 3-D views
+    SequenceWriter(const Legend& legend, std::string folder, bool with_table, PageFiles& files);
 
     /// @throws Interrupted after a signal
     std::string write(const SequenceResults& results, std::size_t number);
@@ -32,10 +38,12 @@ class SequenceWriter {
   private:
     std::string plots(const SequenceResults& results);
     std::string maps(const SequenceResults& results) const;
+    std::string view(const SequenceResults& results);
 
     const Legend& legend_;
     std::string folder_;
     bool with_table_;
+    PageFiles& files_;
     std::vector<std::string> stages_;  // in the order of their colours
     std::string plot_fault_;
 };

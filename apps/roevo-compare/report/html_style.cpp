@@ -13,7 +13,7 @@ h1 { font-size: 30px; line-height: 1.2; margin: 0 0 6px; letter-spacing: -0.01em
 h2 { font-size: 22px; line-height: 1.25; margin: 52px 0 12px; padding-top: 14px; border-top: 2px solid var(--ink);
   overflow-wrap: anywhere; }
 h3 { font-size: 16px; margin: 26px 0 6px; }
-p { margin: 6px 0; max-width: 76ch; }
+p { margin: 6px 0; max-width: 76ch; overflow-wrap: anywhere; }
 a { color: var(--ours); }
 code, pre { font: 13px/1.45 ui-monospace, "SF Mono", Menlo, Consolas, "Liberation Mono", monospace; }
 pre { background: #f5f7f9; border: 1px solid var(--rule); padding: 10px 12px; white-space: pre-wrap;
@@ -46,7 +46,7 @@ td { white-space: nowrap; position: relative; }
 td.best { font-weight: 700; background: var(--tint); color: var(--ours); }
 td.weak { font-style: italic; color: var(--muted); }
 td.text, th.text { text-align: left; white-space: normal; }
-th.text[scope=col] { max-width: none; }
+th.text[scope=col] { max-width: none; min-width: 300px; }
 sup { position: absolute; top: 2px; right: 2px; font-size: 10px; line-height: 1; font-weight: 400; font-style: normal; }
 sup a { text-decoration: none; }
 .notes { font-size: 12.5px; line-height: 1.4; color: var(--muted); margin: 6px 0 0; padding-left: 22px; max-width: 100ch;
@@ -59,9 +59,11 @@ sup a { text-decoration: none; }
 figure { margin: 0; min-width: 0; }
 figcaption { font-size: 13px; color: var(--muted); margin: 2px 0 0; overflow-wrap: anywhere; }
 .plot { display: block; width: 100%; height: auto; }
+.view a { display: inline-block; margin: 2px 6px 2px 0; padding: 5px 14px; border-radius: 6px; background: var(--ours);
+  color: #fff; text-decoration: none; font-weight: 600; }
 .pair, .maps { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 14px 20px; align-items: start; }
 .maps img { display: block; width: 100%; height: auto; }
-.methods { margin: 0; }
+.methods { margin: 0; overflow-wrap: anywhere; }
 .methods dt { font-weight: 600; display: flex; align-items: center; gap: 9px; margin-top: 10px; }
 .methods dd { margin: 0 0 0 39px; max-width: 90ch; }
 ul.lines { padding-left: 20px; max-width: 90ch; }
@@ -80,7 +82,11 @@ ul.lines li { margin: 3px 0; }
   .dense th[scope=col] { min-width: 40px; }
   .dense th:first-child { min-width: 110px; }
 }
-@media (max-width: 560px) { .pair, .maps { grid-template-columns: minmax(0, 1fr); } }
+@media (max-width: 560px) {
+  .pair, .maps { grid-template-columns: minmax(0, 1fr); }
+  .wide div { overflow-x: auto; }
+  .wide .plot { width: 660px; }
+}
 @page { size: A4; margin: 14mm 13mm; }
 @media print {
   * { -webkit-print-color-adjust: exact; print-color-adjust: exact; }

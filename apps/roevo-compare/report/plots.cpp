@@ -1,6 +1,7 @@
 #include "roevo-compare/report/plots.h"
 
 #include <atomic>
+#include <cstdio>
 #include <regex>
 #include <stdexcept>
 
@@ -11,6 +12,9 @@
 
 namespace roevo {
 namespace {
+
+constexpr int kLegendLine = 24, kLegendLeft = 20, kLegendText = 52;  // px
+constexpr double kPixelsByCharacter = 8.6;                           // of 14 px, on the whole
 
 // An <svg> element for a page that holds many, from gnuplot's document.
 std::string inlined(const std::string& svg, int width, int height) {
@@ -40,7 +44,8 @@ std::size_t Legend::indexOf(const std::string& method) const {
 Figure drawFigure(const std::string& script, int width, int height, const std::string& name,
                   const std::string& note) {
     try {
-        return {inlined(drawSvgText(script, width, height), width, height), name, note};
+        return {
+            inlined(drawSvgText(script, width, height), width, height), name, note, {}, {}, width, height};
     } catch (const Interrupted&) {
         throw;
     } catch (const NoGnuplot&) {
@@ -48,6 +53,42 @@ Figure drawFigure(const std::string& script, int width, int height, const std::s
     } catch (const std::runtime_error& e) {
         return {"", name, "No plot (" + name + "): " + e.what()};
     }
+}
+
+std::string standaloneSvg(const Figure& figure) {
+    std::string items;
+    int x = kLegendLeft, y = figure.height + kLegendLine / 2;
+    const auto add = [&](const std::string& sample, const std::string& name) {
+        const int width = kLegendText + static_cast<int>(kPixelsByCharacter * double(countCharacters(name)));
+        if (x > kLegendLeft && x + width > figure.width) x = kLegendLeft, y += kLegendLine;
+        items += "<g transform=\"translate(" + std::to_string(x) + "," + std::to_string(y) + ")\">" + sample +
+                 "<text x=\"" + std::to_string(kLegendText - 16) + "\" y=\"5\">" + htmlText(name) +
+                 "</text></g>\n";
+        x += width;
+    };
+    for (const auto& [name, style] : figure.lines)
+        add("<line x2=\"28\" stroke=\"" + style.colour + "\" stroke-width=\"" + exactNumber(style.width) +
+                (style.dashes.empty() ? "" : "\" stroke-dasharray=\"" + style.dashes) + "\"/>",
+            name);
+    for (const auto& [name, rgb] : figure.fills) {
+        char colour[8];
+        std::snprintf(colour, sizeof colour, "#%06X", rgb);
+        add(std::string("<rect x=\"8\" y=\"-7\" width=\"14\" height=\"14\" fill=\"") + colour + "\"/>", name);
+    }
+    const int height = items.empty() ? figure.height : y + kLegendLine / 2;
+    const std::string head = figure.svg.substr(0, figure.svg.find('>') + 1);
+    std::string svg = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n" + figure.svg;
+    const std::string size = std::to_string(figure.width) + "\" height=\"" + std::to_string(height);
+    svg = replaceAll(
+        svg, head,
+        "<svg width=\"" + size + "\" viewBox=\"0 0 " + std::to_string(figure.width) + " " +
+            std::to_string(height) +
+            "\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n"
+            "<title>" +
+            htmlText(figure.name) + "</title>\n<rect width=\"" + size + "\" fill=\"#fff\"/>");
+    return svg.insert(
+        svg.rfind("</svg>"),
+        "<g font-family=\"Helvetica,Arial,sans-serif\" font-size=\"14\" fill=\"#333\">\n" + items + "</g>\n");
 }
 
 std::vector<StampedPose> aligned(const std::vector<StampedPose>& trajectory, const Evaluation& evaluation) {

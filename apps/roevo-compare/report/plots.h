@@ -13,7 +13,9 @@ struct Figure {
     std::string svg;   ///< an <svg> element that can stand in a page with others
     std::string name;  ///< for those who cannot see it
     std::string note;  ///< in words: what left the picture, what could not be drawn; may be empty
-    std::vector<std::pair<std::string, unsigned>> fills{};  ///< names and 0xrrggbb of areas, for a legend
+    std::vector<std::pair<std::string, unsigned>> fills{};   ///< names and 0xrrggbb of areas, for a legend
+    std::vector<std::pair<std::string, LineStyle>> lines{};  ///< names and looks of lines, likewise
+    int width = 0, height = 0;                               ///< px
 };
 
 /// Methods of a report with their looks.
@@ -32,6 +34,18 @@ std::vector<Figure> trajectoryFigures(const SequenceResults& results, const Lege
 /// Distance of the aligned camera centres from the ground truth over time. @throws as drawFigure()
 Figure errorFigure(const SequenceResults& results, const Legend& legend);
 
+/// Angle between the aligned cameras' attitudes and the ground truth's over time. @throws as drawFigure()
+Figure angularErrorFigure(const SequenceResults& results, const Legend& legend);
+
+/// What the aligned camera centres are off along x, y and z of the ground truth's world over time, one above
+/// the other. @throws as drawFigure()
+Figure axisErrorFigure(const SequenceResults& results, const Legend& legend);
+
+/// Mean relative error by path length, see relativePoseErrorOverDistance(): translation in % and rotation in
+/// deg/m over lengths from 0.1 m on. None where no run has enough pieces of any length. @throws as
+/// drawFigure()
+std::vector<Figure> relativeErrorFigures(const SequenceResults& results, const Legend& legend);
+
 /// Share of the paired poses whose distance is at most so much. @throws as drawFigure()
 Figure cumulativeErrorFigure(const SequenceResults& results, const Legend& legend);
 
@@ -44,6 +58,9 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
 /// @throws NoGnuplot; Interrupted
 Figure drawFigure(const std::string& script, int width, int height, const std::string& name,
                   const std::string& note);
+
+/// A document of its own, with a white ground and the figure's legend beneath it.
+std::string standaloneSvg(const Figure& figure);
 
 /// Poses brought into the ground truth's world.
 std::vector<StampedPose> aligned(const std::vector<StampedPose>& trajectory, const Evaluation& evaluation);

@@ -192,6 +192,9 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
                                        : "A bar whose mean has a ▶ goes on beyond the right edge, as do the "
                                          "marks of other figures with one.");
     figure.fills = fillsOf(bars, stages);
+    if (!figure.fills.empty())
+        figure.lines = {{"| 95th percentile", {"none", 0, ""}},
+                        {"◆ processor time, all threads", {"none", 0, ""}}};
     return figure;
 }
 

@@ -200,6 +200,7 @@ std::vector<Figure> trajectoryFigures(const SequenceResults& results, const Lege
         shown[static_cast<std::size_t>(view.up)].widenTo(up.extent());
         const std::string name = results.sequence->name + ": trajectories, " + view.name;
         figures.push_back(drawFigure(scriptFor(view, right, up, lines), kWidth, height, name, view.name));
+        for (const Line& line : lines) figures.back().lines.emplace_back(line.name, line.style);
     }
     const std::string leaving = leavingNames(lines, shown);
     if (!leaving.empty()) figures.back().note += ". Leaving the picture: " + leaving;

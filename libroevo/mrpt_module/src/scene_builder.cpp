@@ -15,6 +15,9 @@
 namespace roevo {
 namespace {
 
+constexpr float kDash = 12, kDashWidth = 1.5f,
+                kMostPieces = 4000;  // of the ground truth, in radii of the trajectory
+
 using mrpt::img::TColor;
 using Points = std::vector<Eigen::Vector3f>;
 
@@ -55,11 +58,33 @@ Points positions(const std::vector<StampedPose>& poses, const Pose& T_scene_worl
     return points;
 }
 
-mrpt::opengl::CSetOfTriangles::Ptr path(const char* name, const Points& points, float radius,
+/// Every second piece of a line, each `length` long, or longer where there would be too many.
+std::vector<Points> dashes(const Points& line, float length) {
+    float whole = 0;
+    for (std::size_t i = 1; i < line.size(); ++i) whole += (line[i] - line[i - 1]).norm();
+    length = std::max(length, whole / kMostPieces);
+    std::vector<Points> pieces{{line.front()}};
+    bool is_drawn = true;
+    float rest = length;  // of the piece
+    for (std::size_t i = 1; i < line.size(); ++i) {
+        Eigen::Vector3f at = line[i - 1];
+        for (float way = (line[i] - at).norm(); way > rest; way -= rest, rest = length) {
+            at += rest / way * (line[i] - at);
+            if (is_drawn) pieces.back().push_back(at);
+            is_drawn = !is_drawn;
+            if (is_drawn) pieces.push_back({at});
+        }
+        rest -= (line[i] - at).norm();
+        if (is_drawn) pieces.back().push_back(line[i]);
+    }
+    return pieces;
+}
+
+mrpt::opengl::CSetOfTriangles::Ptr path(const char* name, const std::vector<Points>& pieces, float radius,
                                         const TColor& colour) {
     auto tube = mrpt::opengl::CSetOfTriangles::Create();
     tube->setName(name);
-    appendTube(*tube, points, radius, colour);
+    for (const Points& points : pieces) appendTube(*tube, points, radius, colour);
     return tube;
 }
 
@@ -134,9 +159,12 @@ compat::Scene::Ptr buildScene(const SceneContent& content) {
     auto scene = compat::Scene::Create();
     insertGround(*scene, extent);
     insertEdgeLayers(*scene, content);
+    // Dashes around the estimate, so that both are seen where they coincide
     if (!reference.empty())
-        scene->insert(path(SceneNames::kReference, reference, path_radius, toMrpt(SceneColours::kReference)));
-    scene->insert(path(SceneNames::kTrajectory, trajectory, path_radius, toMrpt(SceneColours::kTrajectory)));
+        scene->insert(path(SceneNames::kReference, dashes(reference, kDash * path_radius),
+                           kDashWidth * path_radius, toMrpt(SceneColours::kReference)));
+    scene->insert(
+        path(SceneNames::kTrajectory, {trajectory}, path_radius, toMrpt(SceneColours::kTrajectory)));
     insertKeyframes(*scene, content, std::clamp(0.03f * extent.diagonal(), 0.03f, 0.3f));
     aimCamera(*scene, extent);
     return scene;
