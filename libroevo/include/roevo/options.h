@@ -66,7 +66,7 @@ struct FineOptions {
     int max_iterations = 12;      ///< Gauss-Newton steps, associations renewed in each
     double chi2 = 16;             ///< chi-square limit of a residual
     double photometric_weight =
-        0.3;                    ///< alpha^2 of Eq. (9) after both residuals are normalised by their spread
+        0.05;                   ///< alpha^2 of Eq. (9) after both residuals are normalised by their spread
     double depth_weight = 0.4;  ///< weight of the depth residual of associated points (0: as in the paper)
     double depth_chi2 = 12;     ///< chi-square limit of a depth residual
     int min_inliers = 40;       ///< fewer inliers: the frame is not tracked
