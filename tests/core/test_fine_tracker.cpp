@@ -34,8 +34,9 @@ class FineTracking : public ::testing::Test {
     /// Tracked, and assessed at the pose that was found.
     FineResult trackFrom(const Pose& start, const Pose& likely, const RollingShutter& shutter = {}) {
         FineTracker tracker(sequence_->camera, options_);
+        const Pose better = tracker.chooseInitialPose(keyframe_, frame_, start, likely, shutter);
         const FineResult found =
-            tracker.track(keyframe_, frame_, start, {likely, 1, 1}, shutter, Brightness());
+            tracker.track(keyframe_, frame_, better, {likely, 1, 1}, shutter, Brightness());
         const Pose& pose = found.T_current_keyframe;
         FineResult assessed = tracker.assess(keyframe_, frame_, pose, shutter.motion(pose));
         assessed.converged = assessed.converged && found.converged;
@@ -87,7 +88,16 @@ TEST_F(FineTracking, FindsTheMotionFromNearby) {
     EXPECT_LT(errorOf(result), 0.002);
 }
 
-TEST_F(FineTracking, AWrongPriorDoesNotPullAGoodStartAway) {
+TEST_F(FineTracking, AGoodGuessIsTakenWhenCoarseTrackingWentAstray) {
+    const Pose astray = turned(8) * truth_;
+    const FineResult lost = trackFrom(astray, astray);
+    ASSERT_TRUE(!lost.converged || errorOf(lost) > 0.02) << "else the case tests nothing";
+    const FineResult result = trackFrom(astray, turned(0.3) * truth_);
+    ASSERT_TRUE(result.converged);
+    EXPECT_LT(errorOf(result), 0.002);
+}
+
+TEST_F(FineTracking, ABadGuessDoesNotReplaceAGoodStart) {
     const FineResult result = trackFrom(turned(0.3) * truth_, turned(8) * truth_);
     ASSERT_TRUE(result.converged);
     EXPECT_LT(errorOf(result), 0.002);

@@ -34,8 +34,8 @@ class DistanceField {
 class DistanceFieldTracker {
   public:
     /// @param camera  with its lens
-    /// @param photometric_weight  FineOptions::photometric_weight for the residual joined with the
-    /// photometric one as in FineTracker; 0 for the field alone
+    /// @param photometric_weight  alpha^2 of the residual joined with the photometric one as in FineTracker;
+    /// 0 for the field alone
     DistanceFieldTracker(const PinholeCamera& camera, const FineOptions& options, double photometric_weight)
         : ideal_(camera.undistorted()), options_(options), photometric_weight_(photometric_weight) {}
 

@@ -12,14 +12,16 @@
 namespace roevo {
 namespace {
 
+/// alpha^2 of the joined residual. Not ROEVO's own weight: the field agrees less well with itself than
+/// associated edges, and is better off with more help.
+constexpr double kPhotometricWeight = 0.3;
 constexpr char kAlone[] = "distance-field", kJoined[] = "distance-field-photometric";
 
 /// ROEVO's tracker with the field in place of fine tracking.
 class FieldTracker : public Tracker {
   public:
     FieldTracker(const PinholeCamera& camera, const OdometryOptions& options, bool photometric)
-        : Tracker(camera, options),
-          field_(camera, options_.fine, photometric ? options_.fine.photometric_weight : 0) {}
+        : Tracker(camera, options), field_(camera, options_.fine, photometric ? kPhotometricWeight : 0) {}
     DistanceFieldTracker::Times takeTimes() { return field_.takeTimes(); }
 
   protected:

@@ -12,6 +12,7 @@ namespace {
 /// their number.
 constexpr double kOverRelaxation = 1.6;
 constexpr int kPlainSteps = 2;
+constexpr int kPointsToChoose = 300;  ///< between two initial poses
 
 // Of the read-out time
 /// How much less the evidence of one frame counts: its velocity is only known from two poses.
@@ -42,6 +43,20 @@ void FineTracker::associate(const Keyframe& keyframe, const Frame& frame, const 
                             const RowMotion& rows, double radius) {
     edges_.look(keyframe, frame);
     edges_.associate(T_current_keyframe, rows, radius);
+}
+
+Pose FineTracker::chooseInitialPose(const Keyframe& keyframe, const Frame& frame, const Pose& T_coarse,
+                                    const Pose& T_likely, const RollingShutter& shutter) {
+    if (imageMotion(T_coarse, T_likely, ideal_.fx, keyframe.typicalDepth()) < options_.final_radius)
+        return T_coarse;
+    edges_.look(keyframe, frame);
+    edges_.limit(std::min(kPointsToChoose, options_.max_points));
+    const auto found = [&](const Pose& pose) {
+        edges_.associate(pose, shutter.motion(pose), options_.final_radius);
+        return matches().size();
+    };
+    const std::size_t by_coarse = found(T_coarse);
+    return found(T_likely) > by_coarse ? T_likely : T_coarse;
 }
 
 FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, const Pose& T_start,

@@ -52,6 +52,11 @@ class FineTracker {
     const EdgeMatches& matches() const { return edges_.matches(); }         ///< of the last call
     const std::vector<float>& weights() const { return edges_.weights(); }  ///< of these matches, 0: outliers
 
+    /// The coarse pose or the one that is likely beforehand: where they are apart, whichever finds more
+    /// edges. Moving shadows and blur lead photometry astray before they do edges.
+    Pose chooseInitialPose(const Keyframe& keyframe, const Frame& frame, const Pose& T_coarse,
+                           const Pose& T_likely, const RollingShutter& shutter);
+
   private:
     FineOptions options_;
     PinholeCamera ideal_;

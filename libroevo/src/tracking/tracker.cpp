@@ -147,9 +147,10 @@ Fault Tracker::runCoarse(const Keyframe& reference, const Frame& frame, const Co
 
 Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const CoarseResult& aligned,
                        const PosePrior& prior, const RollingShutter& shutter, Tracking& out) {
+    const Pose T_start =
+        fine_.chooseInitialPose(reference, frame, aligned.T_current_keyframe, prior.mean, shutter);
     const auto registered = [&] {
-        const FineResult refined =
-            refine(reference, frame, aligned.T_current_keyframe, prior, shutter, aligned.brightness);
+        const FineResult refined = refine(reference, frame, T_start, prior, shutter, aligned.brightness);
         const Pose& T = refined.T_current_keyframe;
         FineResult found = fine_.assess(reference, frame, T, shutter.motion(T));
         found.converged = found.converged && refined.converged;
