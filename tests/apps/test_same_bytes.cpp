@@ -19,7 +19,7 @@ namespace {
 using test::readFile;
 using test::runProgram;
 
-constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "204c3befb8424b07";
+constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "46079625c0028985";
 
 /// FNV-1a, as 16 digits.
 std::string checksum(const std::string& bytes) {

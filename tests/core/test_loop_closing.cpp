@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iostream>
 #include <opencv2/core/utility.hpp>
 
 #include "core/support/simulated.h"
@@ -147,7 +146,6 @@ double shareInPlace(const EdgeMap& map) {
 
 TEST(LoopClosing, TheMapMovesWithTheKeyframes) {
     // Edges near the start were seen at both ends: with the loop closed they are in one place
-    std::cout << shareInPlace(withLoops().map) << " " << shareInPlace(withoutLoops().map) << "\n";
     EXPECT_GT(shareInPlace(withLoops().map), 1.2 * shareInPlace(withoutLoops().map));
 }
 
