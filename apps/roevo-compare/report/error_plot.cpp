@@ -21,7 +21,6 @@ constexpr double kAxesFoot = 0.08, kAxesShare = (1 - kAxesFoot) / 3;  // of the 
 constexpr double kMinDrift = 1e-3;                                    // %, deg/m
 constexpr double kShortestPath = 0.1, kLongestPath = 1e4;  // m: as long as rooms and buildings need
 constexpr std::size_t kFewestPieces = 10;                  // of a path length
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 const Figure kNothing{"", "", "No run has errors that could be drawn."};
 
 using Rows = std::vector<std::vector<double>>;
@@ -67,7 +66,7 @@ std::vector<Line> linesOf(const SequenceResults& results, const Legend& legend) 
             line.times.push_back(pose.timestamp);
             line.errors.push_back(std::max(difference.norm(), kMinError));
             line.angles.push_back(
-                std::max(kDegrees * truth.rotation().angularDistance(estimate.rotation()), kMinError));
+                std::max(truth.rotation().angularDistance(estimate.rotation()) / kDegree, kMinError));
             for (std::size_t k = 0; k < 3; ++k) line.axes[k].push_back(difference[static_cast<int>(k)]);
         }
         start = std::min(start, line.times.front());
