@@ -53,6 +53,11 @@ class Batch : public testing::Test {
             count += fs::exists(runFolder(name, "roevo-tr") + "/run.json");
         return count;
     }
+    /// The engine that a roevo-batch has started: a group of its own. 0 when there is none.
+    static pid_t engineOf(pid_t batch) {
+        const std::string task = "/proc/" + std::to_string(batch) + "/task/" + std::to_string(batch);
+        return static_cast<pid_t>(std::atoi(readFile(task + "/children").c_str()));
+    }
     std::string table() const { return readFile(out() + "/table.csv"); }
 
     test::TemporaryFolder folder;
@@ -187,8 +192,13 @@ TEST_F(Batch, KilledItGoesOn) {
         }
         // One more row: then it holds the folder. Snakemake has an order of its own
         for (int i = 0; i < 6000 && rows() <= before; ++i) usleep(5'000);
+        // However late the other one starts, this one must not be done by then
+        const pid_t engine = engineOf(child);
+        ASSERT_GT(engine, 0);
+        kill(-engine, SIGSTOP);
         expectError(test::runProgram(kName, all), 1, kName, {"another roevo-batch", out()});
         kill(child, signal);
+        kill(-engine, SIGCONT);
         int status = 0;
         waitpid(child, &status, 0);
         if (signal == SIGINT) {
