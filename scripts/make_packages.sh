@@ -12,7 +12,8 @@ esac
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
 
-roevo_packages="$roevo_packages dpkg-dev help2man"
+# cpack asks "file" what needs which libraries
+roevo_packages="$roevo_packages dpkg-dev help2man file"
 install_packages
 say "Building what is packed"
 # Without tests: all that is built then is packed
