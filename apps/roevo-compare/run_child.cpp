@@ -75,8 +75,8 @@ std::string outOfMemory(const ChildSettings& settings) {
 void runChild(const ChildSettings& settings) {
     SequenceComparison row;
     try {
+        cv::setNumThreads(1);  // before memory is limited: TBB waits forever where it gets none
         limitMemory(settings.memory_mb);
-        cv::setNumThreads(1);
         row = openSequence(settings.sequence);
         if (!row.failure.empty()) throw std::runtime_error(row.failure);
         const ProgressFile file(settings.folder);
