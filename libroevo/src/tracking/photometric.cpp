@@ -100,7 +100,7 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
         return;
     }
     constexpr double kFloor = 1;  // grey levels; 8-bit rounding and resampling never do better
-    cost_ = std::sqrt(static_cast<double>(medianOf(scratch_)) / kernels::kPatchSize);
+    cost_ = std::sqrt(static_cast<double>(medianOfMagnitudes(scratch_)) / kernels::kPatchSize);
     scale_ = std::max(kFloor, cost_);
     const auto inverse = static_cast<float>(1 / (scale_ * scale_ * kernels::kPatchSize));
     kernels::Fit fit;
