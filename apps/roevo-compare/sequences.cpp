@@ -94,7 +94,7 @@ SequenceComparison openSequence(const SequenceInput& sequence) {
     if (!sequence.note.empty()) out.notes.push_back(sequence.note);
     out.paper_ate_cm = sequence.paper_ate_cm;
     // Before all else: a file that was asked for must be good even if the recording is not
-    if (!sequence.ground_truth.empty()) readTumTrajectory(sequence.ground_truth);
+    if (!sequence.ground_truth.empty()) readTrajectory(sequence.ground_truth);
     try {
         const auto source = openSource(sequence.input, sequence.choice);
         out.part = partOf(sequence, source->size());

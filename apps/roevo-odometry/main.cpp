@@ -48,7 +48,7 @@ int run(int argc, char** argv) {
                    "ct: coarse tracking only; tr: coarse and fine; ba: with local mapping (default)");
     app.add_option(
         "--ground-truth", settings.ground_truth,
-        "TUM trajectory to compare with (default: <stem>_groundtruth.txt beside a rawlog or a bag, "
+        "Trajectory to compare with, TUM or EuRoC (default: <stem>_groundtruth.txt beside a rawlog or a bag, "
         "groundtruth.txt in a folder)");
     app.add_option("--covariances", settings.covariances,
                    "Write the 6x6 covariance of every pose to this file, too")

@@ -1,10 +1,8 @@
 #include "legend.h"
 
-#include <mrpt/opengl/CGridPlaneXY.h>
-#include <mrpt/opengl/CPointCloudColoured.h>
-
 #include "programs/text.h"
 #include "roevo_mrpt/scene_builder.h"
+#include "roevo_mrpt/scene_objects.h"
 #include "scene_content.h"
 
 namespace roevo {
@@ -18,9 +16,9 @@ Colour levels(const Rgb& rgb) {
 }
 
 // Colours of points evenly spaced in the cloud's order.
-std::vector<Colour> samples(const mrpt::opengl::CRenderizable& object) {
+std::vector<Colour> samples(const compat::SceneObject& object) {
     std::vector<Colour> colours;
-    const auto* cloud = dynamic_cast<const mrpt::opengl::CPointCloudColoured*>(&object);
+    const auto* cloud = dynamic_cast<const compat::scene::CPointCloudColoured*>(&object);
     for (std::size_t k = 0; cloud && cloud->size() > 0 && k < kSamples; ++k) {
         Colour c;
         cloud->getPointColor_fast((2 * k + 1) * cloud->size() / (2 * kSamples), c[0], c[1], c[2]);
@@ -31,8 +29,7 @@ std::vector<Colour> samples(const mrpt::opengl::CRenderizable& object) {
 
 }  // namespace
 
-std::vector<LegendEntry> legendOf(mrpt::opengl::COpenGLScene& scene, const Background& background,
-                                  bool all_layers) {
+std::vector<LegendEntry> legendOf(compat::Scene& scene, const Background& background, bool all_layers) {
     std::vector<LegendEntry> entries;
     const auto visible = [&](const char* name) {
         const auto object = scene.getByName(name);
@@ -61,7 +58,7 @@ std::vector<LegendEntry> legendOf(mrpt::opengl::COpenGLScene& scene, const Backg
     addPseudo("pseudo-edges: spread", EdgeVerdict::kSpread);
     addPseudo("vanishing", EdgeVerdict::kVanishing);
     const auto grid =
-        std::dynamic_pointer_cast<mrpt::opengl::CGridPlaneXY>(scene.getByName(SceneNames::kGround));
+        std::dynamic_pointer_cast<compat::scene::CGridPlaneXY>(scene.getByName(SceneNames::kGround));
     if (grid && grid->isVisible()) {
         const auto c = grid->getColor();
         entries.push_back(

@@ -1,10 +1,10 @@
 #pragma once
-#include <mrpt/opengl/COpenGLScene.h>
 
 #include <string>
 #include <vector>
 
 #include "background.h"
+#include "roevo_mrpt/mrpt_compat.h"
 
 namespace roevo {
 
@@ -16,7 +16,6 @@ struct LegendEntry {
 
 /// What the visible objects of a scene are. Objects that roevo-odometry does not make have no entry.
 /// Call after the scene's colours were prepared for the background.
-std::vector<LegendEntry> legendOf(mrpt::opengl::COpenGLScene& scene, const Background& background,
-                                  bool all_layers);
+std::vector<LegendEntry> legendOf(compat::Scene& scene, const Background& background, bool all_layers);
 
 }  // namespace roevo

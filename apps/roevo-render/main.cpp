@@ -91,7 +91,7 @@ int drawPicture(const Settings& settings, bool layer_wanted, bool is_movie) {
         settings.scene.empty() ? fs::path(settings.input) / "map.3Dscene" : fs::path(settings.scene);
     picture.scene = scene.string();
     picture.trajectory = settings.trajectories.empty() ? (scene.parent_path() / "trajectory.txt").string()
-                                                       : settings.trajectories.front();
+                                                       : splitNamedFile(settings.trajectories.front()).file;
     picture.layer = settings.layer;
     picture.layer_wanted = layer_wanted;
     picture.legend = !settings.no_legend;
@@ -107,7 +107,7 @@ NamedPath groundTruth(const std::string& file, const ResultFolder& result) {
     if (!file.empty()) return {kTruth, readTrajectory(file)};
     if (result.ground_truth.empty()) return {kTruth, {}};
     try {
-        return {kTruth, readTumTrajectory(result.ground_truth)};
+        return {kTruth, readTrajectory(result.ground_truth)};
     } catch (const std::exception& e) {
         printWarning(
             kName, std::string("the view has no ground truth: ") + e.what() + "; name it by --ground-truth");

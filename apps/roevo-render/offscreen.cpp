@@ -1,14 +1,13 @@
 #include "offscreen.h"
 
 #include <mrpt/img/CImage.h>
-#include <mrpt/opengl/CCamera.h>
 #include <mrpt/poses/CPose3D.h>
 
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "roevo_mrpt/mrpt_compat.h"
+#include "roevo_mrpt/scene_objects.h"
 
 namespace roevo {
 namespace {
@@ -31,8 +30,7 @@ std::unique_ptr<mrpt::opengl::CFBORender> createRenderer(unsigned width, unsigne
 
 }  // namespace
 
-OffscreenRenderer::OffscreenRenderer(mrpt::opengl::COpenGLScene& scene, const Background& background,
-                                     cv::Size size)
+OffscreenRenderer::OffscreenRenderer(compat::Scene& scene, const Background& background, cv::Size size)
     : scene_(scene), size_(size) {
     const cv::Size large = size * kSuperSampling;
     const auto padded_width = (static_cast<unsigned>(large.width) + kWidthStep - 1) / kWidthStep * kWidthStep;
@@ -54,11 +52,10 @@ cv::Mat OffscreenRenderer::drawLarge() {
     return image.asCvMatRef()(cv::Rect({}, size_ * kSuperSampling)).clone();
 }
 
-cv::Mat OffscreenRenderer::draw(const View& view,
-                                const std::vector<mrpt::opengl::CRenderizable::Ptr>& below) {
+cv::Mat OffscreenRenderer::draw(const View& view, const std::vector<compat::SceneObject::Ptr>& below) {
     scene_.getViewport("main")->setViewportClipDistances(static_cast<float>(view.near),
                                                          static_cast<float>(view.far));
-    mrpt::opengl::CCamera camera;
+    compat::scene::CCamera camera;
     camera.set6DOFMode(true);
     camera.setProjectiveModel(true);
     camera.setProjectiveFOVdeg(static_cast<float>(view.vertical_fov_deg));

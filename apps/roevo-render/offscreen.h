@@ -1,12 +1,12 @@
 #pragma once
 #include <mrpt/opengl/CFBORender.h>
-#include <mrpt/opengl/COpenGLScene.h>
 
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
 #include "background.h"
+#include "roevo_mrpt/mrpt_compat.h"
 #include "view.h"
 
 namespace roevo {
@@ -19,16 +19,16 @@ class OffscreenRenderer {
   public:
     /// @param size  of the picture, pixels
     /// @throws std::runtime_error when the machine has no OpenGL for offscreen drawing
-    OffscreenRenderer(mrpt::opengl::COpenGLScene& scene, const Background& background, cv::Size size);
+    OffscreenRenderer(compat::Scene& scene, const Background& background, cv::Size size);
 
     /// @param below  objects that everything else is drawn over, however near they are
     /// @return CV_8UC3 (BGR)
-    cv::Mat draw(const View& view, const std::vector<mrpt::opengl::CRenderizable::Ptr>& below = {});
+    cv::Mat draw(const View& view, const std::vector<compat::SceneObject::Ptr>& below = {});
 
   private:
     cv::Mat drawLarge();
 
-    mrpt::opengl::COpenGLScene& scene_;
+    compat::Scene& scene_;
     cv::Size size_;
     cv::Scalar background_;  // BGR, 0 to 255
     std::unique_ptr<mrpt::opengl::CFBORender> renderer_;

@@ -24,7 +24,7 @@ constexpr char kAllLayers[] = "all", kOrbit[] = "orbit", kFollow[] = "follow", k
 // The last camera of a trajectory, in the scene's axes (x forward, y left, z up) with an optical camera
 // frame.
 Eigen::Isometry3d lastCamera(const std::string& trajectory_file) {
-    return (sensorFromOptical() * readTumTrajectory(trajectory_file).back().T_world_camera).isometry();
+    return (sensorFromOptical() * readTrajectory(trajectory_file).back().T_world_camera).isometry();
 }
 
 View chosenView(const PictureSettings& settings, const ViewContent& content, double aspect) {

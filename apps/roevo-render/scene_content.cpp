@@ -1,11 +1,5 @@
 #include "scene_content.h"
 
-#include <mrpt/opengl/CAxis.h>
-#include <mrpt/opengl/CGridPlaneXY.h>
-#include <mrpt/opengl/CGridPlaneXZ.h>
-#include <mrpt/opengl/CPointCloud.h>
-#include <mrpt/opengl/CPointCloudColoured.h>
-#include <mrpt/opengl/CSetOfObjects.h>
 #include <mrpt/poses/CPose3D.h>
 
 #include <algorithm>
@@ -18,11 +12,12 @@
 
 #include "input/regular_file.h"
 #include "roevo_mrpt/scene_builder.h"
+#include "roevo_mrpt/scene_objects.h"
 
 namespace roevo {
 namespace {
 
-using namespace mrpt::opengl;
+using namespace compat::scene;
 
 struct LayerName {
     const char *user, *object;
@@ -40,7 +35,7 @@ constexpr float kWiderEdges = 1.6f;  // where all layers are shown
 // Calls visit(object, pose of its parent) for everything that is not a group.
 template <class Container, class Visitor>
 void visitObjects(const Container& objects, const mrpt::poses::CPose3D& parent, const Visitor& visit) {
-    for (const CRenderizable::Ptr& object : objects) {
+    for (const compat::SceneObject::Ptr& object : objects) {
         if (!object || !object->isVisible()) continue;
         if (const auto* group = dynamic_cast<const CSetOfObjects*>(object.get()))
             visitObjects(*group, parent + mrpt::poses::CPose3D(group->getPose()), visit);
@@ -50,7 +45,7 @@ void visitObjects(const Container& objects, const mrpt::poses::CPose3D& parent, 
 }
 
 template <class Visitor>
-void visitObjects(const COpenGLScene& scene, const Visitor& visit) {
+void visitObjects(const compat::Scene& scene, const Visitor& visit) {
     if (const auto viewport = scene.getViewport("main"))
         visitObjects(*viewport, mrpt::poses::CPose3D(), visit);
 }
@@ -67,11 +62,11 @@ void addCloud(const Cloud& cloud, const mrpt::poses::CPose3D& pose, std::vector<
     }
 }
 
-bool isGrid(const CRenderizable& object) {
+bool isGrid(const compat::SceneObject& object) {
     return dynamic_cast<const CGridPlaneXY*>(&object) || dynamic_cast<const CGridPlaneXZ*>(&object);
 }
 
-void addCorners(const CRenderizable& object, const mrpt::poses::CPose3D& parent,
+void addCorners(const compat::SceneObject& object, const mrpt::poses::CPose3D& parent,
                 std::vector<Eigen::Vector3f>& points) {
     const auto box = object.getBoundingBox();
     for (int corner = 0; corner < 8; ++corner)
@@ -89,11 +84,11 @@ float faintnessOf(const std::string& name) {
 
 }  // namespace
 
-COpenGLScene::Ptr loadScene(const std::string& path) {
+compat::Scene::Ptr loadScene(const std::string& path) {
     requireRegularInput(path);
     errno = 0;
     if (!std::ifstream(path)) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
-    auto scene = COpenGLScene::Create();
+    auto scene = compat::Scene::Create();
     bool loaded = false;
     try {
         loaded = scene->loadFromFile(path);
@@ -111,7 +106,7 @@ std::vector<std::string> layerNames() {
     return names;
 }
 
-void showLayer(COpenGLScene& scene, const std::string& layer) {
+void showLayer(compat::Scene& scene, const std::string& layer) {
     bool found = false;
     std::string held;
     for (const LayerName& each : kLayers) {
@@ -127,9 +122,9 @@ void showLayer(COpenGLScene& scene, const std::string& layer) {
                              (held.empty() ? "none" : held));
 }
 
-ViewContent sceneContent(const COpenGLScene& scene) {
+ViewContent sceneContent(const compat::Scene& scene) {
     ViewContent content;
-    visitObjects(scene, [&](const CRenderizable& object, const mrpt::poses::CPose3D& parent) {
+    visitObjects(scene, [&](const compat::SceneObject& object, const mrpt::poses::CPose3D& parent) {
         const auto pose = parent + mrpt::poses::CPose3D(object.getPose());
         if (const auto* coloured = dynamic_cast<const CPointCloudColoured*>(&object))
             addCloud(*coloured, pose, content.cloud);
@@ -141,11 +136,11 @@ ViewContent sceneContent(const COpenGLScene& scene) {
     return content;
 }
 
-std::vector<CRenderizable::Ptr> preparePoints(COpenGLScene& scene, float factor, const Background& background,
-                                              bool all_layers) {
-    std::vector<CRenderizable::Ptr> faint;
-    visitObjects(scene, [&](CRenderizable& object, const mrpt::poses::CPose3D&) {
-        auto* points = dynamic_cast<CRenderizableShaderPoints*>(&object);
+std::vector<compat::SceneObject::Ptr> preparePoints(compat::Scene& scene, float factor,
+                                                    const Background& background, bool all_layers) {
+    std::vector<compat::SceneObject::Ptr> faint;
+    visitObjects(scene, [&](compat::SceneObject& object, const mrpt::poses::CPose3D&) {
+        auto* points = dynamic_cast<compat::ScenePoints*>(&object);
         if (!points) return;
         const std::string name = object.getName();
         if (all_layers && faintnessOf(name) > 0) faint.push_back(scene.getByName(name));
@@ -163,15 +158,15 @@ std::vector<CRenderizable::Ptr> preparePoints(COpenGLScene& scene, float factor,
     return faint;
 }
 
-void prepareGrid(COpenGLScene& scene, const Background& background) {
-    visitObjects(scene, [&](CRenderizable& object, const mrpt::poses::CPose3D&) {
+void prepareGrid(compat::Scene& scene, const Background& background) {
+    visitObjects(scene, [&](compat::SceneObject& object, const mrpt::poses::CPose3D&) {
         if (!isGrid(object)) return;
         const auto [r, g, b] = background.faded(background.ink(), kFaintGrid);
         object.setColor(r, g, b);
     });
 }
 
-void cropGrid(COpenGLScene& scene, const Eigen::AlignedBox3f& box) {
+void cropGrid(compat::Scene& scene, const Eigen::AlignedBox3f& box) {
     const auto grid = std::dynamic_pointer_cast<CGridPlaneXY>(scene.getByName(SceneNames::kGround));
     if (!grid) return;
     const float cell = grid->getGridFrequency();

@@ -1,40 +1,40 @@
 #pragma once
-#include <mrpt/opengl/COpenGLScene.h>
 
 #include <string>
 #include <vector>
 
 #include "background.h"
+#include "roevo_mrpt/mrpt_compat.h"
 #include "view.h"
 
 namespace roevo {
 
 /// Loads a .3Dscene file. @throws std::runtime_error
-mrpt::opengl::COpenGLScene::Ptr loadScene(const std::string& path);
+compat::Scene::Ptr loadScene(const std::string& path);
 
 /// Layers of a map that can be shown, as users name them.
 std::vector<std::string> layerNames();
 
 /// Shows one layer of the map ("all": every one) and hides the others; what is no layer stays as it is.
 /// @throws std::runtime_error when the scene does not hold it
-void showLayer(mrpt::opengl::COpenGLScene& scene, const std::string& layer);
+void showLayer(compat::Scene& scene, const std::string& layer);
 
 /// Points of the scene's point clouds, and the corners of its other objects (ground grids and axes do not
 /// count).
-ViewContent sceneContent(const mrpt::opengl::COpenGLScene& scene);
+ViewContent sceneContent(const compat::Scene& scene);
 
 /// Makes the points of the scene's clouds `factor` times larger and of one size at any distance, and colours
 /// that could not be told from the background brighter or darker. Where all layers are shown, those that are
 /// not the map's edges are faint.
 /// @return the objects that the edges are to be drawn over
-std::vector<mrpt::opengl::CRenderizable::Ptr> preparePoints(mrpt::opengl::COpenGLScene& scene, float factor,
-                                                            const Background& background, bool all_layers);
+std::vector<compat::SceneObject::Ptr> preparePoints(compat::Scene& scene, float factor,
+                                                    const Background& background, bool all_layers);
 
 /// Makes ground grids such as can be seen on the background, faintly.
-void prepareGrid(mrpt::opengl::COpenGLScene& scene, const Background& background);
+void prepareGrid(compat::Scene& scene, const Background& background);
 
 /// Cuts the map's ground grid down to those whole cells that lie within the box.
-void cropGrid(mrpt::opengl::COpenGLScene& scene, const Eigen::AlignedBox3f& box);
+void cropGrid(compat::Scene& scene, const Eigen::AlignedBox3f& box);
 
 /// Colour in which a point of a layer is shown.
 /// @param layer  name of the object. @param all_layers  whether the others are shown, too

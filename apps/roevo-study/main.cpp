@@ -158,7 +158,7 @@ int run(int argc, char** argv) {
                    "Of the odometry, where the experiment does not choose it: ct, tr or ba (default; "
                    "loop, sigmas and distribution: ba and tr)");
     app.add_option("--ground-truth", settings.ground_truth,
-                   "TUM trajectory to compare with, for a single input (default: what is found beside each)");
+                   "Trajectory to compare with, TUM or EuRoC, for a single input (default: what is found beside each)");
     app.add_flag(
         "--no-ground-truth", settings.ignore_ground_truth,
         "Do without, even where some is beside a recording: repeatability is then judged by the odometry's "

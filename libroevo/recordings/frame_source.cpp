@@ -185,7 +185,7 @@ void skipFrames(FrameSource& source, std::size_t count, const std::string& input
 
 GroundTruth groundTruthFor(const std::string& path, const FrameSource& source) {
     if (path.empty()) return source.groundTruth();
-    return {readTumTrajectory(path), path, {}, true};
+    return {readTrajectory(path), path, {}, true};
 }
 
 std::string DepthScaleCheck::faultOf(const SourceFrame& frame) {

@@ -8,6 +8,7 @@
 #include "evaluation/trajectory_io.h"
 #include "odometry_fixture.h"
 #include "support/data_folder.h"
+#include "support/trajectory_files.h"
 
 namespace roevo {
 namespace {
@@ -52,6 +53,17 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
     EXPECT_LT(json["ground_truth"]["rpe_per_second"]["translation_m"]["rmse"].get<double>(), 0.01);
     for (const char* words : {"39 ok", "1 initialised", "ATE", "RPE", "ms per frame"})
         EXPECT_NE(result.out.find(words), std::string::npos) << words << " in\n" << result.out;
+}
+
+TEST_F(OdometryProgram, GroundTruthMayBeOfEuroc) {
+    ASSERT_EQ(runFrames(slidingRecording(10)).exit_code, 0);
+    const auto expected = summary()["ground_truth"]["ate_m"];
+    test::writeFile(folder_ / "truth.csv",
+                    test::eurocText(readTumTrajectory(folder_ / "recording/groundtruth.txt")));
+    const auto result = run(folder_ / "recording", {"--ground-truth", folder_ / "truth.csv"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_NEAR(summary()["ground_truth"]["ate_m"]["rmse"], expected["rmse"], 1e-7);
+    EXPECT_EQ(summary()["ground_truth"]["pairs"], 10);
 }
 
 TEST_F(OdometryProgram, BothModesRunAndSayWhichTheyAre) {

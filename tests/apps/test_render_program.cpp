@@ -4,11 +4,15 @@
 
 #include "odometry_fixture.h"
 #include "render_fixture.h"
+#include "support/trajectory_files.h"
 
 namespace roevo {
 namespace {
 
+using test::eurocText;
 using test::expectError;
+using test::readFile;
+using test::writeFile;
 
 constexpr char kName[] = "roevo-render";
 
@@ -40,6 +44,15 @@ TEST_F(RenderProgram, FollowLooksFromBehindTheLastCamera) {
             red += p[2] > 110 && p[2] > 2 * p[0] && p[2] > 2 * p[1];
         }
     EXPECT_GT(red, 5);
+}
+
+TEST_F(RenderProgram, FollowReadsWhatPagesRead) {
+    writeFile(folder_ / "euroc.csv", eurocText(readTumTrajectory(folder_ / "trajectory.txt")));
+    ASSERT_EQ(render({"--view", "follow"}).exit_code, 0);
+    const std::string expected = readFile(folder_ / "room.png");
+    const auto result = render({"--view", "follow", "--trajectory", "mine=" + (folder_ / "euroc.csv")});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_TRUE(readFile(folder_ / "room.png") == expected);
 }
 
 // Share of the picture's pixels that are clearly of that colour (BGR channels that are high, the others low).

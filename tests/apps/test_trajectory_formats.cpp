@@ -6,6 +6,7 @@
 
 #include "evaluation/trajectory_io.h"
 #include "support/run_program.h"
+#include "support/trajectory_files.h"
 
 namespace roevo {
 namespace {
@@ -37,22 +38,6 @@ std::string kitti(const std::vector<StampedPose>& poses) {
             std::snprintf(number, sizeof number, "%.12e", pose.T_world_camera.matrix()(i / 4, i % 4));
             text += number + std::string(i == 11 ? "\n" : " ");
         }
-    }
-    return text;
-}
-
-// With a head and further columns, as the dataset's own ground truth has them.
-std::string euroc(const std::vector<StampedPose>& poses) {
-    std::string text =
-        "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y []\r\n";
-    for (const StampedPose& pose : poses) {
-        const Eigen::Vector3d p = pose.T_world_camera.translation();
-        const Eigen::Quaterniond q = pose.T_world_camera.rotation();
-        char row[300];
-        std::snprintf(row, sizeof row, "%lld,%.12f,%.12f,%.12f,%.12f,%.12f,%.12f,%.12f,0.1,-0.2\r\n",
-                      static_cast<long long>(std::llround(pose.timestamp * 1e9)), p.x(), p.y(), p.z(), q.w(),
-                      q.x(), q.y(), q.z());
-        text += row;
     }
     return text;
 }
@@ -95,7 +80,7 @@ class TrajectoryFormats : public testing::Test {
 
 TEST_F(TrajectoryFormats, AreRecognisedByTheirContent) {
     expectSame(readTrajectory(truth()), helix());
-    expectSame(readTrajectory(file("e", euroc(helix()))), helix());
+    expectSame(readTrajectory(file("e", test::eurocText(helix()))), helix());
     RowTimes times;
     for (const StampedPose& pose : helix()) times.stamps.push_back(pose.timestamp);
     expectSame(readTrajectory(file("k", kitti(helix())), {}, times), helix());
@@ -145,8 +130,9 @@ TEST_F(TrajectoryFormats, GiveTheSameErrorsToThePrograms) {
     for (std::size_t i = 0; i < estimate.size(); ++i)
         estimate[i].T_world_camera.translation().z() += i % 2 ? 0.01 : -0.01;
     writeTumTrajectory(folder_ / "tum.txt", estimate);
-    const auto run = eval(truth(), {folder_ / "tum.txt", file("kitti.txt", kitti(estimate)),
-                                    file("euroc.csv", euroc(estimate)), "--json", folder_ / "e.json"});
+    const auto run =
+        eval(truth(), {folder_ / "tum.txt", file("kitti.txt", kitti(estimate)),
+                       file("euroc.csv", test::eurocText(estimate)), "--json", folder_ / "e.json"});
     ASSERT_EQ(run.exit_code, 0) << run.all();
     const auto json = nlohmann::json::parse(test::readFile(folder_ / "e.json"))["estimates"];
     ASSERT_EQ(json.size(), 3u);
@@ -170,7 +156,7 @@ TEST_F(TrajectoryFormats, AGroundTruthOfKittiNeedsItsListOfTimes) {
 }
 
 TEST_F(TrajectoryFormats, FailuresOfThePrograms) {
-    const std::string bad = file("bad.csv", euroc(helix(5)) + "1403636580000000000,0,0\r\n");
+    const std::string bad = file("bad.csv", test::eurocText(helix(5)) + "1403636580000000000,0,0\r\n");
     expectError(eval(truth(), {bad}), 1, kName, {"bad.csv:7: expected 8 or more numbers", "found 3"});
     expectError(eval(truth(), {file("k.txt", kitti(helix(59)))}), 1, kName,
                 {"k.txt:59:", "expected 60", "truth.txt"});
@@ -180,7 +166,7 @@ TEST_F(TrajectoryFormats, FailuresOfThePrograms) {
     expectError(eval(truth(), {truth(), "--times", folder_ / "none"}), 1, kName, {"cannot read", "none"});
     auto late = helix();
     for (StampedPose& pose : late) pose.timestamp += 500;
-    expectError(eval(truth(), {file("late.csv", euroc(late))}), 1, kName,
+    expectError(eval(truth(), {file("late.csv", test::eurocText(late))}), 1, kName,
                 {"no pose has a reference", "--offset"});
 }
 

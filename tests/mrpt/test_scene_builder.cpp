@@ -1,7 +1,4 @@
 #include <gtest/gtest.h>
-#include <mrpt/opengl/CPointCloudColoured.h>
-#include <mrpt/opengl/CSetOfLines.h>
-#include <mrpt/opengl/CSetOfTriangles.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +7,7 @@
 
 #include "mrpt/test_helpers.h"
 #include "roevo_mrpt/scene_builder.h"
+#include "roevo_mrpt/scene_objects.h"
 
 namespace roevo {
 namespace {
@@ -55,7 +53,7 @@ TEST(SceneBuilder, ComesBackFromAFileWithEverythingInIt) {
 
     compat::Scene loaded;
     ASSERT_TRUE(loaded.loadFromFile(folder / "map.3Dscene"));
-    const auto edges = find<mrpt::opengl::CPointCloudColoured>(loaded, SceneNames::kEdges);
+    const auto edges = find<compat::scene::CPointCloudColoured>(loaded, SceneNames::kEdges);
     ASSERT_TRUE(edges);
     ASSERT_EQ(edges->size(), 200u);
     // The scene's z points up: a point ahead of the first camera lies along +x.
@@ -63,11 +61,11 @@ TEST(SceneBuilder, ComesBackFromAFileWithEverythingInIt) {
     EXPECT_NEAR(first.x, 2, 1e-6);
     EXPECT_NEAR(first.y, 0, 1e-6);
     for (const char* name : {SceneNames::kTrajectory, SceneNames::kReference, SceneNames::kKeyframes}) {
-        const auto tubes = find<mrpt::opengl::CSetOfTriangles>(loaded, name);
+        const auto tubes = find<compat::scene::CSetOfTriangles>(loaded, name);
         ASSERT_TRUE(tubes) << name;
         EXPECT_GE(tubes->getTrianglesCount(), 4 * 6 * 2u) << name;
     }
-    const auto lines = find<mrpt::opengl::CSetOfLines>(loaded, SceneNames::kKeyframeLines);
+    const auto lines = find<compat::scene::CSetOfLines>(loaded, SceneNames::kKeyframeLines);
     ASSERT_TRUE(lines);
     EXPECT_EQ(lines->size(), 2 * 10u);
     EXPECT_TRUE(loaded.getByName(SceneNames::kGround));
@@ -90,12 +88,12 @@ TEST(SceneBuilder, TheGroundTruthIsDashedAroundTheTrajectory) {
     const auto scene = buildScene(content);
     const auto drawn =
         [&](const char* name) {  // m of the tube, and its radius; y of the scene is -x of the world
-            const auto tubes = find<mrpt::opengl::CSetOfTriangles>(*scene, name);
+            const auto tubes = find<compat::scene::CSetOfTriangles>(*scene, name);
             double length = 0, radius = 0;
             for (std::size_t i = 0; i < tubes->getTrianglesCount(); ++i) {
-                mrpt::opengl::TTriangle triangle;
-            tubes->getTriangle(i, triangle);
-            const auto& v = triangle.vertices;
+                compat::scene::TTriangle triangle;
+                tubes->getTriangle(i, triangle);
+                const auto& v = triangle.vertices;
                 radius = std::max(radius, static_cast<double>(v[0].xyzrgba.pt.z));
                 if (i % 12 == 0) length += std::abs(v[2].xyzrgba.pt.y - v[1].xyzrgba.pt.y);
             }
@@ -112,7 +110,7 @@ TEST(SceneBuilder, FrustaSitWhereTheKeyframesAre) {
     SceneContent content = someContent();
     content.T_scene_world = Pose::Identity();
     content.keyframes = {content.keyframes[1]};
-    const auto lines = find<mrpt::opengl::CSetOfLines>(*buildScene(content), SceneNames::kKeyframeLines);
+    const auto lines = find<compat::scene::CSetOfLines>(*buildScene(content), SceneNames::kKeyframeLines);
     ASSERT_TRUE(lines);
     const auto apex = lines->begin()->point1, corner = lines->begin()->point2;
     EXPECT_NEAR(apex.x, 0.4, 1e-6);
@@ -121,7 +119,7 @@ TEST(SceneBuilder, FrustaSitWhereTheKeyframesAre) {
     EXPECT_LT(corner.y, apex.y);
 }
 
-using mrpt::opengl::CPointCloudColoured;
+using compat::scene::CPointCloudColoured;
 
 Eigen::Vector3f positionOf(const CPointCloudColoured& cloud, std::size_t i) {
     const auto& p = cloud.getPoint3Df(i);

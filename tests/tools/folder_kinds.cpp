@@ -65,6 +65,22 @@ FolderKind withCamera(const char* name, const char* file, const char* pattern, A
             FolderKind::kSame};
 }
 
+/// Colour, depth in mm, and the camera in Open3D's JSON with what `more` adds to it.
+Arguments writeOpen3d(const DatasetReader& from, const fs::path& to, const std::string& colour,
+                      const char* camera, const std::string& more) {
+    const FolderWriter out(from, to);
+    for (std::size_t i = 0; i < out.size(); i++) {
+        out.image(format("color/%05ld.", out.number(i)) + colour, out.colour(i));
+        out.image(format("depth/%05ld.png", out.number(i)), out.millimetres(i));
+    }
+    out.text(camera, format("{\"width\": %d, \"height\": %d, \"intrinsic_matrix\": [%.17g, 0, 0, 0, %.17g, "
+                            "0, %.17g, %.17g, 1]",
+                            out.camera()) +
+                         more + "}");
+    out.copyTruth();
+    return {};
+}
+
 }  // namespace
 
 const std::vector<FolderKind>& folderKinds() {
@@ -220,19 +236,16 @@ const std::vector<FolderKind>& folderKinds() {
          FolderKind::kSame},
         {"Open3D: color/, depth/ in mm, camera_intrinsic.json", "plain",
          [](const DatasetReader& from, const fs::path& to) {
-             const FolderWriter out(from, to);
-             for (std::size_t i = 0; i < out.size(); i++) {
-                 out.image(format("color/%05ld.png", out.number(i)), out.colour(i));
-                 out.image(format("depth/%05ld.png", out.number(i)), out.millimetres(i));
-             }
-             out.text("camera_intrinsic.json",
-                      format("{\"width\": %d, \"height\": %d, \"intrinsic_matrix\": [%.17g, 0, 0, 0, %.17g, "
-                             "0, %.17g, %.17g, 1]}",
-                             out.camera()));
-             out.copyTruth();
-             return Arguments{};
+             return writeOpen3d(from, to, "png", "camera_intrinsic.json", "");
          },
          FolderKind::kOtherDepth},
+        {"Azure Kinect, as Open3D's reader of .mkv writes it: JPEG, depth in mm, intrinsic.json", "plain",
+         [](const DatasetReader& from, const fs::path& to) {
+             return writeOpen3d(from, to, "jpg", "intrinsic.json",
+                                ", \"color_mode\": \"MJPG_720P\", \"depth_mode\": \"NFOV_UNBINNED\", "
+                                "\"serial_number_\": \"000123\", \"stream_length_usec\": 3000000");
+         },
+         FolderKind::kOther},
         {"depth camera of half the size in camera.txt", "plain",
          [](const DatasetReader& from, const fs::path& to) {
              const FolderWriter out(from, to);

@@ -1,16 +1,16 @@
 #include "edge_layers.h"
 
-#include <mrpt/opengl/CPointCloudColoured.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "roevo_mrpt/scene_objects.h"
+
 namespace roevo {
 namespace {
 
-using Cloud = mrpt::opengl::CPointCloudColoured;
+using Cloud = compat::scene::CPointCloudColoured;
 
 constexpr float kSpacing = 0.005f;  // m between the points of a drawn edge
 // A gap is filled unless it is much larger than those of the edge are (far away they are wide)

@@ -1,14 +1,11 @@
 #include "roevo_mrpt/scene_builder.h"
 
-#include <mrpt/opengl/CGridPlaneXY.h>
-#include <mrpt/opengl/CSetOfLines.h>
-#include <mrpt/opengl/CSetOfTriangles.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "edge_layers.h"
 #include "gz_file.h"
+#include "roevo_mrpt/scene_objects.h"
 #include "tubes.h"
 #include "whole_file.h"
 
@@ -80,9 +77,9 @@ std::vector<Points> dashes(const Points& line, float length) {
     return pieces;
 }
 
-mrpt::opengl::CSetOfTriangles::Ptr path(const char* name, const std::vector<Points>& pieces, float radius,
-                                        const TColor& colour) {
-    auto tube = mrpt::opengl::CSetOfTriangles::Create();
+compat::scene::CSetOfTriangles::Ptr path(const char* name, const std::vector<Points>& pieces, float radius,
+                                         const TColor& colour) {
+    auto tube = compat::scene::CSetOfTriangles::Create();
     tube->setName(name);
     for (const Points& points : pieces) appendTube(*tube, points, radius, colour);
     return tube;
@@ -105,8 +102,8 @@ void insertKeyframes(compat::Scene& scene, const SceneContent& content, float si
     // Made inside MRPT's library: in code of ours, GCC's sanitizer takes its virtual bases for misaligned
     // when it dies.
     const auto lines =
-        std::dynamic_pointer_cast<mrpt::opengl::CSetOfLines>(mrpt::opengl::CSetOfLines::CreateObject());
-    auto tubes = mrpt::opengl::CSetOfTriangles::Create();
+        std::dynamic_pointer_cast<compat::scene::CSetOfLines>(compat::scene::CSetOfLines::CreateObject());
+    auto tubes = compat::scene::CSetOfTriangles::Create();
     lines->setName(SceneNames::kKeyframeLines);
     tubes->setName(SceneNames::kKeyframes);
     lines->setColor_u8(toMrpt(SceneColours::kKeyframes));
@@ -127,8 +124,8 @@ void insertGround(compat::Scene& scene, const Extent& extent) {
     const auto down = [&](float x) { return std::floor((x - margin) / cell) * cell; };
     const auto up = [&](float x) { return std::ceil((x + margin) / cell) * cell; };
     auto grid =
-        mrpt::opengl::CGridPlaneXY::Create(down(extent.low.x()), up(extent.high.x()), down(extent.low.y()),
-                                           up(extent.high.y()), extent.low.z(), cell);
+        compat::scene::CGridPlaneXY::Create(down(extent.low.x()), up(extent.high.x()), down(extent.low.y()),
+                                            up(extent.high.y()), extent.low.z(), cell);
     grid->setName(SceneNames::kGround);
     grid->setColor_u8(TColor(128, 128, 128, 110));
     scene.insert(grid);

@@ -14,11 +14,11 @@ mrpt::math::TPoint3Df point(const Eigen::Vector3f& p) {
 
 }  // namespace
 
-void appendTube(mrpt::opengl::CSetOfTriangles& out, const std::vector<Eigen::Vector3f>& polyline,
+void appendTube(compat::scene::CSetOfTriangles& out, const std::vector<Eigen::Vector3f>& polyline,
                 float radius, const mrpt::img::TColor& colour) {
     const auto add = [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                          const Eigen::Vector3f& na, const Eigen::Vector3f& nb, const Eigen::Vector3f& nc) {
-        mrpt::opengl::TTriangle triangle(point(a), point(b), point(c), point(na), point(nb), point(nc));
+        compat::scene::TTriangle triangle(point(a), point(b), point(c), point(na), point(nb), point(nc));
         triangle.setColor(colour);
         out.insertTriangle(triangle);
     };
