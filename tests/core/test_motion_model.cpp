@@ -45,6 +45,19 @@ TEST(MotionModel, PredictsConstantVelocityInTheCamerasOwnFrame) {
     EXPECT_NEAR(rotationAngle((kStart * kStep).inverse() * half), 0.015, 1e-9);
 }
 
+TEST(MotionModel, TheFirstIntervalMayBeAGap) {
+    MotionModel model = makeModel();
+    model.expect(10);
+    model.begin(10);
+    model.expect(20);
+    EXPECT_TRUE(model.predict(20).blind);
+    model = makeModel();
+    model.expect(10);
+    model.begin(10);
+    model.expect(11);
+    EXPECT_FALSE(model.predict(11).blind) << "a frame a second";
+}
+
 TEST(MotionModel, NobodyMovesOnEvenlyForLong) {
     const MotionModel model = moving();
     EXPECT_GT(difference(model.predict(10.6).T_reference_camera, model.predict(10.5).T_reference_camera),

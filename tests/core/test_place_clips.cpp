@@ -66,7 +66,10 @@ class PlaceClips : public ::testing::Test {
     /// The surest of the five candidates.
     Found recognise(const PlaceClip& clip, const PlaceView& view, const std::vector<int>& excluded) {
         std::vector<PlaceCandidate> candidates;
-        index_.query(view.points, 5, excluded, candidates);
+        const auto wanted = [&](int id) {
+            return std::find(excluded.begin(), excluded.end(), id) == excluded.end();
+        };
+        index_.query(view.points, 5, wanted, candidates);
         EdgeRegistrar registrar(clip.camera, OdometryOptions());
         Found best;
         for (const PlaceCandidate& candidate : candidates) {

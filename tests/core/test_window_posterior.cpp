@@ -104,6 +104,39 @@ TEST_F(Posterior, FollowsTheOldestKeyframeAsRefiningDoes) {
     }
 }
 
+// Edges move the camera the way that is said, as in tracking: what one does to both adds up with its sign.
+TEST_F(Posterior, AnInfluenceIsWhatAnEdgeMovesTheCameraBy) {
+    const auto refinedWith = [&](int disturbed) {
+        std::vector<TestKeyframe> made;
+        for (int k = 0; k < 5; ++k) {
+            std::vector<Sighting> sightings = seeAll(curves_);
+            if (k == 4 && disturbed >= 0) sightings[static_cast<std::size_t>(disturbed)].shift = {0.1, -0.1};
+            made.push_back(makeKeyframe(k, placeOnPath(k), curves_, sightings));
+        }
+        look(std::move(made));
+        window_[1].fixed = true;
+        return *refined();
+    };
+    const auto influenceOf = [](const WindowPosterior& posterior, int cluster) {
+        Vector6d sum = Vector6d::Zero();
+        for (const EdgeInfluence& edge : posterior.uncertainty.influences)
+            if (edge.cluster == cluster) sum += edge.moved;
+        return sum;
+    };
+    const WindowPosterior plain = refinedWith(-1);
+    const Pose undisturbed = window_.back().T_world_camera;
+    // Metres and radians differ
+    const Vector6d scale = Vector6d(plain.uncertainty.covariance().diagonal()).cwiseSqrt();
+    for (int edge = 0; edge < static_cast<int>(curves_.size()); edge += 4) {
+        const WindowPosterior posterior = refinedWith(edge);
+        const Vector6d moved = errorTo(undisturbed).cwiseQuotient(scale);
+        const Vector6d said = (influenceOf(posterior, edge) - influenceOf(plain, edge)).cwiseQuotient(scale);
+        EXPECT_GT(moved.dot(said), 0.7 * moved.norm() * said.norm()) << edge << "\n"
+                                                                     << moved.transpose() << "\n"
+                                                                     << said.transpose();
+    }
+}
+
 TEST_F(Posterior, WhatOnlyAPriorTellsIsAsUncertainAsThat) {
     // Parallel edges say nothing of motions along them
     curves_.clear();

@@ -47,6 +47,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
                     keyframe.points.x[i], keyframe.points.y[i], keyframe.points.z[i],
                     keyframe.image.normal_x[i], keyframe.image.normal_y[i]);
                 const auto trust = static_cast<double>(keyframe.weight[i] / (1 + blur));
+                if (!(trust > 0)) continue;  // it would tell nothing, and of nothing nothing can be solved
                 const auto depth = static_cast<double>(keyframe.points.z[i]);
                 const double sigma = sensor_.depthSigma(depth);
                 observations_.push_back({camera_.fx * nx, camera_.fy * ny, nx * x + ny * y, -camera_.fx * ny,
@@ -54,6 +55,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
                                          static_cast<double>(keyframe.slope[i]), trust, 1 / (sigma * sigma),
                                          slot});
             }
+            if (observations_.size() == static_cast<std::size_t>(begin_.back())) continue;
             points_.push_back(static_cast<std::int32_t>(p));
             edge_of_.push_back(static_cast<std::int32_t>(edge));
             begin_.push_back(static_cast<std::int32_t>(observations_.size()));

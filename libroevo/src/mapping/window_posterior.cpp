@@ -75,7 +75,7 @@ std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& wi
         if (row < 0) continue;
         Vector6d& sum =
             moved.try_emplace(clusters[static_cast<std::size_t>(pull.edge)], Vector6d::Zero()).first->second;
-        sum += gain.middleCols<6>(row) * pull.gradient;
+        sum -= gain.middleCols<6>(row) * pull.gradient;  // a step is against the gradient
     }
     const auto edges = static_cast<double>(moved.size());
     if (edges < 2) return std::nullopt;

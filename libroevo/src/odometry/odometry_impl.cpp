@@ -1,5 +1,6 @@
 #include "odometry_impl.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "tracking/se3.h"
@@ -105,7 +106,7 @@ Outcome Odometry::Impl::start() {
 /// After a gap in time, and to a search, any pose may look right: the edges must agree without what is
 /// likely.
 Tracking Odometry::Impl::confirmed(Tracking tracking, const Prediction& prediction) {
-    const int gap_ms = static_cast<int>(1e3 * prediction.since_measured);
+    const int gap_ms = static_cast<int>(std::min(1e3 * prediction.since_measured, 2e9));
     const auto pose = world.confirm(*frame, tracking.pose.T_keyframe_camera);
     if (!pose) {
         tracking.reject({Fault::Kind::kUnconfirmed, {gap_ms}});
@@ -126,10 +127,11 @@ std::optional<Outcome> Odometry::Impl::anchorAt(const RelativePose& found, const
     outcome.tracking.pose = found;
     outcome.tracking.matches = {};  // with another keyframe
     outcome.tracking.rows = motion.stillRows();
+    outcome.tracking.depth_fault = {};  // found in the failed pose
+    outcome.tracking.doubtful = false;
     if (promote(*frame, outcome.tracking)) return std::nullopt;
     motion.anchor(frame->timestamp(), Pose::Identity());
     lost_frames = 0;
-    world.setLostFor(0);
     outcome.tracking.inliers = 0;  // they were another keyframe's
     outcome.tracking.pose = {world.reference().id, Pose::Identity(), {}};
     outcome.found_at = found.keyframe;
@@ -154,15 +156,15 @@ Outcome Odometry::Impl::bridge(Tracking failed, double since_measured) {
         motion.assume(motion.predict(frame->timestamp()).T_reference_camera);
     else
         motion.forgetVelocity();
-    // A lost pose is worth little: say so, growing with every frame
+    // A lost pose is worth little: say so, growing with time
+    const double variance = 1e-2 * kFrameRate * since_measured;
     RelativePose& pose = failed.pose;
-    pose = {world.reference().id, motion.lastPose(), {lost_frames * 1e-2 * Matrix6d::Identity(), {}}};
+    pose = {world.reference().id, motion.lastPose(), {variance * Matrix6d::Identity(), {}}};
     outcome.status = bridging ? FrameStatus::kPredicted : FrameStatus::kLost;
-    if (!bridging &&
-        !beginTrack(world.trajectory().worldPose(pose), world.trajectory().worldCovariance(pose))) {
+    if (!bridging && !beginTrack(world.trajectory().worldPose(pose), world.trajectory().worldCovariance(pose),
+                                 since_measured)) {
         outcome.status = FrameStatus::kInitialised;
         outcome.new_keyframe = true;
-        world.setLostFor(world.lostFor() + since_measured);
         lost_frames = 0;
         pose = {world.reference().id, Pose::Identity(), {}};
     }
@@ -228,8 +230,9 @@ void Odometry::Impl::settle(const Outcome& outcome) {
         motion.measure(frame->timestamp(), T_reference_camera, outcome.measured);
 }
 
-Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance) {
-    const Fault fault = world.beginTrack(*frame, motion.stillRows(), *tracker, T_world_camera, covariance);
+Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {
+    const Fault fault =
+        world.beginTrack(*frame, motion.stillRows(), *tracker, T_world_camera, covariance, lost_for);
     if (fault) return fault;
     motion.begin(frame->timestamp());
     candidate.reset();

@@ -1,6 +1,7 @@
 #include "relocaliser.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -24,10 +25,8 @@ constexpr double kMostlyAlike = 0.6;  ///< share of its points in view
 constexpr double kUnfitPosition = 0.15;     ///< m
 constexpr double kUnfitTurn = 3 * kDegree;  ///< rad
 
-template <class Alike>
-void mostAgreeingFirst(std::vector<Alike>& alike) {
-    std::stable_sort(alike.begin(), alike.end(),
-                     [](const Alike& a, const Alike& b) { return a.first.inliers > b.first.inliers; });
+bool hasOthers(const std::vector<bool>& own) {
+    return std::find(own.begin(), own.end(), false) != own.end();
 }
 
 }  // namespace
@@ -51,8 +50,8 @@ const std::vector<KnownPlace>& Relocaliser::places() {
     return places_;
 }
 
-void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, int begin,
-                      int end) {
+void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours,
+                      std::vector<bool> own, int end) {
     collect();
     Keyframe copy;  // of what is remembered
     copy.id = keyframe.id;
@@ -60,19 +59,21 @@ void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<
     copy.median_depth = keyframe.median_depth;
     copy.row_motion = keyframe.row_motion;
     auto seen = std::make_unique<Frame>();
-    if (end > 0) {
+    if (end > 0 || hasOthers(own)) {
         seen->edges = frame.edges;
         seen->images.depth = frame.images.depth.clone();
     }
     seen->pyramid.build(frame.pyramid.level(0).clone(), 1);
     const auto launch = threadCount(options_.threads) > 1 ? std::launch::async : std::launch::deferred;
-    at_work_ = std::async(
-        launch, [this, copy = std::move(copy), seen = std::move(seen), colours = std::move(colours), begin,
-                 end]() mutable { return describe(std::move(copy), std::move(seen), colours, begin, end); });
+    at_work_ = std::async(launch, [this, copy = std::move(copy), seen = std::move(seen),
+                                   colours = std::move(colours), own = std::move(own), end]() mutable {
+        return describe(std::move(copy), std::move(seen), colours, own, end);
+    });
 }
 
 Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<Frame> frame,
-                                             const std::vector<Rgb>& colours, int begin, int end) {
+                                             const std::vector<Rgb>& colours, const std::vector<bool>& own,
+                                             int end) {
     Described out;
     KnownPlace& place = out.place;
     const cv::Mat& grey = frame->pyramid.level(0);
@@ -82,8 +83,9 @@ Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<
     place.edges = PackedKeyframe(toMapKeyframe(keyframe, colours, ideal_, options_.mapping.max_points));
     place.median_depth = keyframe.median_depth;
     place.row_motion = keyframe.row_motion;
-    out.elsewhere = lookUp(place.points, keyframe.id, 0, begin);
-    out.alike = lookUp(place.points, keyframe.id, begin, end);
+    const auto isOwn = [&](int id) { return static_cast<bool>(own[static_cast<std::size_t>(id)]); };
+    if (hasOthers(own)) out.elsewhere = lookUp(place.points, keyframe.id, [&](int id) { return !isOwn(id); });
+    if (end > 0) out.alike = lookUp(place.points, keyframe.id, [&](int id) { return id < end && isOwn(id); });
     if (out.alike.empty() && out.elsewhere.empty()) return out;
     frame->grid.build(frame->edges, grey.cols, grey.rows);
     out.frame = std::move(frame);
@@ -132,25 +134,12 @@ std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& 
     return found.T_frame_keyframe.inverse();
 }
 
-/// After its own track has begun, others may have, too.
-void Relocaliser::splitByTrack(const Trajectory& trajectory) {
-    collect();
-    const int track = trajectory.beginOfTrack(static_cast<int>(places_.size()) - 1);
-    auto& own = newest_.alike;
-    const auto others = std::stable_partition(own.begin(), own.end(), [&](const Alike& alike) {
-        return trajectory.beginOfTrack(alike.second) == track;
-    });
-    newest_.elsewhere.insert(newest_.elsewhere.end(), others, own.end());
-    own.erase(others, own.end());
-    mostAgreeingFirst(newest_.elsewhere);
-}
-
 std::optional<RelativePose> Relocaliser::resembled(const Trajectory& trajectory,
                                                    const Whereabouts& whereabouts) {
-    splitByTrack(trajectory);
+    collect();
     const auto isTwin = [&](const Alike& alike) {
         const Pose there = trajectory.worldPose({alike.second, alike.first.T_candidate_query, {}});
-        return (there.translation() - whereabouts.centre).norm() > whereabouts.radius;
+        return (there.translation() - whereabouts.centre).norm() > whereabouts.radius(alike.second);
     };
     newest_.alike.erase(std::remove_if(newest_.alike.begin(), newest_.alike.end(), isTwin),
                         newest_.alike.end());
@@ -167,7 +156,7 @@ std::optional<RecognisedPlace> Relocaliser::recognised(const Trajectory& traject
 
 std::optional<RecognisedPlace> Relocaliser::recognisedElsewhere(const Trajectory& trajectory,
                                                                 const Whereabouts& whereabouts) {
-    splitByTrack(trajectory);
+    collect();
     return newestAmong(newest_.elsewhere, trajectory, whereabouts);
 }
 
@@ -186,30 +175,25 @@ std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajecto
     if (edges.size() == 0) return std::nullopt;
     describer_.describe(edges, frame.pyramid.level(0), points_);
     if (points_.size() > kPoints) points_.resize(kPoints);
-    const int all = static_cast<int>(places_.size());
-    const auto found =
-        surest(registered(lookUp(points_, -1, 0, all), frame, edges, RowMotion()), trajectory, whereabouts);
+    const std::vector<Alike> alike = lookUp(points_, -1, [](int) { return true; });
+    const auto found = surest(registered(alike, frame, edges, RowMotion()), trajectory, whereabouts);
     if (!found || !found->sure) return std::nullopt;
     return found->pose;
 }
 
-/// Keyframes from `begin` until before `end` whose points look alike, those with the most agreeing points
-/// first.
-std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, int query_id, int begin,
-                                                    int end) {
+/// Keyframes whose points look alike, those with the most agreeing points first.
+std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, int query_id,
+                                                    const std::function<bool(int)>& wanted) {
     std::vector<Alike> alike;
-    if (end <= begin) return alike;
-    std::vector<int> excluded;
-    for (int id = 0; id < begin; ++id) excluded.push_back(id);
-    for (int id = end; id < static_cast<int>(places_.size()); ++id) excluded.push_back(id);
     std::vector<PlaceCandidate> candidates;
-    index_.query(points, kCandidates, excluded, candidates);
+    index_.query(points, kCandidates, wanted, candidates);
     for (const PlaceCandidate& candidate : candidates) {
         const auto& place = places_[static_cast<std::size_t>(candidate.id)];
         const auto found = verifier_.verify(points, query_id, place.points, candidate.id);
         if (found) alike.emplace_back(*found, candidate.id);
     }
-    mostAgreeingFirst(alike);
+    std::stable_sort(alike.begin(), alike.end(),
+                     [](const Alike& a, const Alike& b) { return a.first.inliers > b.first.inliers; });
     return alike;
 }
 
@@ -259,16 +243,18 @@ std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<Recognition
     const Recognition fittest =
         best([](const Recognition& r) { return std::pair(r.confidence, r.likeness); });
     const Pose there = trajectory.worldPose(fittest.pose);
+    const auto trackOf = [&](const Recognition& of) { return trajectory.beginOfTrack(of.pose.keyframe); };
     const bool has_rival = std::any_of(recognised.begin(), recognised.end(), [&](const Recognition& other) {
+        if (trackOf(other) != trackOf(fittest)) return false;  // the same place may be in both
         const Pose apart = there.inverse() * trajectory.worldPose(other.pose);
         return apart.translation().norm() > kSamePlace || rotationAngle(apart) > kSameDirection;
     });
-    const double distance = (there.translation() - whereabouts.centre).norm();
     if (has_rival) return std::nullopt;
+    const double distance = (there.translation() - whereabouts.centre).norm(),
+                 radius = whereabouts.radius(fittest.pose.keyframe);
     const bool tells = fittest.evidence > Evidence::kPlausible ||
-                       (whereabouts.radius <= kShortReach && fittest.likeness >= kMostlyAlike);
-    if (tells && fittest.pose.keyframe >= whereabouts.unrelated && distance <= whereabouts.radius)
-        return placeOf(fittest, true);
+                       (whereabouts.unseen <= kShortReach && fittest.likeness >= kMostlyAlike);
+    if (tells && std::isfinite(radius) && distance <= radius) return placeOf(fittest, true);
     const Recognition strongest =
         best([](const Recognition& r) { return std::pair(r.evidence, r.likeness); });
     if (strongest.evidence != Evidence::kStrong) return std::nullopt;

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <future>
 #include <optional>
 #include <vector>
@@ -15,10 +16,10 @@ namespace roevo {
 /// Where a camera can be at most.
 struct Whereabouts {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< in the world, m
-    double radius = 0;                                 ///< m
-    /// Where the camera is relative to keyframes before this one is not known at all: of the places there
-    /// only those that are like no other are believed.
-    int unrelated = 0;
+    /// How far from there, m, relative to a keyframe. Infinite where that is not known at all: of the places
+    /// there only those that are like no other are believed.
+    std::function<double(int keyframe)> radius;
+    double unseen = 0;  ///< m; of it, how far it can have come while nothing was tracked
 };
 
 /// What a keyframe is recognised by.
@@ -57,10 +58,11 @@ class Relocaliser {
     /// In a thread of its own, or when it is asked for where there is but one.
     /// @param frame    that the keyframe was made of
     /// @param colours  of the keyframe's points
-    /// @param begin    of the keyframe's track
-    /// @param end      keyframes before this one are looked for in it; those before `begin` apart from the
-    ///                 others, which look more like it
-    void add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, int begin, int end);
+    /// @param own      of each older keyframe, whether it is of the same track. Those that are not are looked
+    ///                 for apart from the others, which look more like the new one.
+    /// @param end      only keyframes of its own track before this one are looked for
+    void add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, std::vector<bool> own,
+             int end);
 
     /// The older keyframe of its own track that the newest one looks most like, and its pose relative to that
     /// by points alone: about right, with no covariance. Waits for the thread.
@@ -102,13 +104,13 @@ class Relocaliser {
                                                  const Trajectory& trajectory,
                                                  const Whereabouts& whereabouts);
     Described describe(Keyframe keyframe, std::unique_ptr<Frame> frame, const std::vector<Rgb>& colours,
-                       int begin, int end);
-    std::vector<Alike> lookUp(const PlacePoints& points, int query_id, int begin, int end);
+                       const std::vector<bool>& own, int end);
+    std::vector<Alike> lookUp(const PlacePoints& points, int query_id,
+                              const std::function<bool(int)>& wanted);
     std::vector<Recognition> registered(const std::vector<Alike>& alike, const Frame& frame,
                                         const EdgePoints3D& edges, const RowMotion& rows);
     std::optional<RecognisedPlace> newestAmong(const std::vector<Alike>& alike, const Trajectory& trajectory,
                                                const Whereabouts& whereabouts);
-    void splitByTrack(const Trajectory& trajectory);
     void collect();
     Keyframe unpacked(int id) const;
     EdgePoints3D lifted(const Frame& frame) const;

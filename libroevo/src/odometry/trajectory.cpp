@@ -9,9 +9,9 @@
 namespace roevo {
 namespace {
 
-constexpr double kMostContradiction = 50;   // squared sigmas, of a loop
-constexpr double kStill = 0.02;             // m; less change of view than this is hardly any
-constexpr std::size_t kRecentFrames = 128;  // of which it is kept which edges their errors come from
+constexpr double kMostContradiction = 50;  // squared sigmas, of a loop
+constexpr double kStill = 0.02;            // m; less change of view than this is hardly any
+constexpr double kRecent = 4.25;     // s; of frames since then it is kept which edges their errors come from
 constexpr double kTypicalDepth = 2;  // m; at this depth a turn by 1 rad changes a view like so many metres
 
 /// Turns a covariance of position and orientation.
@@ -85,8 +85,8 @@ int Trajectory::addKeyframe(double timestamp, const RelativePose& pose,
 void Trajectory::addFrame(double timestamp, const RelativePose& pose, bool measured) {
     frames_.push_back({timestamp, pose, measured});
     live_.push_back({timestamp, worldPose(pose)});
-    if (frames_.size() <= kRecentFrames) return;
-    forgetAll(frames_[frames_.size() - kRecentFrames - 1].pose.uncertainty);
+    for (; timestamp - frames_[recent_].timestamp > kRecent; ++recent_)
+        forgetAll(frames_[recent_].pose.uncertainty);
 }
 
 RelativePose Trajectory::inWorld(const RelativePose& pose) const {

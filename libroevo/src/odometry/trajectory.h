@@ -96,6 +96,7 @@ class Trajectory {
     std::vector<PoseUncertainty> in_world_;  ///< of the keyframes; influences of the newest alone
     std::vector<RelativePose> links_;        ///< of the keyframes, to the ones before; -1: to the world
     std::vector<Frame> frames_;
+    std::size_t recent_ = 0;  ///< the oldest frame that nothing was forgotten of
     std::vector<StampedPose> live_;
 };
 

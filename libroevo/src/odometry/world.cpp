@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "tracking/camera_scale.h"
@@ -13,6 +14,7 @@ namespace {
 // How far a lost camera can have come
 constexpr double kReach = 0.3;     // m
 constexpr double kTopSpeed = 1.5;  // m/s
+constexpr double kTopTurn = 1.5;   // rad/s
 
 // Two keyframes in a row that were recognised agree on where their track belongs
 constexpr int kInARow = 3;                // keyframes
@@ -23,6 +25,7 @@ constexpr double kAgreedTurn = 1 * kDegree;
 constexpr double kJoinTolerance = 3;
 constexpr int kStillInView = 10;     // newest keyframes
 constexpr double kDriftSigmas = 10;  // that the camera can be from where it is thought to be
+constexpr double kUnknown = std::numeric_limits<double>::infinity();  // m
 
 }  // namespace
 
@@ -50,6 +53,7 @@ void World::load(StoredMap map, bool held) {
             "a map is of no use with loss.recognise=false: no place is looked for in it");
     loaded_ = static_cast<int>(map.graph.keyframes.size());
     held_ = held;
+    if (loaded_ > 0) misplacements_[0].distance = kUnknown;
     std::vector<KnownPlace> places;
     for (std::size_t id = 0; id < map.places.size(); ++id)
         places.push_back({std::move(map.places[id]), map.edges[id].points, map.edges[id].median_depth,
@@ -129,12 +133,19 @@ void World::weakenPseudoEdges() {
 }
 
 Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker& tracker,
-                        const Pose& T_world_camera, const Matrix6d& covariance) {
+                        const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {
     auto fresh = std::make_unique<Keyframe>();
     if (const Fault fault = makeKeyframe(frame, rows, camera_, options_, tracker, *fresh)) return fault;
     numberEdges(*fresh, nullptr, {}, next_cluster_);
     recognise();
+    Misplacement misplaced;
+    if (reference_) {
+        misplaced.distance = misplacementOf(reference_->id) + driftOf(reference_->id) + kTopSpeed * lost_for;
+        const auto before = misplacements_.find(trajectory_.beginOfTrack(reference_->id));
+        misplaced.turn = (before == misplacements_.end() ? 0 : before->second.turn) + kTopTurn * lost_for;
+    }
     fresh->id = trajectory_.beginTrack(frame.timestamp(), T_world_camera, covariance);
+    misplacements_[fresh->id] = misplaced;
     adopt(std::move(fresh), frame, RelativePose());
     return {};
 }
@@ -154,9 +165,10 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
     const bool closes = closesLoops();
     std::vector<Rgb> colours = coloursOf(fresh->edges.image, of.images, camera_);
     if (remembersPlaces()) {
+        std::vector<bool> own;
         const int begin = trajectory_.beginOfTrack(fresh->id);
-        relocaliser_.add(*fresh, of, colours, begin,
-                         closes ? std::max(begin, fresh->id - kStillInView) : begin);
+        for (int id = 0; id < fresh->id; ++id) own.push_back(trajectory_.beginOfTrack(id) == begin);
+        relocaliser_.add(*fresh, of, colours, std::move(own), closes ? fresh->id - kStillInView : 0);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
     }
@@ -170,19 +182,52 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
 }
 
 void World::noteTrack() {
-    localised_ = localised_ || trajectory_.beginOfTrack(reference_->id) < loaded_;
+    if (localised_ || trajectory_.beginOfTrack(reference_->id) >= loaded_) return;
+    localised_ = true;
+    for (auto& [track, misplaced] : misplacements_) misplaced.distance = track == 0 ? 0 : kUnknown;
+}
+
+double World::misplacementOf(int keyframe) const {
+    const int begin = trajectory_.beginOfTrack(keyframe);
+    const auto found = misplacements_.find(begin);
+    if (found == misplacements_.end()) return 0;
+    const Pose since = trajectory_.keyframePose(begin).inverse() * trajectory_.keyframePose(keyframe);
+    return found->second.distance + std::min(2.0, found->second.turn) * since.translation().norm();
+}
+
+double World::driftOf(int keyframe) const {
+    const auto covarianceOf = [&](int id) {
+        const Pose axes(trajectory_.keyframePose(id).rotation(), Eigen::Vector3d::Zero());
+        const Matrix6d to_camera = carriedTo(axes);
+        return Matrix6d(to_camera * trajectory_.worldCovariance({id, Pose(), {}}) * to_camera.transpose());
+    };
+    const int begin = trajectory_.beginOfTrack(keyframe);
+    const Matrix6d by =
+        carriedTo(trajectory_.keyframePose(begin).inverse() * trajectory_.keyframePose(keyframe));
+    const Matrix6d drift = covarianceOf(keyframe) - by * covarianceOf(begin) * by.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(drift.topLeftCorner<3, 3>(),
+                                                              Eigen::EigenvaluesOnly);
+    return kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
+}
+
+Whereabouts World::whereabouts(const RelativePose& pose, double lost_for) const {
+    const int keyframe = pose.keyframe;
+    if (keyframe < 0) return {Eigen::Vector3d::Zero(), [](int) { return kUnknown; }, kUnknown};
+    const double unseen = kReach + kTopSpeed * lost_for, misplaced = misplacementOf(keyframe),
+                 within_track = unseen + driftOf(keyframe);
+    const auto radius = [this, keyframe, within_track, misplaced](int other) {
+        const bool own = trajectory_.beginOfTrack(other) == trajectory_.beginOfTrack(keyframe);
+        return own ? within_track : within_track + misplaced + misplacementOf(other);
+    };
+    // What was lost before is not counted while it is lost again
+    return {trajectory_.worldPose(pose).translation(), radius, lost_for > 0 ? unseen : unseen + misplaced};
 }
 
 /// What older keyframe the newest one shows.
 void World::recognise() {
     if (!std::exchange(recognising_, false)) return;
     const RelativePose newest{reference_->id, Pose::Identity(), {}};
-    const Matrix6d covariance = trajectory_.worldCovariance(newest);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance.topLeftCorner<3, 3>(),
-                                                              Eigen::EigenvaluesOnly);
-    const double drift = kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
-    const Whereabouts near{trajectory_.worldPose(newest).translation(),
-                           kReach + kTopSpeed * lost_for_ + drift, unrelated()};
+    const Whereabouts near = whereabouts(newest, 0);
     if (options_.loss.recognise && joinElsewhere(near)) return;
     const auto alike = relocaliser_.resembled(trajectory_, near);
     if (!alike) return;
@@ -218,7 +263,6 @@ void World::join(const Look& look) {
     mapper_->correct(trajectory_.join(look.keyframe, look.place.pose));
     noteMotion(before);
     change_.joined_at = look.place.pose.keyframe;
-    lost_for_ = 0;
     look_.reset();
     noteTrack();
 }
@@ -261,9 +305,7 @@ void World::closeLoop(const Look& newest) {
 
 std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& last, double since_measured) {
     if (!options_.loss.recognise) return std::nullopt;
-    const Pose pose = last.keyframe < 0 ? Pose() : trajectory_.worldPose(last);
-    return relocaliser_.find(frame, trajectory_,
-                             {pose.translation(), kReach + kTopSpeed * since_measured, unrelated()});
+    return relocaliser_.find(frame, trajectory_, whereabouts(last, since_measured));
 }
 
 std::vector<MapRefusal> World::refineAll() {

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -52,8 +53,9 @@ class World {
     WorldChange changes() { return std::exchange(change_, {}); }
 
     /// A frame becomes the reference: the first, or one after a loss.
+    /// @param lost_for  s, since the camera's pose was known: so far may it have come
     Fault beginTrack(const Frame& frame, const RowMotion& rows, const Tracker& tracker,
-                     const Pose& T_world_camera, const Matrix6d& covariance);
+                     const Pose& T_world_camera, const Matrix6d& covariance, double lost_for);
     /// A frame that was tracked, or recognised, becomes the reference.
     Fault addKeyframe(const Frame& frame, const Tracking& tracked, const Tracker& tracker);
 
@@ -66,10 +68,6 @@ class World {
     [[nodiscard]] std::optional<Pose> confirm(const Frame& frame, const Pose& T_reference_camera) {
         return relocaliser_.confirm(*reference_, frame, T_reference_camera);
     }
-    /// For how long (s) the camera was lost until a track was begun: that is how far it may have come.
-    void setLostFor(double seconds) { lost_for_ = seconds; }
-    double lostFor() const { return lost_for_; }
-
     /// See Odometry::refineAll().
     std::vector<MapRefusal> refineAll();
 
@@ -90,6 +88,12 @@ class World {
         RecognisedPlace place;
     };
     std::optional<Look> agreeingLook(const Look& newest, double tolerance);
+    /// How far a keyframe's track may be from where it was put, m, at the keyframe.
+    double misplacementOf(int keyframe) const;
+    /// How far a keyframe may have drifted from the first one of its track, m.
+    double driftOf(int keyframe) const;
+    /// @param lost_for  s, since the pose was known; of no keyframe where nothing is
+    Whereabouts whereabouts(const RelativePose& pose, double lost_for) const;
     bool joinElsewhere(const Whereabouts& near);
     void join(const Look& look);
     void closeLoop(const Look& newest);
@@ -100,6 +104,7 @@ class World {
     void noteTrack();
     bool closesLoops() const;
     bool remembersPlaces() const;
+    /// Keyframes before this one are in another world.
     int unrelated() const { return localised_ ? 0 : loaded_; }
     EdgeMap inThisWorld(EdgeMap edges) const;
 
@@ -116,10 +121,13 @@ class World {
     bool held_ = false;
     bool localised_ = false;  // in the map that was loaded
     double timestamp_ = 0, seconds_per_row_ = 0;
-    double lost_for_ = 0;
-    double recognised_at_ = 0;  // s; when the place of the newest keyframe is to be known
-    bool recognising_ = false;  // it is not known yet
-    std::optional<Look> look_;  // that a second one must agree with
+    struct Misplacement {
+        double distance = 0, turn = 0;  // m, rad
+    };
+    std::map<int, Misplacement> misplacements_;  // of tracks that were begun after a loss
+    double recognised_at_ = 0;                   // s; when the place of the newest keyframe is to be known
+    bool recognising_ = false;                   // it is not known yet
+    std::optional<Look> look_;                   // that a second one must agree with
     WorldChange change_;
 };
 

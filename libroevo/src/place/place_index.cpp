@@ -36,18 +36,14 @@ void PlaceIndex::insert(int id, const PlacePoints& points) {
     size_norm_.push_back(std::sqrt(static_cast<double>(buckets_.size()) + 1));
 }
 
-void PlaceIndex::query(const PlacePoints& points, std::size_t max_results, const std::vector<int>& excluded,
-                       std::vector<PlaceCandidate>& out) {
+void PlaceIndex::query(const PlacePoints& points, std::size_t max_results,
+                       const std::function<bool(int)>& wanted, std::vector<PlaceCandidate>& out) {
     out.clear();
     if (ids_.empty()) return;
     collectBuckets(points);
     vote();
-    excluded_ = excluded;
-    std::sort(excluded_.begin(), excluded_.end());
-    for (std::size_t k = 0; k < ids_.size(); ++k) {
-        if (votes_[k] == 0 || std::binary_search(excluded_.begin(), excluded_.end(), ids_[k])) continue;
-        out.push_back({ids_[k], kVoteUnit * votes_[k] / size_norm_[k]});
-    }
+    for (std::size_t k = 0; k < ids_.size(); ++k)
+        if (votes_[k] > 0 && wanted(ids_[k])) out.push_back({ids_[k], kVoteUnit * votes_[k] / size_norm_[k]});
     const std::size_t kept = std::min(max_results, out.size());
     std::partial_sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(kept), out.end(),
                       [](const PlaceCandidate& a, const PlaceCandidate& b) {

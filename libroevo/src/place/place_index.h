@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "place/bucket_lists.h"
@@ -20,9 +21,9 @@ class PlaceIndex {
   public:
     /// @param id  that was not inserted before
     void insert(int id, const PlacePoints& points);
-    /// @param excluded  ids that are no candidates, in any order
-    /// @param out       at most max_results, best first, of equal scores the smaller id first
-    void query(const PlacePoints& points, std::size_t max_results, const std::vector<int>& excluded,
+    /// @param wanted  whether a keyframe of that id may be a candidate
+    /// @param out     at most max_results, best first, of equal scores the smaller id first
+    void query(const PlacePoints& points, std::size_t max_results, const std::function<bool(int)>& wanted,
                std::vector<PlaceCandidate>& out);
 
     std::size_t size() const { return ids_.size(); }  ///< keyframes
@@ -36,7 +37,6 @@ class PlaceIndex {
     std::vector<int> ids_;           ///< in the order of insertion
     std::vector<double> size_norm_;  ///< of each keyframe: what its votes are divided by
     std::vector<std::uint32_t> buckets_, votes_;
-    std::vector<int> excluded_;
 };
 
 }  // namespace roevo

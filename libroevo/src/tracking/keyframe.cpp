@@ -12,10 +12,12 @@ void Keyframe::setRowMotion(const RowMotion& rows) {
 }
 
 void Keyframe::count(const std::vector<std::int32_t>& looked_for, const std::vector<std::int32_t>& found) {
+    constexpr int kMostTrials = 1 << 30;  // a camera may stand still for days
     if (found.empty()) return;
     hits.resize(found.size(), 0);
     trials.resize(found.size(), 0);
     for (std::size_t e = 0; e < found.size(); ++e) {
+        if (trials[e] > kMostTrials) hits[e] /= 2, trials[e] /= 2;
         hits[e] += found[e];
         trials[e] += looked_for[e];
     }

@@ -28,7 +28,7 @@ MotionModel::MotionModel(const MotionOptions& motion, const SensorOptions& senso
 void MotionModel::expect(double timestamp) {
     const double interval = last_frame_ ? timestamp - *last_frame_ : 0;
     if (usual_interval_ <= 0)
-        usual_interval_ = interval;
+        usual_interval_ = std::min(interval, kLongestPrediction);  // the first may be a gap
     else  // a gap counts for no more than what is just usual, so that another rate is learned in a few frames
         usual_interval_ +=
             kLearning * (std::min(interval_before_, kUsual * usual_interval_) - usual_interval_);
