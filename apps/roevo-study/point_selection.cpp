@@ -132,7 +132,6 @@ EdgePoints3D liftPixels(const std::vector<cv::Point>& pixels, const Gradient& gr
         out.points.add(p);
         out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
         out.correction.push_back(0);
-        out.occluding.push_back(found.occluding ? 1 : 0);
     }
     out.image.finishEdge();
     out.points.pad();

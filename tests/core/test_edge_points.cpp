@@ -47,7 +47,6 @@ TEST(LiftEdges, PointsProjectBackOntoTheirPixels) {
         EXPECT_NEAR(pixel.y(), 20 + static_cast<double>(i), 1e-4);
         EXPECT_FLOAT_EQ(lifted.points.z[i], 1.75F);
         EXPECT_FLOAT_EQ(lifted.weight[i], static_cast<float>(depthWeight(1.75, SensorOptions())));
-        EXPECT_EQ(lifted.occluding[i], 0);
     }
     EXPECT_FLOAT_EQ(lifted.medianDepth(), 1.75F);
     EXPECT_EQ(EdgePoints3D().medianDepth(), 0);

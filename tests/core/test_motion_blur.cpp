@@ -43,6 +43,17 @@ double varianceOf(const RowMotion& rows, const Eigen::Vector3d& p, const Eigen::
         MotionBlur(rows, kCamera, seconds).variance(q.x(), q.y(), q.z(), n.x(), n.y()));
 }
 
+TEST(MotionBlur, IsTheSameInALargerImageOfTheSameScene) {
+    PinholeCamera large = kCamera;
+    large.width *= 3, large.height *= 3;
+    large.fx *= 3, large.fy *= 3;
+    std::mt19937 random(18);
+    const RowMotion rows = randomMotion(random);
+    const Eigen::Vector3f p = randomPoint(random).cast<float>();
+    EXPECT_NEAR(MotionBlur(rows, large, kSeconds).variance(p.x(), p.y(), p.z(), 0.6F, 0.8F),
+                MotionBlur(rows, kCamera, kSeconds).variance(p.x(), p.y(), p.z(), 0.6F, 0.8F), 1e-5F);
+}
+
 TEST(MotionBlur, IsHowFarTheEdgeMovesAcrossItselfInThatTime) {
     std::mt19937 random(17);
     double largest = 0;
@@ -52,7 +63,7 @@ TEST(MotionBlur, IsHowFarTheEdgeMovesAcrossItselfInThatTime) {
         const Eigen::Vector2d velocity = imageVelocity(rows, point);
         const double angle = uniform(random, 0, 2 * M_PI);
         const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
-        const double expected = std::pow(normal.dot(velocity) * kSeconds / MotionBlur::kAtRest, 2);
+        const double expected = std::pow(normal.dot(velocity) * kSeconds / MotionBlur::atRest(kCamera), 2);
         EXPECT_NEAR(varianceOf(rows, point, normal), expected, 1e-3 * expected + 1e-3);
         largest = std::max(largest, expected);
         const Eigen::Vector2d along = velocity.normalized();

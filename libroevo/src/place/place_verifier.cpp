@@ -162,20 +162,17 @@ Verification PlaceVerifier::describe(const Pose& T) const {
     out.T_candidate_query = T;
     out.matches = static_cast<int>(pairs_.size());
     const double roll = rollOf(T);
-    double squared = 0;
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
     for (const Pair& pair : pairs_) {
         if (!explains(T, roll, pair)) continue;
         ++out.inliers;
-        squared += (T * pair.query - pair.candidate).squaredNorm() * pair.information;
         mean += pair.candidate;
         moments += pair.candidate * pair.candidate.transpose();
     }
     mean /= out.inliers;
     moments = moments / out.inliers - mean * mean.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
-    out.spread = std::sqrt(squared / out.inliers);
     out.extent = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
     return out;
 }

@@ -13,7 +13,6 @@ struct Verification {
     Pose T_candidate_query = Pose::Identity();
     int matches = 0;    ///< pairs of similar points
     int inliers = 0;    ///< of them, those that the pose explains
-    double spread = 0;  ///< root mean square distance of the inliers, in sigmas of their depths' noise
     double extent = 0;  ///< m; standard deviation of the inliers' positions along their second principal axis
 };
 

@@ -34,10 +34,6 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
     state.T_current_keyframe = found.T_current_keyframe;
     state.brightness = photometric.brightness();
     state.num_visible = photometric.numVisible();
-    if (found.cost >= 0) {
-        state.residual = photometric.residual();
-        state.system = found.system;
-    }
     return found.cost;
 }
 

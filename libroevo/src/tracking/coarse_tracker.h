@@ -11,8 +11,6 @@ struct CoarseResult {
     Pose T_current_keyframe = Pose::Identity();
     Brightness brightness;
     int num_visible = 0;
-    double residual = 0;  ///< median patch residual, grey levels
-    PoseSystem system;    ///< at the last pose, finest level, unit weights = 1 / residual variance
 };
 
 /// Photometric alignment of the keyframe's edge patches over an image pyramid, Eqs. (2), (3).

@@ -35,7 +35,6 @@ void addPiece(const OrganizedEdges& edges, std::size_t first, const std::vector<
         out.points.add(p);
         out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
         out.correction.push_back(z - depths.patches[k].depth);
-        out.occluding.push_back(depths.patches[k].occluding ? 1 : 0);
         out.source.push_back(static_cast<std::int32_t>(i));
     }
 }
@@ -47,7 +46,6 @@ void EdgePoints3D::reserve(std::size_t count) {
     points.reserve(count);
     correction.reserve(count);
     weight.reserve(count);
-    occluding.reserve(count);
     source.reserve(count);
 }
 

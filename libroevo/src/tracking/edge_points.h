@@ -13,12 +13,11 @@ namespace roevo {
 /// Organized edges with depth: 2-D points as OrganizedEdges has them, plus their position in the camera
 /// frame. Only points with depth are kept, and an edge is split where consecutive points jump in depth.
 struct EdgePoints3D {
-    OrganizedEdges image;                 ///< 2-D side; points without depth are gone
-    Points3 points;                       ///< camera frame, m; padded
-    std::vector<float> correction;        ///< m that EdgeSides added to the depth of the patch
-    std::vector<float> weight;            ///< w_s(depth), Eq. (20)
-    std::vector<std::uint8_t> occluding;  ///< 1 where the point borders a background behind it
-    std::vector<std::int32_t> source;     ///< index of the point among those of the image
+    OrganizedEdges image;              ///< 2-D side; points without depth are gone
+    Points3 points;                    ///< camera frame, m; padded
+    std::vector<float> correction;     ///< m that EdgeSides added to the depth of the patch
+    std::vector<float> weight;         ///< w_s(depth), Eq. (20)
+    std::vector<std::int32_t> source;  ///< index of the point among those of the image
 
     std::size_t size() const { return image.size(); }
     void reserve(std::size_t count);

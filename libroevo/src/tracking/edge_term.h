@@ -63,7 +63,6 @@ class EdgeTerm : public ResidualTerm {
         std::vector<std::int32_t> reference;  // index in the keyframe
         std::vector<std::int32_t> current;    // in the frame
     };
-    void associateProjected(const Pose& T_current_keyframe, double radius);
     bool isAssociated(const Pose& T_current_keyframe, double radius) const;
     void gather();
     void projectMatched(const Pose& pose, const RowMotion& rows);

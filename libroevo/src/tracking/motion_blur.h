@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "roevo/camera/pinhole_camera.h"
 #include "tracking/kernels.h"
 #include "tracking/rolling_shutter.h"
@@ -20,8 +22,8 @@ class MotionBlur {
           wx_(static_cast<float>(rows.turn.x())),
           wy_(static_cast<float>(rows.turn.y())),
           wz_(static_cast<float>(rows.turn.z())),
-          to_sigmas_x_(static_cast<float>(camera.fx * seconds / kAtRest)),
-          to_sigmas_y_(static_cast<float>(camera.fy * seconds / kAtRest)) {}
+          to_sigmas_x_(static_cast<float>(camera.fx * seconds / atRest(camera))),
+          to_sigmas_y_(static_cast<float>(camera.fy * seconds / atRest(camera))) {}
 
     /// Variance across an edge with unit normal (nx, ny) at a point of the camera frame (m) that its motion
     /// adds, relative to that of an edge at rest.
@@ -39,7 +41,9 @@ class MotionBlur {
         return {{vx_, vy_, vz_}, {wx_, wy_, wz_}, to_sigmas_x_, to_sigmas_y_};
     }
 
-    static constexpr double kAtRest = 1. / 3;  ///< px, one sigma across an edge at rest
+    /// One sigma across an edge at rest, px. Of larger images edges are found in as large a part of the
+    /// scene, see scaledTo().
+    static double atRest(const PinholeCamera& camera) { return std::max(1., camera.width / 640.) / 3; }
 
   private:
     float vx_, vy_, vz_, wx_, wy_, wz_, to_sigmas_x_, to_sigmas_y_;

@@ -163,7 +163,6 @@ bool PhotometricTerm::linearise(const Linearisation& at, PoseSystem& system) {
 void PhotometricTerm::keep() {
     best_brightness_ = brightness_;
     num_visible_ = residuals_.numVisible();
-    residual_ = residuals_.scale();
 }
 
 }  // namespace roevo

@@ -109,7 +109,6 @@ class PhotometricTerm : public ResidualTerm {
     // Of the best pose
     const Brightness& brightness() const { return best_brightness_; }
     int numVisible() const { return num_visible_; }  ///< where nothing was kept: of the first
-    double residual() const { return residual_; }    ///< median of a patch, grey levels
 
   private:
     PhotometricResiduals& residuals_;
@@ -118,7 +117,7 @@ class PhotometricTerm : public ResidualTerm {
     const PinholeCamera& camera_;
     int level_, needed_ = 0, num_visible_ = -1;
     Brightness brightness_, best_brightness_;
-    double residual_ = 0, weight_ = 1;
+    double weight_ = 1;
     std::function<std::size_t()> counted_;
 };
 
