@@ -101,6 +101,9 @@ TEST(KeyframeChanges, SharesOfWhatWasFoundNeedEnoughTrials) {
     EXPECT_EQ(keyframe.foundShares(), (std::vector<float>{0.75F, -1}));
     keyframe.count({6, 6}, {});  // lost: nothing was looked for
     EXPECT_EQ(keyframe.foundShares(), (std::vector<float>{0.75F, -1}));
+    // Days at rest
+    for (int i = 0; i < 5; ++i) keyframe.count({1'000'000'000, 2}, {500'000'000, 1});
+    EXPECT_NEAR(keyframe.foundShares()[0], 0.5F, 1e-6F);
 }
 
 }  // namespace

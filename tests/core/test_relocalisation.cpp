@@ -87,6 +87,27 @@ TEST_P(Relocalisation, AnotherRoomIsNoPlaceOfThisOne) {
     EXPECT_LT(errorOf(back.T_world_camera, 59), 0.02);
 }
 
+TEST_P(Relocalisation, ATrackThatWasLeftIsJoinedByTheOlderOne) {
+    for (std::size_t i = 0; i < 40; ++i) (void)showRoom(i);
+    time_ += 3;
+    int begun = 0;
+    const std::size_t first = 129;
+    for (std::size_t i = first; i > 115; --i) begun += showRoom(i).status == FrameStatus::kInitialised;
+    ASSERT_EQ(begun, 1) << "an unknown place";
+    time_ += 3;
+    bool found = false, joined = false;
+    for (std::size_t i = 20; i < 130; ++i) {
+        const FrameResult result = showRoom(i);
+        found = found || result.reason.find("found again") != std::string::npos;
+        joined = joined || (found && result.reason.find("joined") != std::string::npos);
+    }
+    EXPECT_TRUE(found);
+    EXPECT_TRUE(joined);
+    const auto poses = odometry_.trajectory();
+    ASSERT_GT(poses.size(), 54u);
+    EXPECT_LT(errorOf(poses[53].T_world_camera, 116), 0.05) << "the track that was left";
+}
+
 TEST_P(Relocalisation, ATrackThatWasBegunAnewIsJoinedWhenAKeyframeIsRecognised) {
     // From the middle: the end of the path is seen first as an unknown place, and leads back to what is known
     for (std::size_t i = 0; i < 40; ++i) (void)showRoom(i);
