@@ -156,7 +156,6 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
     return join;
 }
 
-/// First keyframe of each keyframe's track.
 std::vector<int> Trajectory::tracks() const {
     std::vector<int> tracks;
     for (std::size_t id = 0; id < links_.size(); ++id) {

@@ -36,6 +36,8 @@ class Trajectory {
 
     /// First keyframe of a keyframe's track.
     int beginOfTrack(int keyframe) const;
+    /// The same of each keyframe.
+    std::vector<int> tracks() const;
     /// Moves a keyframe's track to where the keyframe was recognised; where that is in a younger track, moves
     /// that one.
     /// @param pose  of the keyframe, relative to one of another track
@@ -85,7 +87,6 @@ class Trajectory {
     RelativePose inWorld(const RelativePose& pose) const;
     void takePosterior(const WindowPosterior& posterior, int keyframe);
     Pose finalPose(const Frame& frame) const;
-    std::vector<int> tracks() const;
     std::vector<PoseConstraint> constraintsOf(const std::vector<int>& tracks, int track) const;
 
     int held_ = 0;  ///< so many keyframes do not move

@@ -166,8 +166,8 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
     std::vector<Rgb> colours = coloursOf(fresh->edges.image, of.images, camera_);
     if (remembersPlaces()) {
         std::vector<bool> own;
-        const int begin = trajectory_.beginOfTrack(fresh->id);
-        for (int id = 0; id < fresh->id; ++id) own.push_back(trajectory_.beginOfTrack(id) == begin);
+        const std::vector<int> tracks = trajectory_.tracks();
+        for (std::size_t id = 0; id + 1 < tracks.size(); ++id) own.push_back(tracks[id] == tracks.back());
         relocaliser_.add(*fresh, of, colours, std::move(own), closes ? fresh->id - kStillInView : 0);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
