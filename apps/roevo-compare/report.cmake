@@ -7,4 +7,4 @@ add_library(roevo_report STATIC
             report/results.cpp report/scene_picture.cpp report/stage_plot.cpp report/tables.cpp report/trajectory_plot.cpp
             report/write_comparison.cpp)
 target_include_directories(roevo_report PUBLIC ${PROJECT_SOURCE_DIR}/apps ${CMAKE_CURRENT_SOURCE_DIR})
-target_link_libraries(roevo_report PUBLIC roevo_evaluation PRIVATE roevo_programs roevo_build_flags)
+target_link_libraries(roevo_report PUBLIC roevo_evaluation PRIVATE roevo roevo_programs roevo_build_flags)

@@ -1,6 +1,5 @@
 #include "roevo-compare/report/plots.h"
 
-#include <atomic>
 #include <cstdio>
 #include <regex>
 #include <stdexcept>
@@ -21,8 +20,8 @@ std::string inlined(const std::string& svg, int width, int height) {
     const std::size_t begin = svg.find("<svg"), end = svg.find('>', begin);
     if (begin == std::string::npos || end == std::string::npos)
         throw std::runtime_error("gnuplot drew nothing");
-    // gnuplot calls its parts the same in each drawing
-    static std::atomic<unsigned> drawings{0};
+    // gnuplot calls its parts the same in each drawing. A page is made by one thread
+    static thread_local unsigned drawings = 0;
     const std::string own = "p" + std::to_string(drawings++) + "_";
     std::string body = svg.substr(end + 1);
     for (const char* reference : {" id=\"", " id='", "xlink:href='#", "xlink:href=\"#", "url(#", "url('#"})
