@@ -11,6 +11,7 @@ namespace roevo {
 namespace {
 
 constexpr int kAll = 1 << 30;
+constexpr SurfaceLimits kAnyDepth{1e-3, 1e3, 1e3};
 
 const PinholeCamera kIdeal{160, 120, 140, 145, 81, 58, {}};
 const PinholeCamera kDistorted{160, 120, 140, 145, 81, 58, {0.2, -0.3, 0.002, -0.001, 0.05}};
@@ -55,7 +56,7 @@ std::array<float, 6> flat(const ColouredPoint& p) {
 
 TEST(SemiDense, PointsProjectToThePixelThatTheirColourAndDepthAreOf) {
     for (const PinholeCamera& camera : {kIdeal, kDistorted}) {
-        const auto points = sampleSemiDense(diagonal(), addressedFrame(), camera, 4, kAll);
+        const auto points = sampleSemiDense(diagonal(), addressedFrame(), camera, 4, kAnyDepth, kAll);
         EXPECT_GT(points.size(), 700u);
         for (const ColouredPoint& point : points) {
             const float u = point.colour[0], v = point.colour[1];
@@ -71,7 +72,7 @@ TEST(SemiDense, PointsProjectToThePixelThatTheirColourAndDepthAreOf) {
 
 TEST(SemiDense, TakesThePixelsWithinTheRadiusOnceAndOnlyInsideTheImage) {
     const auto count = [](const std::vector<Eigen::Vector2f>& pixels, int radius) {
-        return sampleSemiDense(edgeThrough(pixels), addressedFrame(), kIdeal, radius, kAll).size();
+        return sampleSemiDense(edgeThrough(pixels), addressedFrame(), kIdeal, radius, kAnyDepth, kAll).size();
     };
     EXPECT_EQ(count({{50.4f, 39.6f}}, 0), 1u);
     EXPECT_EQ(count({{50, 40}}, 1), 5u);
@@ -92,26 +93,26 @@ TEST(SemiDense, PixelsWithoutDepthAreLeftOut) {
     frame.depth.at<float>(40, 51) = std::numeric_limits<float>::quiet_NaN();
     frame.depth.at<float>(40, 49) = std::numeric_limits<float>::infinity();
     frame.depth.at<float>(41, 50) = -1;
-    const auto points = sampleSemiDense(edges, frame, kIdeal, 1, kAll);
+    const auto points = sampleSemiDense(edges, frame, kIdeal, 1, kAnyDepth, kAll);
     ASSERT_EQ(points.size(), 1u);
     EXPECT_EQ(points[0].colour, (Rgb{50, 39, 7}));
     frame.depth.release();
-    EXPECT_TRUE(sampleSemiDense(edges, frame, kIdeal, 1, kAll).empty());
+    EXPECT_TRUE(sampleSemiDense(edges, frame, kIdeal, 1, kAnyDepth, kAll).empty());
 }
 
 TEST(SemiDense, GreyWhereTheFrameHasNoColour) {
     RgbdFrame frame = addressedFrame();
     frame.colour.release();
-    const auto points = sampleSemiDense(edgeThrough({{50, 40}}), frame, kIdeal, 0, kAll);
+    const auto points = sampleSemiDense(edgeThrough({{50, 40}}), frame, kIdeal, 0, kAnyDepth, kAll);
     ASSERT_EQ(points.size(), 1u);
     EXPECT_EQ(points[0].colour, (Rgb{65, 65, 65}));
 }
 
 TEST(SemiDense, ThinsEvenlyAndTheSameWayEachTime) {
-    const auto all = sampleSemiDense(diagonal(), addressedFrame(), kDistorted, 4, kAll);
+    const auto all = sampleSemiDense(diagonal(), addressedFrame(), kDistorted, 4, kAnyDepth, kAll);
     const int wanted = 200;
-    const auto some = sampleSemiDense(diagonal(), addressedFrame(), kDistorted, 4, wanted);
-    const auto again = sampleSemiDense(diagonal(), addressedFrame(), kDistorted, 4, wanted);
+    const auto some = sampleSemiDense(diagonal(), addressedFrame(), kDistorted, 4, kAnyDepth, wanted);
+    const auto again = sampleSemiDense(diagonal(), addressedFrame(), kDistorted, 4, kAnyDepth, wanted);
     ASSERT_EQ(some.size(), 200u);
     ASSERT_EQ(again.size(), some.size());
     for (std::size_t i = 0; i < some.size(); i++) EXPECT_EQ(flat(some[i]), flat(again[i]));
@@ -125,8 +126,8 @@ TEST(SemiDense, ThinsEvenlyAndTheSameWayEachTime) {
                              static_cast<double>(all.size());
         EXPECT_NEAR(static_cast<double>(std::count_if(some.begin(), some.end(), here)), wanted * share, 1.01);
     }
-    EXPECT_EQ(sampleSemiDense(diagonal(), addressedFrame(), kIdeal, 4, 1).size(), 1u);
-    EXPECT_TRUE(sampleSemiDense(diagonal(), addressedFrame(), kIdeal, 4, 0).empty());
+    EXPECT_EQ(sampleSemiDense(diagonal(), addressedFrame(), kIdeal, 4, kAnyDepth, 1).size(), 1u);
+    EXPECT_TRUE(sampleSemiDense(diagonal(), addressedFrame(), kIdeal, 4, kAnyDepth, 0).empty());
 }
 
 }  // namespace

@@ -107,8 +107,7 @@ class Odometry {
     /// The edges of each keyframe as it saw them, with the cluster that they belong to.
     EdgeMap keyframeEdges() const;
     /// The surface next to the edges of all keyframes, in the world at their final poses, coloured; one
-    /// keyframe after the other. Waits for what is still being sampled. Empty when mapping.semi_dense_points
-    /// is 0.
+    /// keyframe after the other. Empty when mapping.semi_dense_points is 0.
     std::vector<ColouredPoint> semiDense() const;
 
     /// Read-out time of the rolling shutter as learned so far or as set, s.

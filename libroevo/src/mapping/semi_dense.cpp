@@ -1,62 +1,52 @@
 #include "mapping/semi_dense.h"
 
 #include <algorithm>
-#include <cmath>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 
 #include "pixels/nearest.h"
 
 namespace roevo {
 namespace {
 
-/// Half the width of the disc's row `dy` above or below its centre.
-int halfWidth(int radius, int dy) {
-    return static_cast<int>(std::sqrt(static_cast<double>(radius * radius - dy * dy)));
+/// The pixels within `radius` of the origin.
+std::vector<cv::Point> disc(int radius) {
+    std::vector<cv::Point> pixels;
+    for (int y = -radius; y <= radius; ++y)
+        for (int x = -radius; x <= radius; ++x)
+            if (x * x + y * y <= radius * radius) pixels.emplace_back(x, y);
+    return pixels;
 }
 
-/// Ideal pixels within `radius` of an edge point: not 0.
-cv::Mat1b maskAround(const OrganizedEdges& edges, const PinholeCamera& camera, int radius) {
-    cv::Mat1b mask(camera.height, camera.width, std::uint8_t{0});
-    std::vector<int> reaches;
-    for (int dy = -radius; dy <= radius; ++dy) reaches.push_back(halfWidth(radius, dy));
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        const auto u = nearestInteger(static_cast<double>(edges.x[i])),
-                   v = nearestInteger(static_cast<double>(edges.y[i]));
-        for (int dy = -radius; dy <= radius; ++dy) {
-            const int reach = reaches[static_cast<std::size_t>(dy + radius)];
-            const int from = std::max(0, u - reach), to = std::min(camera.width - 1, u + reach);
-            if (v + dy < 0 || v + dy >= camera.height || from > to) continue;
-            std::fill(mask[v + dy] + from, mask[v + dy] + to + 1, std::uint8_t{1});
-        }
+bool isInside(const cv::Mat& image, const cv::Point& pixel) {
+    return pixel.inside(cv::Rect(0, 0, image.cols, image.rows));
+}
+
+bool isSurface(const cv::Mat& depth, const cv::Point& pixel, const SurfaceLimits& limits) {
+    const auto near = static_cast<float>(limits.min_depth), far = static_cast<float>(limits.max_depth);
+    const auto isKnown = [&](float z) { return z >= near && z <= far; };
+    float nearest = depth.at<float>(pixel), farthest = nearest;
+    if (!isKnown(nearest)) return false;
+    for (const cv::Point& step :
+         {cv::Point(-1, -1), {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}) {
+        if (!isInside(depth, pixel + step)) continue;
+        const float z = depth.at<float>(pixel + step);
+        if (!isKnown(z)) continue;
+        nearest = std::min(nearest, z);
+        farthest = std::max(farthest, z);
     }
-    return mask;
+    return farthest <= (1 + static_cast<float>(limits.jump)) * nearest;
 }
 
-/// A pixel of the ideal camera, and the nearest one of the real camera.
-struct Sample {
-    int u, v, real_u, real_v;
-};
-
-/// False where the real camera has no depth.
-bool hasDepth(const cv::Mat& depth, const PinholeCamera& camera, Sample& sample) {
-    sample.real_u = sample.u;
-    sample.real_v = sample.v;
-    if (camera.isDistorted()) {
-        const Eigen::Vector2d real = camera.distortPixel(Eigen::Vector2d(sample.u, sample.v));
-        if (!(real.x() > -0.5 && real.x() < camera.width - 0.5 && real.y() > -0.5 &&
-              real.y() < camera.height - 0.5))
-            return false;
-        sample.real_u = nearestInteger(real.x());
-        sample.real_v = nearestInteger(real.y());
-    }
-    const float z = depth.ptr<float>(sample.real_v)[sample.real_u];
-    return z > 0 && std::isfinite(z);
-}
-
-ColouredPoint pointAt(const RgbdFrame& frame, const PinholeCamera& camera, const Sample& sample) {
-    const float depth = frame.depth.ptr<float>(sample.real_v)[sample.real_u];
-    return {camera.backProject(sample.u, sample.v, static_cast<double>(depth)).cast<float>(),
-            colourAt(frame, sample.real_u, sample.real_v)};
+/// At a pixel of the ideal camera, from the nearest one of the real camera. None where there is no surface.
+std::optional<ColouredPoint> pointAt(const RgbdFrame& frame, const PinholeCamera& camera,
+                                     const SurfaceLimits& limits, const cv::Point& ideal) {
+    const Eigen::Vector2d seen = camera.distortPixel(Eigen::Vector2d(ideal.x, ideal.y));
+    const cv::Point real(nearestInteger(seen.x()), nearestInteger(seen.y()));
+    if (!isInside(frame.depth, real) || !isSurface(frame.depth, real, limits)) return std::nullopt;
+    const auto z = static_cast<double>(frame.depth.at<float>(real));
+    return ColouredPoint{camera.backProject(ideal.x, ideal.y, z).cast<float>(),
+                         colourAt(frame, real.x, real.y)};
 }
 
 }  // namespace
@@ -71,22 +61,27 @@ Rgb colourAt(const RgbdFrame& frame, int u, int v) {
 }
 
 std::vector<ColouredPoint> sampleSemiDense(const OrganizedEdges& edges, const RgbdFrame& frame,
-                                           const PinholeCamera& camera, int radius_px, int max_points) {
+                                           const PinholeCamera& camera, int radius_px,
+                                           const SurfaceLimits& limits, int max_points) {
     std::vector<ColouredPoint> points;
     if (frame.depth.empty() || max_points <= 0) return points;
-    const cv::Mat1b mask = maskAround(edges, camera, radius_px);
-    std::vector<Sample> samples;
-    for (int v = 0; v < mask.rows; ++v) {
-        const std::uint8_t* row = mask[v];
-        for (int u = 0; u < mask.cols; ++u) {
-            Sample sample{u, v, 0, 0};
-            if (row[u] != 0 && hasDepth(frame.depth, camera, sample)) samples.push_back(sample);
+    constexpr std::size_t kScatter = 11;  // neighbours along an edge look to different sides
+    const auto wanted = static_cast<std::size_t>(max_points);
+    const auto around = disc(radius_px);
+    cv::Mat1b tried(camera.height, camera.width, std::uint8_t{0});
+    // In each round a point has one pixel of its disc to offer
+    for (std::size_t round = 0; round < around.size() && points.size() < wanted; ++round) {
+        const std::size_t asked = std::min(edges.size(), wanted - points.size());
+        for (std::size_t k = 0; k < asked; ++k) {
+            const std::size_t i = k * edges.size() / asked;
+            const cv::Point centre(nearestInteger(static_cast<double>(edges.x[i])),
+                                   nearestInteger(static_cast<double>(edges.y[i])));
+            const cv::Point pixel = centre + around[(kScatter * i + round) % around.size()];
+            if (!isInside(tried, pixel) || tried(pixel) != 0) continue;
+            tried(pixel) = 1;
+            if (const auto point = pointAt(frame, camera, limits, pixel)) points.push_back(*point);
         }
     }
-    const std::size_t all = samples.size(), wanted = std::min(all, static_cast<std::size_t>(max_points));
-    points.reserve(wanted);
-    for (std::size_t k = 0; k < wanted; ++k)
-        points.push_back(pointAt(frame, camera, samples[k * all / wanted]));
     return points;
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <deque>
-#include <future>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "mapping/semi_dense.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/edge_map.h"
 #include "roevo/frame_result.h"
@@ -40,53 +40,33 @@ class PackedPoints {
 };
 
 /// The surface next to the edges of every keyframe, kept in the keyframes' own frames so that it follows
-/// their poses. It is sampled beside tracking, in threads of its own if there are any; what comes out does
-/// not depend on them.
+/// their poses.
 class SemiDenseStore {
   public:
     SemiDenseStore(const PinholeCamera& camera, const OdometryOptions& options)
         : camera_(camera),
-          sensor_(options.sensor),
-          depth_jump_(options.edges.depth_jump),
-          max_points_(options.mapping.semi_dense_points),
-          launch_(threadCount(options.threads) > 1 ? std::launch::async : std::launch::deferred) {}
+          limits_{options.sensor.min_depth, options.sensor.max_depth, options.edges.depth_jump},
+          max_points_(options.mapping.semi_dense_points) {}
 
-    SemiDenseStore(const SemiDenseStore&) = delete;  // the threads point to it
-    SemiDenseStore& operator=(const SemiDenseStore&) = delete;
-
-    /// Adds the next keyframe. Waits only when several of them are being sampled already.
-    /// @param edges  of the keyframe, ideal px
+    /// Adds the next keyframe. @param edges  of the keyframe, ideal px
     void add(const OrganizedEdges& edges, const Frame& frame, const RowMotion& rows);
 
     /// Begins with these keyframes.
     void load(std::vector<PackedPoints> keyframes) { keyframes_ = std::move(keyframes); }
-    /// Of every keyframe so far, in their own frames; waits for those that are being sampled.
-    const std::vector<PackedPoints>& keyframes();
+    /// Of every keyframe so far, in their own frames.
+    const std::vector<PackedPoints>& keyframes() const { return keyframes_; }
 
-    /// All points in the world, one keyframe after the other, waiting for those that are being sampled.
+    /// All points in the world, one keyframe after the other.
     /// @param keyframes  all that were added, in that order, at the poses that are wanted
     /// @param first      of the keyframes that are wanted
-    std::vector<ColouredPoint> inWorld(const std::vector<KeyframeInfo>& keyframes, std::size_t first = 0);
+    std::vector<ColouredPoint> inWorld(const std::vector<KeyframeInfo>& keyframes,
+                                       std::size_t first = 0) const;
 
   private:
-    /// What sampling needs, in memory that nobody else writes to, and what comes of it.
-    struct Job {
-        OrganizedEdges centres;  ///< around which pixels are taken
-        RgbdFrame frame;
-        RowMotion rows;
-        PackedPoints points;
-    };
-    Job sample(Job job) const;
-    void collect(std::size_t most_sampling);
-
     PinholeCamera camera_;
-    SensorOptions sensor_;
-    double depth_jump_;
+    SurfaceLimits limits_;
     int max_points_;
-    std::launch launch_;
     std::vector<PackedPoints> keyframes_;
-    std::vector<Job> spare_;                 // their images are written into again
-    std::deque<std::future<Job>> sampling_;  // of the newest keyframes, in order; last: waits for the threads
 };
 
 }  // namespace roevo
