@@ -190,6 +190,35 @@ TEST(RollingShutter, MotionIsTheCamerasVelocityInItsOwnFrame) {
     }
 }
 
+// Poses that follow from edges in the rows that are read first: where a frame's pose is off, the next one's
+// is off the other way, since the velocity between both brings the edges back to where they are seen.
+TEST(RollingShutter, PosesFromTheFirstRowsAloneComeToRest) {
+    constexpr double kDt = 1. / 30, kReadout = 0.02;
+    double angle = 0.01, before = -0.01;
+    for (int frame = 0; frame < 30; ++frame) {
+        RollingShutter shutter;
+        shutter.seconds_per_row = kReadout / 480;
+        shutter.reference_row = 239.5;
+        const auto turned = [](double by) {
+            Pose pose = Pose::Identity();
+            pose.setRotation(Eigen::AngleAxisd(by, Eigen::Vector3d::UnitX()).toRotationMatrix());
+            return pose;
+        };
+        shutter.T_previous_keyframe = turned(angle).inverse();
+        shutter.since_previous = shutter.earlier_interval = kDt;
+        shutter.earlier_turn.x() = (angle - before) / kDt;
+        // What the first row sees of the turn; linear in it
+        const auto seen = [&](double turn) {
+            const RowMotion rows = shutter.motion(turned(turn).inverse());
+            return turn + (0 - rows.reference_row) * rows.seconds_per_row * rows.turn.x();
+        };
+        const double still = seen(0), slope = (seen(1e-3) - still) / 1e-3;
+        before = angle;
+        angle = -still / slope;
+    }
+    EXPECT_LT(std::abs(angle), 2e-3);
+}
+
 /// Normal equations of one frame, residual by residual.
 struct Evidence {
     Matrix6d information = Matrix6d::Zero();

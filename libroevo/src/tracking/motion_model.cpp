@@ -1,5 +1,6 @@
 #include "tracking/motion_model.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,7 @@ void MotionModel::begin(double timestamp) {
 void MotionModel::anchor(double timestamp, const Pose& T_reference_camera) {
     T_reference_last_ = T_reference_assumed_ = T_reference_camera;
     last_ = before_ = Variance();
+    covariance_.setZero();
     last_timestamp_ = timestamp;
     has_last_ = true;
     interval_ = 0;
@@ -51,7 +53,7 @@ void MotionModel::anchor(double timestamp, const Pose& T_reference_camera) {
 
 void MotionModel::measure(double timestamp, const Pose& T_reference_camera,
                           const PoseUncertainty& uncertainty) {
-    const Matrix6d covariance = uncertainty.covariance();
+    const Matrix6d covariance = covariance_ = uncertainty.covariance();
     design_effect_ += kLearning * (uncertainty.designEffect() - design_effect_);
     const double interval = timestamp - last_timestamp_;
     // What moved between two stamps that nearly coincide is mostly their errors: the velocity stays
@@ -127,9 +129,22 @@ RollingShutter MotionModel::shutter(double timestamp) const {
             shutter.earlier_turn = earlier.turn;
             shutter.earlier_velocity = earlier.linear;
             shutter.earlier_interval = interval_;
+            shutter.gain = velocityGain(dt);
         }
     }
     return shutter;
+}
+
+/// Kalman gain of a velocity from three poses `dt` s apart: what likely accelerations change in that time,
+/// and what the poses' errors do.
+Matrix6d MotionModel::velocityGain(double dt) const {
+    constexpr double kThreePoses = 1.5 * 1.5 + 2 * 2 + 0.5 * 0.5;  // their shares in it, squared
+    Vector6d likely;
+    likely << Eigen::Vector3d::Constant(motion_.acceleration * dt),
+        Eigen::Vector3d::Constant(motion_.angular_acceleration_deg * kDegree * dt);
+    const Matrix6d changes = likely.cwiseAbs2().asDiagonal();
+    const Matrix6d both = changes + kThreePoses / (dt * dt) * covariance_;
+    return both.ldlt().solve(changes).transpose();
 }
 
 RowMotion MotionModel::firstRows(double interval, const Pose& T_keyframe_next) const {

@@ -67,6 +67,7 @@ class MotionModel {
     PosePrior prior(double timestamp) const;
     PosePrior searchPrior(double timestamp) const;
     RollingShutter shutter(double timestamp) const;
+    Matrix6d velocityGain(double dt) const;
 
     MotionOptions motion_;
     SensorOptions sensor_;
@@ -74,8 +75,9 @@ class MotionModel {
     Pose T_reference_last_ = Pose::Identity();     ///< measured
     Pose T_reference_assumed_ = Pose::Identity();  ///< or not
     Brightness brightness_;
-    Variance last_, before_;    ///< of the last two measured poses
-    double design_effect_ = 1;  ///< of the poses so far
+    Variance last_, before_;                  ///< of the last two measured poses
+    Matrix6d covariance_ = Matrix6d::Zero();  ///< of the last one
+    double design_effect_ = 1;                ///< of the poses so far
     double last_timestamp_ = 0;
     std::optional<double> last_frame_;  ///< s
     double interval_before_ = 0;        ///< s

@@ -49,10 +49,16 @@ RowMotion RollingShutter::motion(const Pose& T_current_keyframe) const {
     rows.turn = mean.turn;
     rows.velocity = mean.linear;
     if (earlier_interval > 0) {
-        // Means of two intervals, to the end of the last one
-        const double ahead = since_previous / (since_previous + earlier_interval);
-        rows.turn += ahead * (rows.turn - earlier_turn);
-        rows.velocity += ahead * (rows.velocity - T_previous_current.linear().transpose() * earlier_velocity);
+        // Means of two intervals, half of the way on to the end of the last one. All the way, the poses of a
+        // camera whose edges all lie in the rows that are read first swing ever wider: there, what a pose
+        // turns too far a velocity that follows from it takes back
+        const double ahead = 0.5 * since_previous / (since_previous + earlier_interval);
+        Vector6d now, earlier;
+        now << mean.linear, mean.turn;
+        earlier << T_previous_current.linear().transpose() * earlier_velocity, earlier_turn;
+        const Vector6d believed = earlier + gain * ((1 + ahead) * (now - earlier));
+        rows.velocity = believed.head<3>();
+        rows.turn = believed.tail<3>();
     }
     return rows;
 }

@@ -66,6 +66,8 @@ struct RollingShutter {
     /// length, s (0: not known). Where there is no previous pose, the motion itself.
     Eigen::Vector3d earlier_velocity = Eigen::Vector3d::Zero(), earlier_turn = Eigen::Vector3d::Zero();
     double earlier_interval = 0;
+    /// Of a change of the velocity, along the camera's axes (linear, then turn): what is believed of it.
+    Matrix6d gain = Matrix6d::Identity();
 
     RowMotion motion(const Pose& T_current_keyframe) const;
     /// Of an image whose motion is known, whatever its pose.
