@@ -100,6 +100,16 @@ TEST(SemiDense, PixelsWithoutDepthAreLeftOut) {
     EXPECT_TRUE(sampleSemiDense(edges, frame, kIdeal, 1, kAnyDepth, kAll).empty());
 }
 
+TEST(SemiDense, NoneWhereTheLensLeadsOutOfTheImage) {
+    for (const double k1 : {100., -1e300, 1e300}) {
+        PinholeCamera camera = kIdeal;
+        camera.distortion[0] = k1;
+        EXPECT_TRUE(
+            sampleSemiDense(edgeThrough({{5, 5}}), addressedFrame(), camera, 2, kAnyDepth, kAll).empty())
+            << k1;
+    }
+}
+
 TEST(SemiDense, GreyWhereTheFrameHasNoColour) {
     RgbdFrame frame = addressedFrame();
     frame.colour.release();

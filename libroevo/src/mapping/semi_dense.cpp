@@ -42,8 +42,11 @@ bool isSurface(const cv::Mat& depth, const cv::Point& pixel, const SurfaceLimits
 std::optional<ColouredPoint> pointAt(const RgbdFrame& frame, const PinholeCamera& camera,
                                      const SurfaceLimits& limits, const cv::Point& ideal) {
     const Eigen::Vector2d seen = camera.distortPixel(Eigen::Vector2d(ideal.x, ideal.y));
+    if (!(seen.x() > -0.5 && seen.x() < camera.width - 0.5 && seen.y() > -0.5 &&
+          seen.y() < camera.height - 0.5))
+        return std::nullopt;
     const cv::Point real(nearestInteger(seen.x()), nearestInteger(seen.y()));
-    if (!isInside(frame.depth, real) || !isSurface(frame.depth, real, limits)) return std::nullopt;
+    if (!isSurface(frame.depth, real, limits)) return std::nullopt;
     const auto z = static_cast<double>(frame.depth.at<float>(real));
     return ColouredPoint{camera.backProject(ideal.x, ideal.y, z).cast<float>(),
                          colourAt(frame, real.x, real.y)};
