@@ -59,8 +59,7 @@ class EdgeSidesTest : public testing::Test {
         std::vector<float> z;
         for (const Eigen::Vector2d& p : pixels(lens))
             z.push_back(foregroundDepth(depth_, static_cast<float>(p.x()), static_cast<float>(p.y()),
-                                        EdgeOptions(), SensorOptions())
-                            .depth);
+                                        EdgeOptions(), SensorOptions()));
         return z;
     }
     void correct(std::vector<float>& z, const PinholeCamera& lens = kCamera) {

@@ -39,25 +39,20 @@ bool isBackground(const pixels::SideSums& from, const pixels::SideSums& to, doub
 void EdgeSides::sample(const pixels::DepthView& depth, const pixels::EdgePoint& at, float jump, double scale,
                        Strip& sums) {
     const bool by_column = std::abs(at.normal_x) >= std::abs(at.normal_y);
-    const double run = by_column ? at.normal_x : at.normal_y;
+    const double run = std::abs(by_column ? at.normal_x : at.normal_y);
     const int centre = nearestInteger(by_column ? at.x : at.y);
-    const auto steps = [&](double reach) { return nearestInteger(scale * reach * std::abs(run)); };
-    const int near = steps(kReach);
+    const auto look = [&](bool along, double reach, double widening, Sums& side) {
+        const int steps = nearestInteger(scale * reach * run);
+        pixels::best().side(depth, at, {by_column, centre, steps, along, scale * kClear, jump, widening},
+                            side);
+    };
     const Sums minus_before = sums.minus.close, plus_before = sums.plus.close;
-    pixels::SideReach reach{by_column, centre - near, centre + near, scale * kClear, jump, 0};
-    const auto& kernels = pixels::best();
-    kernels.sides(depth, at, reach, sums.minus.close, sums.plus.close);
+    look(true, kReach, 0, sums.plus.close);
+    look(false, kReach, 0, sums.minus.close);
     const bool plus = isBackground(minus_before, sums.minus.close, 1),
                minus = isBackground(plus_before, sums.plus.close, 1);
-    if (plus == minus) return;
-    // That side alone. A surface that recedes leaves the jump further out
-    const int far = steps(kFurther);
-    const bool ascending = plus == (run > 0);
-    reach.first = centre - (ascending ? 1 : far);
-    reach.last = centre + (ascending ? far : 1);
-    reach.widening = scale * kReach;
-    Sums unused;
-    kernels.sides(depth, at, reach, plus ? unused : sums.minus.wide, plus ? sums.plus.wide : unused);
+    // One side alone. A surface that recedes leaves the jump further out
+    if (plus != minus) look(plus, kFurther, scale * kReach, plus ? sums.plus.wide : sums.minus.wide);
 }
 
 EdgeSides::Meeting EdgeSides::fit(const Sums& from, const Sums& to) {

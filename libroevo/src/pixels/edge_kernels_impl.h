@@ -139,35 +139,66 @@ inline Lanes reduce(Lanes v, const Choose& choose) {
     return choose(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
 }
 
-void depthPatch(const float* depth, std::ptrdiff_t stride, int size, float near, float far, float jump,
-                float u, float v, DepthPatch& out) {
-    constexpr IntLanes kLane = {0, 1, 2, 3, 4, 5, 6, 7};
-    const IntLanes inside = kLane < size;
-    const Lanes x = __builtin_convertvector(kLane - size / 2, Lanes);
-    Lanes nearest = splat(far), farthest = splat(near), rows[kMostPatch], count{};
-    for (int r = 0; r < size; ++r) {
-        const Lanes z = load(depth + r * stride);
-        const IntLanes known = inside & (z >= near) & (z <= far);
-        rows[r] = known ? z : Lanes{};
-        nearest = lesserOf(known ? z : splat(far), nearest);
-        farthest = greaterOf(rows[r], farthest);
-        count += known ? splat(1) : Lanes{};
+/// The farthest of the depths that follow each other within the jump from the nearest one on.
+inline float endOfSurface(const Lanes* rows, int count, float nearest, float jump) {
+    for (float end = nearest;; nearest = end) {
+        Lanes farthest = splat(nearest);
+        const float limit = nearest * jump;
+        for (int r = 0; r < count; ++r) farthest = greaterOf(rows[r] <= limit ? rows[r] : Lanes{}, farthest);
+        end = reduce(farthest, greaterOf)[0];
+        if (end == nearest) return end;
     }
-    out = {static_cast<int>(sumLanes(count)), reduce(nearest, lesserOf)[0], reduce(farthest, greaterOf)[0],
-           0};
-    if (out.count == 0 || out.farthest > out.nearest * jump) return;
+}
+
+inline float leastBeyond(const Lanes* rows, int count, float limit) {
+    Lanes least = splat(__FLT_MAX__);
+    for (int r = 0; r < count; ++r) least = lesserOf(rows[r] > limit ? rows[r] : splat(__FLT_MAX__), least);
+    return reduce(least, lesserOf)[0];
+}
+
+inline int countWithin(const Lanes* rows, int count, float least, float most) {
+    IntLanes found{};
+    for (int r = 0; r < count; ++r) found -= (rows[r] >= least) & (rows[r] <= most);
+    return static_cast<int>(sumLanes(__builtin_convertvector(found, Lanes)));
+}
+
+void depthPatch(const DepthSquare& square, const DepthLimits& limits, float u, float v, DepthPatch& out) {
+    constexpr IntLanes kLane = {0, 1, 2, 3, 4, 5, 6, 7};
+    const int size = square.size;
+    const IntLanes inside = kLane < size;
+    Lanes nearest = splat(__FLT_MAX__), farthest{}, rows[kMostPatch];
+    for (int r = 0; r < size; ++r) {
+        const Lanes z = load(square.depth + r * square.stride);
+        const IntLanes known = inside & (z >= limits.near) & (z <= limits.far);
+        rows[r] = known ? z : Lanes{};
+        nearest = lesserOf(known ? z : splat(__FLT_MAX__), nearest);
+        farthest = greaterOf(rows[r], farthest);
+    }
+    out = {0, reduce(nearest, lesserOf)[0], reduce(farthest, greaterOf)[0], 0};
+    const float last = out.farthest;
+    do {  // from the nearest depth on, those that follow each other within the jump
+        if (out.nearest > last) return;
+        const bool one_surface = last <= out.nearest * limits.jump;
+        out.farthest = one_surface ? last : endOfSurface(rows, size, out.nearest, limits.jump);
+        out.count = countWithin(rows, size, out.nearest, out.farthest);
+        if (out.count >= limits.least) break;
+        out.count = 0;  // speckle in front of everything else
+        out.nearest = leastBeyond(rows, size, out.farthest);
+    } while (true);
     // Sums of columns first; inverse depths relative to the nearest one, which keeps them small
     const float base = 1 / out.nearest;
-    Lanes y1{}, y2{}, q{}, yq{};
+    const Lanes x = load(square.offsets);
+    Lanes count{}, y1{}, y2{}, q{}, yq{};
     for (int r = 0; r < size; ++r) {
-        const auto y = static_cast<float>(r - size / 2);
-        const IntLanes known = rows[r] > 0;
-        const Lanes inverse = known ? 1 / rows[r] - base : Lanes{};
-        y1 += known ? splat(y) : Lanes{};
-        y2 += known ? splat(y * y) : Lanes{};
+        const float y = square.offsets[r];
+        const IntLanes own = (rows[r] >= out.nearest) & (rows[r] <= out.farthest);
+        const Lanes inverse = own ? 1 / rows[r] - base : Lanes{};
+        count += own ? splat(1) : Lanes{};
+        y1 += own ? splat(y) : Lanes{};
+        y2 += own ? splat(y * y) : Lanes{};
         q += inverse;
         yq += y * inverse;
     }
     const Lanes products[kLanes] = {x * count, y1, x * x * count, x * y1, y2, q, x * q, yq};
-    out.inverse = base + planeAt(u, v, sumLanes(count), sumsOf(products));
+    out.inverse = base + planeAt(u, v, static_cast<float>(out.count), sumsOf(products));
 }

@@ -38,11 +38,25 @@ struct EdgePointArrays {
 
 constexpr int kMostPatch = 7;  ///< px, side of the squares that depthPatch() looks at
 
-/// What a square of depths shows.
+/// A square of depths, eight columns of which can be read.
+struct DepthSquare {
+    const float* depth;     ///< m, its first one
+    std::ptrdiff_t stride;  ///< of its rows, in depths
+    int size;               ///< odd, at most kMostPatch
+    const float* offsets;   ///< eight: of its columns and of its rows from its centre, px
+};
+
+struct DepthLimits {
+    float near, far;  ///< m, of depths that are used
+    float jump;       ///< factor between depths that follow each other on one surface
+    int least;        ///< depths; fewer are speckle
+};
+
+/// The nearest surface in a square of depths.
 struct DepthPatch {
-    int count;                ///< depths within the limits
+    int count;                ///< of its depths; 0: there is none
     float nearest, farthest;  ///< of them, m
-    float inverse;            ///< 1/m, of their plane, or of their mean; unless some jump
+    float inverse;            ///< 1/m, of their plane, or of their mean where they span none
 };
 
 /// A depth image, m.
@@ -58,12 +72,15 @@ struct EdgePoint {
     float depth;
 };
 
-/// Which pixels sides() looks at: those next to the normal in columns (or rows, whatever the normal rather
-/// runs along) `first` to `last`, but for those outside the image and those nearer to the edge than `clear`.
+/// Which pixels side() looks at: those on one side of the edge that are next to the normal in columns (or
+/// rows, whatever the normal rather runs along) up to `steps` from the point's own one; in it and near it
+/// only as many as fill up what is looked at together.
 struct SideReach {
     bool by_column;
-    int first, last;
-    double clear;     ///< px
+    int centre;       ///< column (or row) that the point is in
+    int steps;        ///< columns (or rows) from there
+    bool along;       ///< the side that the normal points to
+    double clear;     ///< px; nearer samples are left out
     float jump;       ///< relative step of depth beyond which is another surface
     double widening;  ///< px from the edge at which the step may be twice as large; 0: it never is
 };
@@ -101,15 +118,11 @@ struct Table {
     /// has no length, Eqs. (4)-(6). Any of the arrays may be an output.
     void (*normals)(const float* u, const float* v, const float* gradient_x, const float* gradient_y,
                     std::size_t count, float* nx, float* ny);
-    /// A square of `size` (odd, at most kMostPatch) depths, of which those from `near` to `far` count, m.
-    /// Eight columns must be there. The plane, in inverse depth, is evaluated at (u, v) from the centre.
-    /// @param stride  pixels
-    /// @param jump    factor between depths that are not of one surface
-    void (*depthPatch)(const float* depth, std::ptrdiff_t stride, int size, float near, float far, float jump,
-                       float u, float v, DepthPatch& out);
-    /// Adds what the normal of an edge's point passes to the sums of both sides, in the order of columns.
-    void (*sides)(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& minus,
-                  SideSums& plus);
+    /// The nearest surface in a square, its plane (in inverse depth) evaluated at (u, v) from the centre, px.
+    void (*depthPatch)(const DepthSquare& square, const DepthLimits& limits, float u, float v,
+                       DepthPatch& out);
+    /// Adds what the normal of an edge's point passes on one side to its sums.
+    void (*side)(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& sums);
 };
 
 const Table& baseline();

@@ -6,7 +6,7 @@ namespace {
 }  // namespace
 
 const Table& baseline() {
-    static const Table table{"baseline", gradient, ridges, remap, halve, refine, normals, depthPatch, sides};
+    static const Table table{"baseline", gradient, ridges, remap, halve, refine, normals, depthPatch, side};
     return table;
 }
 

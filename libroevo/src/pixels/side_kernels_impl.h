@@ -1,145 +1,74 @@
-// The surfaces on both sides of an edge's point; what pixel_kernels_impl.h says of itself holds here.
+// The surface on one side of an edge's point; what pixel_kernels_impl.h says of itself holds here.
 #include "edge_kernels_impl.h"
 
-// Four samples: two columns (or rows) of two pixels, in the order in which they are summed. Intrinsics where
-// the compiler's conversions are slow.
-typedef double FourDoubles __attribute__((vector_size(32)));
-typedef std::int64_t FourLongs __attribute__((vector_size(32)));
-typedef float FourFloats __attribute__((vector_size(16)));
-typedef std::int32_t FourInts __attribute__((vector_size(16)));
-
-/// values[index], of whole numbers.
-inline FourFloats pickFour(const float* values, FourDoubles index) {
+inline Lanes floorOf(Lanes v) {
 #ifdef __AVX2__
-    return (FourFloats)_mm_i32gather_ps(values, _mm256_cvttpd_epi32((__m256d)index), 4);
+    return (Lanes)_mm256_floor_ps((__m256)v);
 #else
-    const FourInts i = __builtin_convertvector(index, FourInts);
-    return FourFloats{values[i[0]], values[i[1]], values[i[2]], values[i[3]]};
-#endif
-}
-
-inline FourDoubles floorOf(FourDoubles v) {
-#ifdef __AVX2__
-    return (FourDoubles)_mm256_floor_pd((__m256d)v);
-#else
-    const FourDoubles whole = __builtin_convertvector(__builtin_convertvector(v, FourInts), FourDoubles);
+    const Lanes whole = __builtin_convertvector(__builtin_convertvector(v, IntLanes), Lanes);
     return whole > v ? whole - 1 : whole;
 #endif
 }
 
-inline FourDoubles asDoubles(FourFloats v) {
-#ifdef __AVX2__
-    return (FourDoubles)_mm256_cvtps_pd((__m128)v);
-#else
-    return __builtin_convertvector(v, FourDoubles);
-#endif
-}
-
-inline FourFloats asFloats(FourDoubles v) {
-#ifdef __AVX2__
-    return (FourFloats)_mm256_cvtpd_ps((__m256d)v);
-#else
-    return __builtin_convertvector(v, FourFloats);
-#endif
-}
-
-/// One bit for each lane that is true.
-inline unsigned laneBits(FourLongs condition) {
-#ifdef __AVX2__
-    return static_cast<unsigned>(_mm256_movemask_pd((__m256d)condition));
-#else
-    unsigned bits = 0;
-    for (int l = 0; l < 4; ++l) bits |= static_cast<unsigned>(condition[l] & 1) << l;
-    return bits;
-#endif
-}
-
 /// 0 where the condition is false.
-inline FourDoubles only(FourLongs condition, FourDoubles v) {
-    return (FourDoubles)((FourLongs)v & condition);
+template <class Vector>
+inline Vector only(IntLanes condition, Vector v) {
+    return (Vector)((IntLanes)v & condition);
 }
 
-inline FourDoubles magnitudeOf(FourDoubles v) {
-    return (FourDoubles)((FourLongs)v & INT64_MAX);
-}
-
-/// Sums in the order of SideSums.
-static_assert(sizeof(SideSums) == 2 * sizeof(FourDoubles));
-struct SideAccumulator {
-    FourDoubles first, last;
-    explicit SideAccumulator(const SideSums& sums)
-        : first(load<FourDoubles>(&sums.count)), last(load<FourDoubles>(&sums.sq)) {}
-    void storeTo(SideSums& sums) const {
-        store(&sums.count, first);
-        store(&sums.sq, last);
-    }
-};
-
-/// Rows become columns.
-inline void transpose(FourDoubles a, FourDoubles b, FourDoubles c, FourDoubles d, FourDoubles* out) {
-    const FourDoubles ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6),
-                      ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7),
-                      cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6),
-                      cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    out[0] = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
-    out[1] = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
-    out[2] = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
-    out[3] = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
-}
-
+/// Four columns (or rows) at once, from the outermost one inwards, of each the two pixels next to the normal.
+/// Positions are relative to the point, so that they are as exact at the end of a wide image as at its
+/// beginning.
 template <bool kWidens>
-void sumSides(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& minus_sums,
-              SideSums& plus_sums) {
-    constexpr FourDoubles kFirst = {0, 0, 1, 1}, kSecond = {0, 1, 0, 1};
+void sumSide(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& sums) {
+    constexpr IntLanes kColumn = {0, 0, 1, 1, 2, 2, 3, 3}, kRow = {0, 1, 0, 1, 0, 1, 0, 1};
     const bool by_column = reach.by_column;
     const double at_main = by_column ? at.x : at.y, at_other = by_column ? at.y : at.x;
-    const double n_main = by_column ? at.normal_x : at.normal_y;
-    const double n_other = by_column ? at.normal_y : at.normal_x;
-    const double slope = n_other / n_main;
-    const auto row = static_cast<double>(depth.stride);
-    const double along = by_column ? 1 : row, across = by_column ? row : 1;
-    const int size = by_column ? depth.width : depth.height;
-    const int first = reach.first < 0 ? 0 : reach.first, last = reach.last < size ? reach.last : size - 1;
-    const double last_main = last, last_other = (by_column ? depth.height : depth.width) - 1;
-    const float z = at.depth;
-    const auto step = static_cast<double>(reach.jump * z);
-    SideAccumulator minus(minus_sums), plus(plus_sums);
-    FourDoubles i = first + kFirst;
-    for (int column = first; column <= last; column += 2, i += 2) {
-        const FourDoubles from_point = i - at_main, j = at_other + from_point * slope;
-        const FourDoubles k = floorOf(j) + kSecond;
-        const FourDoubles signed_distance = n_main * from_point + n_other * (k - at_other);
-        const FourDoubles distance = magnitudeOf(signed_distance);
-        const FourLongs inside = (i <= last_main) & (k >= 0) & (k <= last_other);
-        const FourFloats there = pickFour(depth.data, only(inside, i * along + k * across));
-        const FourDoubles there_known = asDoubles(there), behind = asDoubles(there - z);
-        const FourLongs counts = inside & (there_known > 0) &
-                                 (there_known <= static_cast<double>(__FLT_MAX__)) &
-                                 (distance >= reach.clear);
-        FourLongs own = counts;
-        if constexpr (kWidens)
-            own &=
-                magnitudeOf(behind) <= asDoubles((1 + asFloats(distance / reach.widening)) * reach.jump * z);
-        else
-            own &= magnitudeOf(behind) <= step;
-        const FourDoubles weight = 1 - magnitudeOf(j - k);
-        const FourDoubles w = only(own, weight), q = only(own, asDoubles(z / there) - 1);
-        const FourDoubles ws = w * distance, wq = w * q;
-        FourDoubles firsts[4], lasts[4];
-        transpose(w, ws, wq, ws * distance, firsts);
-        transpose(ws * q, wq * q, only(counts, weight), only(counts & (behind > step), weight), lasts);
-        const unsigned on_plus = laneBits(signed_distance > 0);
-        for (int l = 0; l < 4; ++l) {
-            SideAccumulator& side = (on_plus >> l & 1) != 0 ? plus : minus;
-            side.first += firsts[l];
-            side.last += lasts[l];
-        }
+    const auto n_main = static_cast<float>(by_column ? at.normal_x : at.normal_y),
+               n_other = static_cast<float>(by_column ? at.normal_y : at.normal_x);
+    const float slope = n_other / n_main;
+    const int stride = static_cast<int>(depth.stride), width = depth.width, height = depth.height;
+    const int along = by_column ? 1 : stride, across = by_column ? stride : 1;
+    const int size = by_column ? width : height, other_size = by_column ? height : width;
+    const int direction = reach.along == (n_main > 0) ? 1 : -1;
+    const auto outwards = static_cast<float>(reach.along ? 1 : -1);
+    const int whole = static_cast<int>(at_other);
+    const auto offset = static_cast<float>(reach.centre - at_main),
+               fraction = static_cast<float>(at_other - whole), clear = static_cast<float>(reach.clear);
+    const float z = at.depth, step = reach.jump * z;
+    Lanes sum[kLanes] = {};
+    for (int outermost = reach.steps; outermost > 0; outermost -= 4) {
+        const IntLanes column = direction * (outermost - kColumn), i = reach.centre + column;
+        const Lanes from = offset + __builtin_convertvector(column, Lanes);
+        const Lanes j = fraction + from * slope, k = floorOf(j) + __builtin_convertvector(kRow, Lanes);
+        const Lanes distance = outwards * (n_main * from + n_other * (k - fraction));
+        const IntLanes other = whole + __builtin_convertvector(k, IntLanes);
+        const IntLanes inside = (i >= 0) & (i < size) & (other >= 0) & (other < other_size);
+        const Lanes there = pickLanes(depth.data, only(inside, i * along + other * across));
+        const Lanes behind = there - z;
+        const IntLanes counts = inside & (there > 0) & (there <= __FLT_MAX__) & (distance >= clear);
+        Lanes most = splat(step);
+        if constexpr (kWidens) most += distance * (step / static_cast<float>(reach.widening));
+        const IntLanes own = counts & (magnitudeOf(behind) <= most);
+        const Lanes weight = 1 - magnitudeOf(j - k);
+        const Lanes w = only(own, weight), q = only(own, z / there - 1);
+        const Lanes ws = w * distance, wq = w * q;
+        const Lanes more[kLanes] = {w,
+                                    ws,
+                                    wq,
+                                    ws * distance,
+                                    ws * q,
+                                    wq * q,
+                                    only(counts, weight),
+                                    only(counts & (behind > step), weight)};
+        for (int l = 0; l < kLanes; ++l) sum[l] += more[l];
     }
-    minus.storeTo(minus_sums);
-    plus.storeTo(plus_sums);
+    const Lanes totals = sumsOf(sum);
+    double* const targets = &sums.count;
+    static_assert(sizeof(SideSums) == kLanes * sizeof(double));
+    for (int l = 0; l < kLanes; ++l) targets[l] += static_cast<double>(totals[l]);
 }
 
-void sides(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& minus,
-           SideSums& plus) {
-    (reach.widening > 0 ? sumSides<true> : sumSides<false>)(depth, at, reach, minus, plus);
+void side(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& sums) {
+    (reach.widening > 0 ? sumSide<true> : sumSide<false>)(depth, at, reach, sums);
 }

@@ -10,10 +10,11 @@
 namespace roevo {
 namespace {
 
-/// Points of one image edge: where the lens put them, what is there, and the depth corrected by the sides.
+/// Points of one image edge: where the lens put them, the depth of the patches there, and that corrected by
+/// the sides.
 struct DepthsOfEdge {
     std::vector<Eigen::Vector2d> pixels;
-    std::vector<EdgeDepth> patches;
+    std::vector<float> patches;
     std::vector<float> z;
 
     void clear() {
@@ -34,7 +35,7 @@ void addPiece(const OrganizedEdges& edges, std::size_t first, const std::vector<
         const Eigen::Vector3d p = rows.toReference(camera.backProject(edges.x[i], edges.y[i], z), edges.y[i]);
         out.points.add(p);
         out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
-        out.correction.push_back(z - depths.patches[k].depth);
+        out.correction.push_back(z - depths.patches[k]);
         out.source.push_back(static_cast<std::int32_t>(i));
     }
 }
@@ -80,8 +81,8 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
             depths.pixels.push_back(pixel);
             depths.patches.push_back(foregroundDepth(depth, static_cast<float>(pixel.x()),
                                                      static_cast<float>(pixel.y()), edge_options, sensor));
-            depths.z.push_back(patches.back().depth);
         }
+        depths.z = depths.patches;
         if (edge_options.two_sided_depth)
             sides.correct(edges, own.first, pixels, depth, jump, scale, depths.z);
         const auto endPiece = [&] {

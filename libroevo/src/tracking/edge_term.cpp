@@ -197,8 +197,7 @@ float EdgeTerm::currentDepth(std::size_t point) {
     if (measured != kUnknown) return measured;
     const Eigen::Vector2d pixel = camera_.distortPixel({frame_->edges.x[point], frame_->edges.y[point]});
     measured = foregroundDepth(frame_->images.depth, static_cast<float>(pixel.x()),
-                               static_cast<float>(pixel.y()), edge_options_, sensor_)
-                   .depth;
+                               static_cast<float>(pixel.y()), edge_options_, sensor_);
     return measured;
 }
 
