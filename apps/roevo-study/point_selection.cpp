@@ -122,13 +122,13 @@ EdgePoints3D liftPixels(const std::vector<cv::Point>& pixels, const Gradient& gr
     out.image.clear();
     for (const cv::Point& pixel : pixels) {
         const Eigen::Vector2d raw = camera.distortPixel(Eigen::Vector2d(pixel.x, pixel.y));
-        const EdgeDepth found = foregroundDepth(depth, static_cast<float>(raw.x()),
-                                                static_cast<float>(raw.y()), edge_options, sensor);
-        if (found.depth == 0) continue;
+        const float z = foregroundDepth(depth, static_cast<float>(raw.x()), static_cast<float>(raw.y()),
+                                        edge_options, sensor);
+        if (z == 0) continue;
         out.image.addPoint(static_cast<float>(pixel.x), static_cast<float>(pixel.y), 1, 0,
                            gradient.magnitude.at<float>(pixel) / 8);
         const Eigen::Vector3d p =
-            rows.toReference(camera.backProject(pixel.x, pixel.y, static_cast<double>(found.depth)), pixel.y);
+            rows.toReference(camera.backProject(pixel.x, pixel.y, static_cast<double>(z)), pixel.y);
         out.points.add(p);
         out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
         out.correction.push_back(0);

@@ -32,8 +32,7 @@ CornerTracks::CornerTracks(const FeatureFrame& reference, const PinholeCamera& c
         Eigen::Vector2d pixel(corner.x, corner.y);
         if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
         const float depth = foregroundDepth(reference.depth, static_cast<float>(pixel.x()),
-                                            static_cast<float>(pixel.y()), options.edges, options.sensor)
-                                .depth;
+                                            static_cast<float>(pixel.y()), options.edges, options.sensor);
         if (!(depth > 0)) continue;
         points_.push_back(camera.backProject(corner.x, corner.y, depth));
         positions_.emplace_back(corner);
