@@ -101,10 +101,10 @@ Eigen::Vector2d PinholeCamera::undistortPixel(const Eigen::Vector2d& real) const
 }
 
 double PinholeCamera::unfoldedRadiusSquared() const {
-    const auto& [k1, k2, p1, p2, k3] = distortion;
-    const auto& [k4, k5, k6] = denominator;
     constexpr double kStep = 0.01, kFarthest = 100;
     const auto unfolded = [&](double r2) {
+        const auto& [k1, k2, p1, p2, k3] = distortion;
+        const auto& [k4, k5, k6] = denominator;
         if (lens == LensModel::kKannalaBrandt) return fisheyeSlope(distortion, std::atan(std::sqrt(r2))) > 0;
         if (!isRational()) return 1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3)) > 0;
         const Cubic above(k1, k2, k3, r2), below(k4, k5, k6, r2);
