@@ -130,6 +130,20 @@ TEST(RosBagFiles, ForeignOnesAreNamed) {
     EXPECT_CONTAINS(faultOf(folder / "old.bag"), "rosbag migrate");
 }
 
+TEST(RosBagFiles, WhatADamagedSchemaHoldsIsNotEchoed) {
+    const TemporaryFolder folder;
+    const std::string db3 = folder / "x.db3";
+    writeSqliteBag(db3, tinyRecording(Encoding::kCdrLittle));
+    sqlite3* database = nullptr;
+    sqlite3_open(db3.c_str(), &database);
+    sqlite3_exec(database,
+                 "PRAGMA writable_schema=ON; UPDATE sqlite_master SET name='V2.0'||char(10), sql='none' "
+                 "WHERE name='topics'",
+                 nullptr, nullptr, nullptr);
+    sqlite3_close(database);
+    EXPECT_CONTAINS(faultOf(db3), "malformed database schema");
+}
+
 // A database that was not closed has its last messages in a journal beside it.
 TEST(RosBagFiles, AJournalBesideADatabaseIsRead) {
     const TemporaryFolder folder;

@@ -166,7 +166,9 @@ class SqliteBag : public MessageStore {
     void check(int state) const {
         if (state == SQLITE_NOMEM) throw std::bad_alloc();
         if (state != SQLITE_OK)
-            throw std::runtime_error(database_ ? sqlite3_errmsg(database_.get()) : sqlite3_errstr(state));
+            // Its words may hold what the file holds
+            throw std::runtime_error(
+                excerpt(database_ ? sqlite3_errmsg(database_.get()) : sqlite3_errstr(state)));
     }
 
     std::string path_;
