@@ -27,6 +27,16 @@ TEST(EdgeDepth, OccludingStepGivesTheForegroundOnBothSides) {
     EXPECT_FLOAT_EQ(at(depth, 60, 40), 3);
 }
 
+TEST(EdgeDepth, NoneWhereTheLensLeadsOutOfTheImage) {
+    const cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(3.0F));
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (const float out : {-1000.0F, 1e9F, 1e30F, -1e30F, kInfinity, -kInfinity,
+                            std::numeric_limits<float>::quiet_NaN()}) {
+        EXPECT_EQ(at(depth, out, 40), 0) << out;
+        EXPECT_EQ(at(depth, 50, out), 0) << out;
+    }
+}
+
 TEST(EdgeDepth, SlantedPlaneIsExactBetweenPixels) {
     std::mt19937 random(51);
     std::uniform_real_distribution<float> slope(-0.4F, 0.4F), fraction(-0.5F, 0.5F);

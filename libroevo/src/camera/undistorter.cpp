@@ -15,9 +15,9 @@ constexpr int kOne = 1 << pixels::kFractionBits;
 struct Place {
     int first, fraction;
     Place(double coordinate, int size) {
-        const auto most = static_cast<float>(size - 1);
-        const float inside = std::clamp(static_cast<float>(coordinate), 0.0F, most);
-        const int fine = static_cast<int>(std::lrint(kOne * inside));
+        // A lens may lead anywhere; 0 where that is no number
+        const double inside = std::min(std::max(0.0, coordinate), static_cast<double>(size - 1));
+        const int fine = static_cast<int>(std::lrint(kOne * static_cast<float>(inside)));
         first = std::min(fine / kOne, size - 2);
         fraction = fine - first * kOne;
     }

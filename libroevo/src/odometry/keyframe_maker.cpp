@@ -5,6 +5,7 @@
 #include <map>
 
 #include "mapping/semi_dense.h"
+#include "pixels/nearest.h"
 #include "tracking/se3.h"
 
 namespace roevo {
@@ -58,7 +59,7 @@ std::vector<Rgb> coloursOf(const OrganizedEdges& edges, const RgbdFrame& frame, 
     std::vector<Rgb> colours;
     colours.reserve(edges.size());
     const auto nearest = [](double coordinate, int size) {
-        return std::clamp(static_cast<int>(coordinate + 0.5), 0, size - 1);
+        return std::clamp(nearestInteger(coordinate), 0, size - 1);
     };
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const Eigen::Vector2d pixel = camera.distortPixel({edges.x[i], edges.y[i]});

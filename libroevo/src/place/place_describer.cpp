@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "pixels/nearest.h"
 #include "place/sampling_pattern.h"
 #include "tracking/se3.h"
 
@@ -21,10 +22,6 @@ constexpr double kCellSize = 40;  ///< px, of the grid over the image
 constexpr double kLeastInside = 0.5;  ///< radii of its patch, from the image's border
 constexpr double kHidden = 0.9;       ///< of its depth; what is nearer hides it
 constexpr int kAlikeBits = 64;        ///< that may differ
-
-int roundToInt(double value) {
-    return static_cast<int>(std::lround(value));
-}
 
 /// The smaller eigenvalue of the second moments of the image gradient about a pixel, in grey levels squared:
 /// how well the place of the pixel is known in the worse direction, which is that of the edge. 0 at the
@@ -90,8 +87,8 @@ Likeness PlaceDescriber::compare(const PlacePoints& place, const Pose& T_frame_p
               pixel.y() < camera_.height - inside))
             continue;
         const Eigen::Vector2d seen = lens_.distortPixel(pixel);
-        const int u = std::clamp(roundToInt(seen.x()), 0, depth.cols - 1),
-                  v = std::clamp(roundToInt(seen.y()), 0, depth.rows - 1);
+        const int u = std::clamp(nearestInteger(seen.x()), 0, depth.cols - 1),
+                  v = std::clamp(nearestInteger(seen.y()), 0, depth.rows - 1);
         const auto there = static_cast<double>(depth.at<float>(v, u));
         if (there > 0 && there < kHidden * p.z()) continue;
         ++out.visible;
@@ -108,8 +105,8 @@ void PlaceDescriber::findCorners(const OrganizedEdges& edges, const cv::Mat& gre
         strength_.clear();
         for (auto i = static_cast<std::size_t>(edges.begin[e]);
              i < static_cast<std::size_t>(edges.begin[e + 1]); i += kCornerStep) {
-            strength_.push_back(cornerStrength(grey, roundToInt(static_cast<double>(edges.x[i])),
-                                               roundToInt(static_cast<double>(edges.y[i]))));
+            strength_.push_back(cornerStrength(grey, nearestInteger(static_cast<double>(edges.x[i])),
+                                               nearestInteger(static_cast<double>(edges.y[i]))));
         }
         const int count = static_cast<int>(strength_.size());
         for (int k = 0; k < count; ++k) {
@@ -150,10 +147,10 @@ void PlaceDescriber::chooseCorners(const OrganizedEdges& edges) {
 float PlaceDescriber::boxMean(const Eigen::Vector2d& centre, double half_width) const {
     const int columns = integral_.cols - 1, rows = integral_.rows - 1;
     const auto first = [&](double at, int size) {
-        return std::clamp(roundToInt(at - half_width), 0, size - 1);
+        return std::clamp(nearestInteger(at - half_width), 0, size - 1);
     };
     const auto end = [&](double at, int begin, int size) {
-        return std::clamp(roundToInt(at + half_width) + 1, begin + 1, size);
+        return std::clamp(nearestInteger(at + half_width) + 1, begin + 1, size);
     };
     const int left = first(centre.x(), columns), right = end(centre.x(), left, columns);
     const int top = first(centre.y(), rows), bottom = end(centre.y(), top, rows);
