@@ -240,6 +240,10 @@ TEST(PinholeCamera, CheckNamesWhatIsWrongAndItsValue) {
     EXPECT_NE(faultWith([](auto& c) { c.height = -480; }).find("640x-480"), std::string::npos);
     EXPECT_NE(faultWith([](auto& c) { c.fx = 0; }).find("fx = 0"), std::string::npos);
     EXPECT_NE(faultWith([](auto& c) { c.fy = -525; }).find("fy = -525"), std::string::npos);
+    EXPECT_NE(faultWith([](auto& c) { c.fx = 1e-9; }).find("fx = 1e-09"), std::string::npos);
+    EXPECT_NE(faultWith([](auto& c) { c.fy = 1e9; }).find("fy = 1e+09"), std::string::npos);
+    EXPECT_EQ(faultWith([](auto& c) { c.fx = c.fy = 50; }), "") << "very wide";
+    EXPECT_EQ(faultWith([](auto& c) { c.fx = c.fy = 60000; }), "") << "a telescope";
     EXPECT_NE(faultWith([](auto& c) { c.cx = 1000; }).find("1000"), std::string::npos);
     for (const double bad : {nan, inf}) {
         EXPECT_NE(faultWith([&](auto& c) { c.fx = bad; }), "");

@@ -118,12 +118,17 @@ double PinholeCamera::unfoldedRadiusSquared() const {
 }
 
 std::string PinholeCamera::check() const {
+    // From a view of 170 degrees to one of a telescope. Sizes in pixels follow from the focal length
+    constexpr double kShortest = 0.05, kLongest = 1000;  // times the image's width
     std::ostringstream fault;
     if (width < 32 || height < 32 || width > 8192 || height > 8192) {
         fault << "camera: image size " << width << "x" << height << " is outside 32x32 to 8192x8192";
     } else if (!(fx > 0) || !(fy > 0) || !std::isfinite(fx) || !std::isfinite(fy)) {
         fault << "camera: no intrinsics (focal lengths fx = " << fx << ", fy = " << fy
               << " must be positive)";
+    } else if (std::min(fx, fy) < kShortest * width || std::max(fx, fy) > kLongest * width) {
+        fault << "camera: focal lengths fx = " << fx << ", fy = " << fy << " are outside " << kShortest
+              << " to " << kLongest << " times the image's width of " << width << " px";
     } else if (!(cx > 0 && cx < width && cy > 0 && cy < height)) {
         fault << "camera: principal point (" << cx << ", " << cy << ") is outside the " << width << "x"
               << height << " image";
