@@ -173,6 +173,17 @@ bool mayBeCalibration(const std::string& file) {
     return !hasOneOf(name, {"depth", "infra", "ir_", "_ir"}) || hasOneOf(name, {"color", "colour", "rgb"});
 }
 
+PinholeCamera asIfCentred(PinholeCamera camera) {
+    const auto size = [](double centre) {  // not a number becomes the least one
+        return static_cast<int>(std::ceil(std::max(32.0, std::min(2 * centre, 8192.0))));
+    };
+    if (camera.width == 0) {
+        camera.width = size(camera.cx);
+        camera.height = size(camera.cy);
+    }
+    return camera;
+}
+
 std::optional<CameraDescription> readCalibrationFile(const std::string& file) {
     const bool must_be = hasOneOf(lowerName(fs::path(file).filename()), {"camera", "intrinsic", "calib"});
     std::optional<CameraDescription> found;
@@ -180,9 +191,7 @@ std::optional<CameraDescription> readCalibrationFile(const std::string& file) {
     try {
         found = findCamera(YAML::Load(readText(file)), 2);
         if (found) {
-            PinholeCamera sized = found->camera;
-            if (sized.width == 0) sized.width = sized.height = 8192;  // that of the images, not known yet
-            fault = sized.check();
+            fault = asIfCentred(found->camera).check();
         }
     } catch (const YAML::Exception& error) {
         fault = error.msg;

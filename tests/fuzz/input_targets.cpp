@@ -59,11 +59,10 @@ void runCalibrationFile(std::string_view bytes) {
     accepted([&] {
         auto camera = readCalibrationFile(folder / "camera.yaml");
         if (!camera) return;
-        PinholeCamera& c = camera->camera;
+        const PinholeCamera& c = camera->camera;
         require(std::isfinite(camera->depth_scale) && camera->depth_scale >= 0, "a depth scale is none");
         require((c.width == 0) == (c.height == 0), "half a size");
-        if (c.width == 0) c.width = c.height = 8192;
-        require(c.check().empty(), "an unusable camera is accepted");
+        require(asIfCentred(c).check().empty(), "an unusable camera is accepted");
     });
 }
 

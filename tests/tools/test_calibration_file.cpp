@@ -61,6 +61,16 @@ TEST(CalibrationFile, AMessageOfRosThatWasPrinted) {
     }
 }
 
+TEST(CalibrationFile, ASizeThatIsNotToldIsJudgedByThePrincipalPoint) {
+    const std::string small = "Camera.fx: 130\nCamera.fy: 131\nCamera.cx: 79.5\nCamera.cy: 59.5\n";
+    const auto camera = read(small);
+    ASSERT_TRUE(camera);
+    EXPECT_EQ(camera->camera.width, 0) << "the images tell it";
+    EXPECT_EQ(asIfCentred(camera->camera).width, 159);
+    EXPECT_EQ(asIfCentred(camera->camera).check(), "");
+    EXPECT_THROW(read("Camera.fx: 1\n" + small.substr(small.find('\n') + 1)), std::runtime_error);
+}
+
 TEST(CalibrationFile, OrbSlam) {
     const std::string first =
         "%YAML:1.0\n\n#---\n# Camera\n#---\nCamera.fx: 525.5\nCamera.fy: 526.5\nCamera.cx: 319.25\n"
