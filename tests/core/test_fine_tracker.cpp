@@ -124,5 +124,43 @@ TEST_F(FineTracking, EdgesThatMoveAcrossThemselvesAreTrustedLess) {
     EXPECT_LT(careful, 0.8 * trusting) << trusting;
 }
 
+TEST_F(FineTracking, WhatAVelocityOfTheRowsMovesIsWhatTrackingWithAnotherOneFinds) {
+    options_.fine.photometric_weight = 0;  // edges only
+    FineTracker tracker(sequence_->camera, options_);
+    RollingShutter shutter;
+    shutter.seconds_per_row = 0.015 / sequence_->camera.height;
+    shutter.reference_row = sequence_->camera.height / 2.;
+    const auto track = [&](int axis, double speed) {
+        RowMotion rows = shutter.motion(truth_);
+        (axis < 3 ? rows.velocity[axis] : rows.turn[axis - 3]) = speed;
+        RollingShutter moving = RollingShutter::of(rows);
+        moving.velocity_variance[axis] = 1;
+        return tracker.track(keyframe_, frame_, truth_, {truth_, 1, 1}, moving, Brightness());
+    };
+    for (int axis = 0; axis < 6; ++axis) {
+        constexpr double kStep = 0.2;  // m/s, rad/s
+        const Pose apart =
+            track(axis, kStep).T_current_keyframe * track(axis, -kStep).T_current_keyframe.inverse();
+        const Eigen::AngleAxisd turn(apart.linear());
+        Vector6d moved;
+        moved << apart.translation(), turn.angle() * turn.axis();
+        moved /= 2 * kStep;
+        const Matrix6d of_rows = track(axis, 0).of_rows;
+        EXPECT_GT(moved.norm(), 1e-4) << axis << ": else there is nothing to see";
+        for (const int first : {0, 3}) {
+            const double length = moved.segment<3>(first).norm();
+            EXPECT_NEAR(std::sqrt(of_rows.block<3, 3>(first, first).trace()), length, 0.2 * length)
+                << axis << " " << first;
+        }
+        EXPECT_GT(moved.dot(of_rows * moved), 0.75 * moved.squaredNorm() * of_rows.trace())
+            << axis << ": in another direction";
+    }
+    shutter.velocity_variance.setOnes();
+    shutter.seconds_per_row = 0;
+    EXPECT_EQ(tracker.track(keyframe_, frame_, truth_, {truth_, 1, 1}, shutter, Brightness()).of_rows,
+              Matrix6d::Zero())
+        << "all rows at once";
+}
+
 }  // namespace
 }  // namespace roevo

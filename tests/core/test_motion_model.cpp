@@ -275,6 +275,23 @@ TEST(MotionModel, RowMotionIsHalfWayFromTheMeanToTheFramesTimeUnderConstantAccel
     }
 }
 
+TEST(MotionModel, TheRowsVelocityIsAsUncertainAsHalfAnIntervalsAccelerationOrAsAnySpeedIsLikely) {
+    const MotionOptions likely;
+    const auto sigma = [](const RollingShutter& shutter) {
+        return shutter.velocity_variance.cwiseSqrt().eval();
+    };
+    for (const double dt : {0.033, 0.1}) {
+        const Vector6d guessed = sigma(moving().predict(10.1 + dt).shutter);
+        EXPECT_NEAR(guessed[1], likely.acceleration * dt / 2, 1e-9) << dt;
+        EXPECT_NEAR(guessed[4], likely.angular_acceleration_deg * kDegree * dt / 2, 1e-9) << dt;
+    }
+    for (const Vector6d& unknown :
+         {sigma(makeModel().predict(0.03).shutter), sigma(moving().predict(11).shutter)}) {
+        EXPECT_NEAR(unknown[2], likely.speed, 1e-9);
+        EXPECT_NEAR(unknown[3], likely.angular_speed_deg * kDegree, 1e-9);
+    }
+}
+
 TEST(MotionModel, AVelocityFollowsPosesAsFarAsTheyCanBeTrusted) {
     constexpr double kDt = 1. / 30;
     PoseUncertainty uncertainty;

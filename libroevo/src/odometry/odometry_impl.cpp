@@ -24,7 +24,6 @@ FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // 
     learn(tracking, prediction);
     Outcome outcome;
     outcome.tracking = std::move(tracking);
-    outcome.measured = outcome.tracking.pose.uncertainty;
     if (keyframeIsDue(world.reference(), outcome.tracking, options.keyframe))
         renewReference(outcome);  // Sec. VI
     settle(outcome);
@@ -198,7 +197,6 @@ void Odometry::Impl::renewReference(Outcome& outcome) {
         // What is seen from afar should be seen from nearby
         outcome.not_from_newest = again.fault;
         tracking.doubt();
-        outcome.measured = tracking.pose.uncertainty;
         tracking.matches = {};  // with another keyframe
         tracking.inliers = 0;
         return;
@@ -227,7 +225,7 @@ void Odometry::Impl::settle(const Outcome& outcome) {
     if (outcome.tracking.searched)
         motion.anchor(frame->timestamp(), T_reference_camera);
     else
-        motion.measure(frame->timestamp(), T_reference_camera, outcome.measured);
+        motion.measure(frame->timestamp(), T_reference_camera, outcome.tracking.measured);
 }
 
 Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {

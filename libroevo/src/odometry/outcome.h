@@ -9,7 +9,6 @@ namespace roevo {
 struct Outcome {
     FrameStatus status = FrameStatus::kOk;
     Tracking tracking;          ///< its pose is relative to the present reference
-    PoseUncertainty measured;   ///< of the pose, also where that has become the reference
     Fault no_keyframe;          ///< why a keyframe that is due was not made
     Fault not_from_newest;      ///< why the frame was not tracked from the keyframe that it brought
     bool is_keyframe = false;   ///< the frame is the reference now

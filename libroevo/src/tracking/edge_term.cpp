@@ -1,5 +1,6 @@
 #include "tracking/edge_term.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -190,6 +191,19 @@ double EdgeTerm::depthAgreement() {
         if ((z - seen) * (z - seen) < kSigmas * kSigmas * (2 * sigma * sigma + kFloor * kFloor)) ++agreed;
     }
     return known > 0 ? static_cast<double>(agreed) / known : 1;
+}
+
+Matrix6d EdgeTerm::movedByVelocity(const RowMotion& rows, const PosePrior& prior) {
+    PoseSystem system, times_time;
+    PriorTerm(prior).linearise({}, system);
+    system.add(rows_.sum());
+    scratch_.resize(matched_.projected.v.size());
+    for (std::size_t i = 0; i < scratch_.size(); ++i)
+        scratch_[i] = static_cast<float>(rows.seconds_per_row *
+                                         (static_cast<double>(matched_.projected.v[i]) - rows.reference_row));
+    rows_.scale(scratch_);
+    times_time.add(rows_.sum());
+    return system.hessian.ldlt().solve(times_time.hessian);
 }
 
 float EdgeTerm::currentDepth(std::size_t point) {

@@ -31,6 +31,11 @@ class EdgeTerm : public ResidualTerm {
     bool linearise(const Linearisation& at, PoseSystem& system) override;
     void addTo(EdgeClusters& clusters) const override;
 
+    /// By how much the pose of the last linearisation changes with the velocity of its rows: an image that is
+    /// read while the camera moves otherwise than was thought is taken for one from elsewhere. Uses up the
+    /// linearisation. @return s, maps (linear, turn) to (t, phi)
+    Matrix6d movedByVelocity(const RowMotion& rows, const PosePrior& prior);
+
     /// Edge-wise association at a given pose within `radius` px: fills matches().
     void associate(const Pose& T_current_keyframe, const RowMotion& rows, double radius);
     /// The same within the final radius, and the weights that follow.

@@ -87,6 +87,10 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
         clusters_.start(keyframe.clusters);
         for (const ResidualTerm* term : terms) term->addTo(clusters_);
         result.uncertainty = clusters_.uncertainty(found.system, edges_.slope());
+        if (shutter.seconds_per_row != 0) {
+            const Matrix6d moved = edges_.movedByVelocity(shutter.motion(found.T_current_keyframe), prior);
+            result.of_rows = moved * shutter.velocity_variance.asDiagonal() * moved.transpose();
+        }
     }
     result.converged =
         found.complete && found.T_current_keyframe.isFinite() && result.uncertainty.covariance().allFinite();

@@ -14,6 +14,7 @@ struct FineResult {
     double matched_ratio = 0;     ///< see EdgeMatches
     double depth_agreement = 1;   ///< see EdgeTerm::depthAgreement()
     PoseUncertainty uncertainty;  ///< of the left perturbation (t, phi) of T_current_keyframe
+    Matrix6d of_rows = Matrix6d::Zero();  ///< covariance that a guessed motion of the rows adds to it
 };
 
 /// Edge-wise registration: EdgeTerm joined by the photometric term and by what is likely beforehand.

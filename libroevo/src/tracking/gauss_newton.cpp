@@ -28,6 +28,14 @@ kernels::InformationArrays InformationRows::arrays(std::size_t count) {
     return out;
 }
 
+void InformationRows::scale(const std::vector<float>& factors) {
+    const auto by = [&](std::vector<float>& array) {
+        for (std::size_t i = 0; i < array.size(); ++i) array[i] *= factors[i];
+    };
+    for (auto& array : matrix_) by(array);
+    for (auto& array : vector_) by(array);
+}
+
 kernels::NormalEquations InformationRows::sum() const {
     kernels::PointInformation points{points_.x.data(), points_.y.data(), points_.z.data(), {}, {}};
     for (int a = 0; a < 6; ++a) points.matrix[a] = matrix_[a].data();

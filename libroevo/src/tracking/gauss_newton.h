@@ -36,6 +36,8 @@ class InformationRows {
     /// It contributes nothing.
     void leaveOut(std::size_t point) { set(point, {}, {}, 0, 0, 0); }
     kernels::NormalEquations sum() const;
+    /// Multiplies what each point contributes by a factor of its own (padded).
+    void scale(const std::vector<float>& factors);
     /// Adds each of them to its edge; none before anything was set.
     /// @param edge_of(point)  index of its edge
     template <class EdgeOf>

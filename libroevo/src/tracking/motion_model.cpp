@@ -18,6 +18,13 @@ constexpr double kLeastSigma = 1e-3;     ///< m and rad, of any prior
 constexpr double kLongestReadout = 0.1;  ///< s
 constexpr double kLearning = 0.2;        ///< share of the newest frame in means
 
+/// By axis: linear, and of a turn in degrees (squared in radians).
+Vector6d squared(double linear, double turn_deg) {
+    Vector6d out;
+    out << Eigen::Vector3d::Constant(linear), Eigen::Vector3d::Constant(kDegree * turn_deg);
+    return out.cwiseAbs2();
+}
+
 }  // namespace
 
 MotionModel::MotionModel(const MotionOptions& motion, const SensorOptions& sensor, int image_height)
@@ -121,7 +128,12 @@ RollingShutter MotionModel::shutter(double timestamp) const {
     shutter.seconds_per_row = secondsPerRow();
     shutter.reference_row = stillRows().reference_row;
     const double dt = timestamp - last_timestamp_;
-    if (has_last_ && dt >= kShortestStep && dt <= kLongestStep) {
+    const bool known = has_last_ && dt >= kShortestStep && dt <= kLongestStep;
+    // A mean velocity is that of half the time ago
+    shutter.velocity_variance =
+        known ? squared(motion_.acceleration * dt / 2, motion_.angular_acceleration_deg * dt / 2)
+              : squared(motion_.speed, motion_.angular_speed_deg);
+    if (known) {
         shutter.T_previous_keyframe = T_reference_last_.inverse();
         shutter.since_previous = dt;
         if (interval_ >= kShortestStep && interval_ <= kLongestStep) {
@@ -139,10 +151,8 @@ RollingShutter MotionModel::shutter(double timestamp) const {
 /// and what the poses' errors do.
 Matrix6d MotionModel::velocityGain(double dt) const {
     constexpr double kThreePoses = 1.5 * 1.5 + 2 * 2 + 0.5 * 0.5;  // their shares in it, squared
-    Vector6d likely;
-    likely << Eigen::Vector3d::Constant(motion_.acceleration * dt),
-        Eigen::Vector3d::Constant(motion_.angular_acceleration_deg * kDegree * dt);
-    const Matrix6d changes = likely.cwiseAbs2().asDiagonal();
+    const Matrix6d changes =
+        squared(motion_.acceleration * dt, motion_.angular_acceleration_deg * dt).asDiagonal();
     const Matrix6d both = changes + kThreePoses / (dt * dt) * covariance_;
     return both.ldlt().solve(changes).transpose();
 }

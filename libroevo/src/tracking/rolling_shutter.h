@@ -68,6 +68,8 @@ struct RollingShutter {
     double earlier_interval = 0;
     /// Of a change of the velocity, along the camera's axes (linear, then turn): what is believed of it.
     Matrix6d gain = Matrix6d::Identity();
+    /// Variance of the rows' velocity, by axis (linear, then turn), m^2/s^2 and rad^2/s^2.
+    Vector6d velocity_variance = Vector6d::Zero();
 
     RowMotion motion(const Pose& T_current_keyframe) const;
     /// Of an image whose motion is known, whatever its pose.

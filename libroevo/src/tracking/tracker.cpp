@@ -55,9 +55,11 @@ PoseUncertainty photometricUncertainty(const Keyframe& reference, const Frame& f
 
 void Tracking::doubt() {
     doubtful = true;
-    auto variances = pose.uncertainty.independent.diagonal().array();
-    variances.head<3>() += kDoubtfulPosition * kDoubtfulPosition;
-    variances.tail<3>() += kDoubtfulTurn * kDoubtfulTurn;
+    for (PoseUncertainty* one : {&pose.uncertainty, &measured}) {
+        auto variances = one->independent.diagonal().array();
+        variances.head<3>() += kDoubtfulPosition * kDoubtfulPosition;
+        variances.tail<3>() += kDoubtfulTurn * kDoubtfulTurn;
+    }
 }
 
 Tracker::Tracker(const PinholeCamera& camera, const OdometryOptions& options)
@@ -142,6 +144,7 @@ Fault Tracker::runCoarse(const Keyframe& reference, const Frame& frame, const Co
     if (out.matchedRatio() < options_.fine.min_matched_ratio / 2) return {Fault::Kind::kCoarseAstray, {}};
     out.pose.T_keyframe_camera = T.inverse();
     out.pose.uncertainty = photometricUncertainty(reference, frame, ideal_, shutter.motion(T), aligned);
+    out.measured = out.pose.uncertainty;
     return out.pose.covariance().allFinite() ? Fault() : Fault{Fault::Kind::kDiverged, {}};
 }
 
@@ -155,6 +158,7 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
         FineResult found = fine_.assess(reference, frame, T, shutter.motion(T));
         found.converged = found.converged && refined.converged;
         found.uncertainty = refined.uncertainty;
+        found.of_rows = refined.of_rows;
         return found;
     };
     FineResult found = registered();
@@ -180,7 +184,8 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
     if (!found.converged) return describeFailure(found, options_.fine);
     out.depth_fault = contradiction;
     out.pose.T_keyframe_camera = found.T_current_keyframe.inverse();
-    out.pose.uncertainty = found.uncertainty;
+    out.measured = out.pose.uncertainty = found.uncertainty;
+    out.pose.uncertainty.independent += found.of_rows;
     if (out.doubtful) out.doubt();
     return {};
 }
