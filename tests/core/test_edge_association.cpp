@@ -127,6 +127,7 @@ TEST(EdgeAssociation, OneEdgeMayFallIntoFragments) {
     for (const double u : {70.0, 100.0, 130.0}) addLine(fragments, u, 61, 30);
     const EdgeMatches matches = match(reference, fragments);
     EXPECT_EQ(countByEdge(matches, fragments), (std::map<int, int>{{0, 30}, {1, 30}, {2, 30}}));
+    EXPECT_EQ(matches.shownShare(), 1);
     EXPECT_EQ(matches.matchedRatio(), 1);
 }
 
@@ -174,6 +175,9 @@ TEST(EdgeAssociation, OnlyPointsInsideTheImageCount) {
     const OrganizedEdges edges = line(100, 60, 80);
     const EdgeMatches half = match(edges, edges, FineOptions(), {-96.5F, 0});  // x = -36 ... 43
     EXPECT_EQ(half.visible_points, 40) << "x = 4 ... 43; four pixels of border";
+    EXPECT_EQ(half.visibleShare(), 0.5);
+    EXPECT_EQ(half.shownShare(), 0) << "the edge itself is elsewhere";
+    EXPECT_EQ(match(edges, edges).shownShare(), 1);
     EXPECT_EQ(match(edges, edges, FineOptions(), {0, -100}).visible_points, 0);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(match(edges, edges, FineOptions(), {nan, nan}).visible_points, 0);

@@ -138,6 +138,54 @@ TEST_F(OdometryStatus, AFrameWithoutDepthIsTracked) {
     feedRoom(10, 13);
 }
 
+TEST_F(OdometryStatus, AScrapOfDepthMakesNoKeyframe) {
+    OdometryOptions options;
+    options.keyframe.max_rotation_deg = 0.3;
+    odometry_ = Odometry(room().camera, options, room().start());
+    for (int i = 0; i < 20; ++i) {
+        RgbdFrame frame = frameAt(i);
+        const bool scrap = i >= 8 && i < 16;
+        if (scrap) {
+            frame.depth = cv::Mat::zeros(240, 320, CV_32FC1);
+            const cv::Rect corner(20, 150, 100, 80);
+            frameAt(i).depth(corner).copyTo(frame.depth(corner));
+        }
+        const FrameResult result = feed(frame);
+        EXPECT_EQ(result.status, i == 0 ? FrameStatus::kInitialised : FrameStatus::kOk) << i;
+        EXPECT_LT(errorAt(result, i), 0.006) << i;
+        EXPECT_FALSE(scrap && result.new_keyframe) << i;
+        EXPECT_TRUE(i != 16 || result.new_keyframe) << "due since long";
+        if (i == 12) {
+            EXPECT_NE(result.reason.find("edge points with depth"), std::string::npos) << result.reason;
+        }
+    }
+}
+
+TEST_F(OdometryStatus, CovariancesKnowThatAllDepthsMayBeWrongByOneShare) {
+    constexpr double kShare = 0.1;
+    OdometryOptions exact, unsure;
+    exact.sensor.depth_scale_sigma = 0;
+    unsure.sensor.depth_scale_sigma = kShare;
+    Odometry without(room().camera, exact, room().start()), with(room().camera, unsure, room().start());
+    const auto expectByScale = [&](const Eigen::Vector3d& way, const Matrix6d& more) {
+        Matrix6d expected = Matrix6d::Zero();
+        expected.topLeftCorner<3, 3>() = kShare * kShare * way * way.transpose();
+        EXPECT_GT(way.norm(), 0.02);
+        EXPECT_LT((more - expected).norm(), 1e-9);
+    };
+    FrameResult last, reference;
+    for (int i = 0; i < 20; ++i) {
+        reference = without.processFrame(frameAt(i));
+        last = with.processFrame(frameAt(i));
+    }
+    EXPECT_EQ(last.T_world_camera.matrix(), reference.T_world_camera.matrix()) << "poses do not depend on it";
+    expectByScale(last.T_world_camera.translation() - room().start().translation(),
+                  last.covariance - reference.covariance);
+    const Pose motion = with.motion(5, 18);
+    expectByScale(motion.linear().transpose() * motion.translation(),
+                  with.motionCovariance(5, 18) - without.motionCovariance(5, 18));
+}
+
 TEST_F(OdometryStatus, RepeatedAndBackwardTimeStampsAreRejected) {
     feedRoom(0, 5);
     const FrameResult repeated = feed(frameAt(4));

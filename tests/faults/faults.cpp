@@ -50,6 +50,14 @@ void noisy(Shown& shown, std::size_t, cv::RNG& random) {
 }
 
 /// Depth missing in blocks, on 40 % of the image.
+/// A tenth of the image.
+void cornerOnly(Mat& image) {
+    const cv::Rect corner(image.cols / 12, image.rows * 5 / 8, image.cols / 3, image.rows / 3);
+    const Mat kept = image(corner).clone();
+    image.setTo(0);
+    kept.copyTo(image(corner));
+}
+
 void holes(Shown& shown, std::size_t, cv::RNG& random) {
     constexpr int kBlock = 16;
     Mat& image = shown.frame.depth;
@@ -233,6 +241,7 @@ const std::vector<Fault>& allFaults() {
         {"depth shifted by 40 px", E::kAny, depth([](Mat& image) { image = shifted(image, 40); })},
         {"depth of 5 frames before", E::kAny, lateDepth},
         {"depth with holes", E::kTracked, each(holes)},
+        {"depth in a corner only", E::kTracked, depth(cornerOnly)},
         {"clock set 10 s back", E::kNamed, clockSetBack(10)},
         {"clock set 10 s ahead", E::kAny, clockSetAhead},
         {"stamps damaged", E::kNamed, each(damagedStamp)},

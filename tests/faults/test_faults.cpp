@@ -2,6 +2,7 @@
 // word, and tracking goes on. A quick part always; the whole table with ROEVO_FAULT_TABLE=FILE ('-': stdout).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -112,6 +113,19 @@ TEST(CleanRecording, BreaksNoPromise) {
     EXPECT_TRUE(verdict.broken.empty()) << joined(verdict.broken);
 }
 
+TEST(DepthThatDropsOut, TheReferenceIsWorthMoreThanAScrap) {
+    const std::optional<Recording> recording = clip("icl_office_kt0_50", 50);
+    if (!recording) GTEST_SKIP() << "needs the real clips";
+    const Fault& corner = *std::find_if(allFaults().begin(), allFaults().end(), [](const Fault& fault) {
+        return fault.name == "depth in a corner only";
+    });
+    const auto frames = inject(*recording, corner, 10, 30, 1);
+    const Played played = play(*recording, frames);
+    const Verdict verdict = judge(frames, played, cleanRun(*recording), Expected::kTracked, 30);
+    EXPECT_TRUE(verdict.broken.empty()) << joined(verdict.broken);
+    EXPECT_LT(verdict.ate, std::max(1.5 * verdict.clean_ate, 0.002)) << "0.94 cm with keyframes made of it";
+}
+
 std::string describeStatuses(const Verdict& verdict) {
     std::string text;
     for (const auto& [status, count] : verdict.statuses)
@@ -188,6 +202,7 @@ TEST(FaultTable, Whole) {
     }
     out << "\n" << held << " of " << cases << " cases hold all promises.\n";
     EXPECT_EQ(held, cases);
+    EXPECT_GT(cases, 0) << "no recording of that name, or no real clips";
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ struct SensorOptions {
     double depth_limit = 9.0;         ///< farther depths are not used, m
     double depth_noise = 2e-3;        ///< a in sigma_z^2 = s0^2 + (a z^2)^2, 1/m
     double depth_noise_floor = 1e-3;  ///< s0 of it, m: what does not grow with depth
+    double depth_scale_sigma = 0.01;  ///< one sigma of a share by which all depths, and so all ways, may err
     bool estimate_readout = true;     ///< learn the read-out time from the images; else it is readout_time
     double readout_sigma = 0.01;      ///< how far from 0 the learned read-out time may well be, s, one sigma
     double readout_memory = 0.995;    ///< share of what was learned that is kept from frame to frame

@@ -17,11 +17,11 @@ bool keyframeIsDue(const Keyframe& reference, const Tracking& tracking, const Ke
            T.translation().norm() > options.max_translation * reference.median_depth;
 }
 
-Fault makeKeyframe(const Frame& frame, const RowMotion& rows, const PinholeCamera& camera,
+Fault makeKeyframe(const Frame& frame, const RowMotion& rows, int needed, const PinholeCamera& camera,
                    const OdometryOptions& options, const Tracker& tracker, Keyframe& keyframe) {
     if (frame.images.depth.empty()) return {Fault::Kind::kNoDepth, {}};
     keyframe.edges = liftEdges(frame.edges, frame.images.depth, camera, rows, options.edges, options.sensor);
-    const int found = static_cast<int>(keyframe.edges.size()), needed = options.fine.min_inliers;
+    const int found = static_cast<int>(keyframe.edges.size());
     if (found < needed) return {Fault::Kind::kFewPointsWithDepth, {found, needed}};
     keyframe.timestamp = frame.timestamp();
     keyframe.row_motion = rows;

@@ -10,9 +10,11 @@ namespace roevo {
                                  const KeyframeOptions& options);
 
 /// Makes a keyframe of a frame. @return why it cannot be one (then `keyframe` is not to be used)
-/// @param rows  how the camera moved while the frame was read
-[[nodiscard]] Fault makeKeyframe(const Frame& frame, const RowMotion& rows, const PinholeCamera& camera,
-                                 const OdometryOptions& options, const Tracker& tracker, Keyframe& keyframe);
+/// @param rows    how the camera moved while the frame was read
+/// @param needed  edge points with depth
+[[nodiscard]] Fault makeKeyframe(const Frame& frame, const RowMotion& rows, int needed,
+                                 const PinholeCamera& camera, const OdometryOptions& options,
+                                 const Tracker& tracker, Keyframe& keyframe);
 
 /// Numbers the edges of a new keyframe: those that were tracked as edges of the one before are the same.
 /// @param before   nullptr: there is none

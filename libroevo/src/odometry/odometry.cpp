@@ -78,7 +78,7 @@ Pose Odometry::motion(std::size_t from, std::size_t to) const {
     return impl_->world.trajectory().motion(from, to);
 }
 Matrix6d Odometry::motionCovariance(std::size_t from, std::size_t to) const {
-    return impl_->world.trajectory().motionCovariance(from, to);
+    return impl_->world.motionCovariance(from, to);
 }
 std::vector<KeyframeInfo> Odometry::keyframes() const {
     return impl_->world.finalTrajectory().keyframes();

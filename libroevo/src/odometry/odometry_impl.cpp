@@ -221,11 +221,7 @@ void Odometry::Impl::learn(const Tracking& tracking, const Prediction& predictio
 
 /// A tracked pose is what the next one is predicted from.
 void Odometry::Impl::settle(const Outcome& outcome) {
-    const Pose& T_reference_camera = outcome.tracking.pose.T_keyframe_camera;
-    if (outcome.tracking.searched)
-        motion.anchor(frame->timestamp(), T_reference_camera);
-    else
-        motion.measure(frame->timestamp(), T_reference_camera, outcome.tracking.measured);
+    motion.measure(frame->timestamp(), outcome.tracking.pose.T_keyframe_camera, outcome.tracking.measured);
 }
 
 Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {
@@ -263,7 +259,7 @@ FrameResult Odometry::Impl::report(const Outcome& outcome) {
     if (outcome.tracking.fault.kind != Fault::Kind::kFrozen) measured = is_measured;
     world.addFrame(result.timestamp, tracking.pose, is_measured);
     result.T_world_camera = world.trajectory().worldPose(tracking.pose);
-    result.covariance = world.trajectory().worldCovariance(tracking.pose);
+    result.covariance = world.covariance(tracking.pose);
     fill(result, outcome, change);
     return result;
 }

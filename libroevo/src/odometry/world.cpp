@@ -23,8 +23,9 @@ constexpr double kAgreedTurn = 1 * kDegree;
 /// Times as much on a join: blurred images put places so far off, twins are much further apart, and where the
 /// map sees the place again it puts the rest right.
 constexpr double kJoinTolerance = 3;
-constexpr int kStillInView = 10;     // newest keyframes
-constexpr double kDriftSigmas = 10;  // that the camera can be from where it is thought to be
+constexpr int kStillInView = 10;       // newest keyframes
+constexpr double kLeastOfShown = 0.5;  // points of a new keyframe, against what the old one still shows there
+constexpr double kDriftSigmas = 10;    // that the camera can be from where it is thought to be
 constexpr double kUnknown = std::numeric_limits<double>::infinity();  // m
 
 }  // namespace
@@ -135,7 +136,9 @@ void World::weakenPseudoEdges() {
 Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker& tracker,
                         const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {
     auto fresh = std::make_unique<Keyframe>();
-    if (const Fault fault = makeKeyframe(frame, rows, camera_, options_, tracker, *fresh)) return fault;
+    if (const Fault fault =
+            makeKeyframe(frame, rows, options_.fine.min_inliers, camera_, options_, tracker, *fresh))
+        return fault;
     numberEdges(*fresh, nullptr, {}, next_cluster_);
     recognise();
     Misplacement misplaced;
@@ -151,8 +154,11 @@ Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker
 }
 
 Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Tracker& tracker) {
+    // Where depth drops out, the reference is worth more than the scrap that would take its place
+    const double still_shown = tracked.matches.shownShare() * static_cast<double>(reference_->edges.size());
+    const int needed = std::max(options_.fine.min_inliers, static_cast<int>(kLeastOfShown * still_shown));
     auto fresh = std::make_unique<Keyframe>();
-    if (const Fault fault = makeKeyframe(frame, tracked.rows, camera_, options_, tracker, *fresh))
+    if (const Fault fault = makeKeyframe(frame, tracked.rows, needed, camera_, options_, tracker, *fresh))
         return fault;
     numberEdges(*fresh, reference_.get(), tracked.matches, next_cluster_);
     recognise();
@@ -208,6 +214,26 @@ double World::driftOf(int keyframe) const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(drift.topLeftCorner<3, 3>(),
                                                               Eigen::EigenvaluesOnly);
     return kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
+}
+
+/// What a scale of all depths that errs does to a motion: all frames share it, so that no residual shows it.
+Matrix6d World::byScale(const Eigen::Vector3d& motion) const {
+    const double sigma = options_.sensor.depth_scale_sigma;
+    Matrix6d covariance = Matrix6d::Zero();
+    covariance.topLeftCorner<3, 3>() = sigma * sigma * motion * motion.transpose();
+    return covariance;
+}
+
+Matrix6d World::covariance(const RelativePose& pose) const {
+    const Pose& begin = trajectory_.keyframePose(trajectory_.beginOfTrack(pose.keyframe));
+    return trajectory_.worldCovariance(pose) +
+           byScale(trajectory_.worldPose(pose).translation() - begin.translation());
+}
+
+Matrix6d World::motionCovariance(std::size_t from, std::size_t to) const {
+    const Pose motion = trajectory_.motion(from, to);
+    return trajectory_.motionCovariance(from, to) +
+           byScale(motion.linear().transpose() * motion.translation());
 }
 
 Whereabouts World::whereabouts(const RelativePose& pose, double lost_for) const {

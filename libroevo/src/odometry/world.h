@@ -42,6 +42,10 @@ class World {
     bool empty() const { return !reference_; }
     Keyframe& reference() { return *reference_; }
     const Trajectory& trajectory() const { return trajectory_; }
+    /// As FrameResult::covariance.
+    Matrix6d covariance(const RelativePose& pose) const;
+    /// As Odometry::motionCovariance().
+    Matrix6d motionCovariance(std::size_t from, std::size_t to) const;
     void addFrame(double timestamp, const RelativePose& pose, bool measured) {
         trajectory_.addFrame(timestamp, pose, measured);
     }
@@ -88,6 +92,7 @@ class World {
         RecognisedPlace place;
     };
     std::optional<Look> agreeingLook(const Look& newest, double tolerance);
+    Matrix6d byScale(const Eigen::Vector3d& motion) const;
     /// How far a keyframe's track may be from where it was put, m, at the keyframe.
     double misplacementOf(int keyframe) const;
     /// How far a keyframe may have drifted from the first one of its track, m.

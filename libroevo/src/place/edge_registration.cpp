@@ -100,14 +100,7 @@ void EdgeRegistrar::lookBack(const Keyframe& keyframe, const EdgePoints3D& frame
                           imageRotation(T_keyframe_frame), options_.edges.tangent_span, keyframe.edges.image,
                           grid_, ideal_.width, ideal_.height, options_.fine.final_radius, matches_);
     out.frame_matched = matches_.matchedRatio();
-    // Points that are looked up are as thin as in the associator
-    const auto lookedUp = [&](std::size_t size) {
-        const auto most = static_cast<std::size_t>(options_.fine.max_points);
-        return static_cast<double>(size) /
-               static_cast<double>(std::max<std::size_t>(1, (size + most - 1) / most));
-    };
-    out.visible = std::min(term_.matches().visible_points / std::max(1.0, lookedUp(keyframe.edges.size())),
-                           matches_.visible_points / std::max(1.0, lookedUp(frame_edges.size())));
+    out.visible = std::min(term_.matches().visibleShare(), matches_.visibleShare());
     int agreed = 0;
     for (std::size_t k = 0; k < matches_.size(); ++k) {
         const auto i = static_cast<std::size_t>(matches_.reference[k]),

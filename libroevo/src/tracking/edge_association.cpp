@@ -31,7 +31,7 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
                                const EdgeGrid& grid, int width, int height, double radius, EdgeMatches& out) {
     out.reference.clear();
     out.current.clear();
-    out.visible_points = 0;
+    out.looked_up_points = out.visible_points = 0;
     const auto min_cosine = static_cast<float>(std::cos(options_.normal_angle_deg * kDegree));
     const float margin = EdgeMask::kBorder;
     const float max_u = static_cast<float>(width) - 1 - margin,
@@ -45,6 +45,7 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
         int before_this = -1;  // what a point before is associated with: it goes on along that edge, mostly
         for (std::size_t i = own.first + (stride_ / 2 + stride_ - own.first % stride_) % stride_; i < own.end;
              i += stride_) {
+            ++out.looked_up_points;
             if (!(u[i] >= margin && v[i] >= margin && u[i] <= max_u && v[i] <= max_v)) continue;
             ++visible;
             const auto [before, end] = own.around(i, reach);

@@ -13,14 +13,20 @@ namespace roevo {
 struct EdgeMatches {
     std::vector<std::int32_t> reference, current;  ///< point indices of the pairs, in the reference's order
     std::vector<std::int32_t> visible;  ///< of each reference edge: looked-up points inside the image
-    int visible_points = 0;             ///< looked-up reference points inside the image
+    int looked_up_points = 0;           ///< of the reference
+    int visible_points = 0;             ///< of them, those inside the image
     int matched_extent = 0;             ///< of them, those of matched edges
 
     std::size_t size() const { return reference.size(); }
+    /// Share of the reference that is inside the image.
+    double visibleShare() const { return share(visible_points, looked_up_points); }
+    /// Share of the reference that is inside the image and on edges that are associated.
+    double shownShare() const { return share(matched_extent, looked_up_points); }
     /// Share of the reference's edges that are associated, each edge counting by its visible length.
-    double matchedRatio() const {
-        return visible_points > 0 ? static_cast<double>(matched_extent) / visible_points : 0;
-    }
+    double matchedRatio() const { return share(matched_extent, visible_points); }
+
+  private:
+    static double share(int some, int all) { return all > 0 ? static_cast<double>(some) / all : 0; }
 };
 
 /// Edge-wise association (Sec. V-C): nearest point within a radius whose normal agrees with the reprojected

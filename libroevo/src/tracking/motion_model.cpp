@@ -13,7 +13,7 @@ namespace {
 constexpr double kLongestPrediction = 0.5;  ///< s; nobody moves on evenly for longer
 constexpr double kUsual = 2.5;              ///< times the mean interval between frames: still a usual one
 constexpr double kShortestStep = 0.005,
-                 kLongestStep = 0.35;    ///< s between two poses that make a velocity for the rows
+                 kLongestStep = 0.35;    ///< s between two poses that make a velocity
 constexpr double kLeastSigma = 1e-3;     ///< m and rad, of any prior
 constexpr double kLongestReadout = 0.1;  ///< s
 constexpr double kLearning = 0.2;        ///< share of the newest frame in means
@@ -66,7 +66,7 @@ void MotionModel::measure(double timestamp, const Pose& T_reference_camera,
     // What moved between two stamps that nearly coincide is mostly their errors: the velocity stays
     if (interval >= kShortestStep) {
         step_ = T_reference_last_.inverse() * T_reference_camera;
-        interval_ = interval;
+        interval_ = interval <= kLongestStep ? interval : 0;
         before_ = last_;
     }
     last_ = {covariance.topLeftCorner<3, 3>().trace() / 3, covariance.bottomRightCorner<3, 3>().trace() / 3};
@@ -89,7 +89,7 @@ Prediction MotionModel::predict(double timestamp) const {
             shutter(timestamp),
             brightness_,
             dt,
-            dt > std::max(kLongestPrediction, kUsual * usual_interval_)};
+            usual_interval_ > 0 && dt > kUsual * usual_interval_};
 }
 
 Pose MotionModel::poseAt(double timestamp) const {
@@ -136,7 +136,7 @@ RollingShutter MotionModel::shutter(double timestamp) const {
     if (known) {
         shutter.T_previous_keyframe = T_reference_last_.inverse();
         shutter.since_previous = dt;
-        if (interval_ >= kShortestStep && interval_ <= kLongestStep) {
+        if (interval_ > 0) {
             const Velocity earlier = velocityOf(step_, interval_);
             shutter.earlier_turn = earlier.turn;
             shutter.earlier_velocity = earlier.linear;

@@ -30,10 +30,10 @@ class MotionModel {
     void expect(double timestamp);
     /// The first frame of a track, which is the reference.
     void begin(double timestamp);
-    /// A pose whose motion since the last one was not measured: first frame, re-anchored, or found again by a
-    /// search.
+    /// A pose whose motion since the last one was not measured: first frame, re-anchored, or recognised.
     void anchor(double timestamp, const Pose& T_reference_camera);
-    /// A measured pose; with the one before it gives the velocity, unless their stamps nearly coincide.
+    /// A measured pose; with the one before it gives the velocity, unless their stamps nearly coincide (then
+    /// it stays) or are far apart (then there is none).
     /// @param uncertainty  of the pose against its reference
     void measure(double timestamp, const Pose& T_reference_camera, const PoseUncertainty& uncertainty = {});
     /// A pose that was not measured: only a search looks around it.
