@@ -154,8 +154,10 @@ Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker
 }
 
 Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Tracker& tracker) {
-    // Where depth drops out, the reference is worth more than the scrap that would take its place
-    const double still_shown = tracked.matches.shownShare() * static_cast<double>(reference_->edges.size());
+    // Where depth drops out, the reference is worth more than the scrap that would take its place. There is
+    // none where the first frame was recognised in a map
+    const double still_shown =
+        reference_ ? tracked.matches.shownShare() * static_cast<double>(reference_->edges.size()) : 0;
     const int needed = std::max(options_.fine.min_inliers, static_cast<int>(kLeastOfShown * still_shown));
     auto fresh = std::make_unique<Keyframe>();
     if (const Fault fault = makeKeyframe(frame, tracked.rows, needed, camera_, options_, tracker, *fresh))
