@@ -138,6 +138,18 @@ TEST_F(OdometryStatus, AFrameWithoutDepthIsTracked) {
     feedRoom(10, 13);
 }
 
+TEST_F(OdometryStatus, AfterAGapAPoseIsConfirmedByDepthOrSaidToBePredicted) {
+    feedRoom(0, 8);
+    RgbdFrame frame = frameAt(13);  // five frames were dropped
+    frame.depth = cv::Mat();
+    EXPECT_EQ(feed(frame).status, FrameStatus::kPredicted) << "nothing confirms it";
+    const FrameResult confirmed = feed(frameAt(14));
+    EXPECT_EQ(confirmed.status, FrameStatus::kOk) << confirmed.reason;
+    EXPECT_FALSE(confirmed.reason.empty());
+    EXPECT_LT(errorAt(confirmed, 14), 0.006);
+    feedRoom(15, 18);
+}
+
 TEST_F(OdometryStatus, AScrapOfDepthMakesNoKeyframe) {
     OdometryOptions options;
     options.keyframe.max_rotation_deg = 0.3;

@@ -49,8 +49,7 @@ void noisy(Shown& shown, std::size_t, cv::RNG& random) {
     cv::add(shown.frame.grey, noise, shown.frame.grey, {}, CV_8U);
 }
 
-/// Depth missing in blocks, on 40 % of the image.
-/// A tenth of the image.
+/// Depth left on a tenth of the image.
 void cornerOnly(Mat& image) {
     const cv::Rect corner(image.cols / 12, image.rows * 5 / 8, image.cols / 3, image.rows / 3);
     const Mat kept = image(corner).clone();
@@ -58,6 +57,7 @@ void cornerOnly(Mat& image) {
     kept.copyTo(image(corner));
 }
 
+/// Depth missing in blocks, on 40 % of the image.
 void holes(Shown& shown, std::size_t, cv::RNG& random) {
     constexpr int kBlock = 16;
     Mat& image = shown.frame.depth;

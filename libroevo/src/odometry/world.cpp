@@ -28,6 +28,13 @@ constexpr double kLeastOfShown = 0.5;  // points of a new keyframe, against what
 constexpr double kDriftSigmas = 10;    // that the camera can be from where it is thought to be
 constexpr double kUnknown = std::numeric_limits<double>::infinity();  // m
 
+/// What a scale of all depths that errs does to a motion: all frames share it, so that no residual shows it.
+Matrix6d byScale(const Eigen::Vector3d& motion, double sigma) {
+    Matrix6d covariance = Matrix6d::Zero();
+    covariance.topLeftCorner<3, 3>() = sigma * sigma * motion * motion.transpose();
+    return covariance;
+}
+
 }  // namespace
 
 World::World(const PinholeCamera& camera, const OdometryOptions& options)
@@ -218,24 +225,17 @@ double World::driftOf(int keyframe) const {
     return kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
 }
 
-/// What a scale of all depths that errs does to a motion: all frames share it, so that no residual shows it.
-Matrix6d World::byScale(const Eigen::Vector3d& motion) const {
-    const double sigma = options_.sensor.depth_scale_sigma;
-    Matrix6d covariance = Matrix6d::Zero();
-    covariance.topLeftCorner<3, 3>() = sigma * sigma * motion * motion.transpose();
-    return covariance;
-}
-
 Matrix6d World::covariance(const RelativePose& pose) const {
     const Pose& begin = trajectory_.keyframePose(trajectory_.beginOfTrack(pose.keyframe));
     return trajectory_.worldCovariance(pose) +
-           byScale(trajectory_.worldPose(pose).translation() - begin.translation());
+           byScale(trajectory_.worldPose(pose).translation() - begin.translation(),
+                   options_.sensor.depth_scale_sigma);
 }
 
 Matrix6d World::motionCovariance(std::size_t from, std::size_t to) const {
     const Pose motion = trajectory_.motion(from, to);
     return trajectory_.motionCovariance(from, to) +
-           byScale(motion.linear().transpose() * motion.translation());
+           byScale(motion.linear().transpose() * motion.translation(), options_.sensor.depth_scale_sigma);
 }
 
 Whereabouts World::whereabouts(const RelativePose& pose, double lost_for) const {

@@ -92,7 +92,6 @@ class World {
         RecognisedPlace place;
     };
     std::optional<Look> agreeingLook(const Look& newest, double tolerance);
-    Matrix6d byScale(const Eigen::Vector3d& motion) const;
     /// How far a keyframe's track may be from where it was put, m, at the keyframe.
     double misplacementOf(int keyframe) const;
     /// How far a keyframe may have drifted from the first one of its track, m.
