@@ -27,7 +27,7 @@ class PlaceRegistration : public ::testing::Test {
     }
     static Pose truth() { return frame_->T_world_camera.inverse() * keyframe_->T_world_camera; }
     static EdgeRegistration from(const Pose& start) {
-        return EdgeRegistrar(camera_, OdometryOptions())
+        return EdgeRegistrar(camera_, OdometryOptions(), false)
             .registerEdges(keyframe_->keyframe, frame_->frame, frame_->keyframe.edges, start);
     }
 
@@ -63,7 +63,7 @@ TEST_F(PlaceRegistration, IsNotAcceptedSomewhereElse) {
 }
 
 TEST_F(PlaceRegistration, SameBytesWhateverCameBefore) {
-    EdgeRegistrar registrar(camera_, OdometryOptions());
+    EdgeRegistrar registrar(camera_, OdometryOptions(), false);
     const auto run = [&](const Pose& start) {
         return registrar.registerEdges(keyframe_->keyframe, frame_->frame, frame_->keyframe.edges, start);
     };
@@ -84,46 +84,31 @@ TEST_F(PlaceRegistration, ParallelEdgesAloneAreNotAccepted) {
     const auto view = makePlaceView(camera_, stripes, Pose::Identity(), 0);
     ASSERT_GT(view->keyframe.edges.size(), 500U);
     const EdgeRegistration found =
-        EdgeRegistrar(camera_, OdometryOptions())
+        EdgeRegistrar(camera_, OdometryOptions(), false)
             .registerEdges(view->keyframe, view->frame, view->keyframe.edges, Pose::Identity());
     EXPECT_FALSE(found.accepted);
 }
 
-TEST_F(PlaceRegistration, ConfidenceIsTheMeanShareAndNothingWhereEdgesContradict) {
-    Verification points;
-    points.matches = 50;
-    points.inliers = 25;
-    EdgeRegistration edges;
-    edges.keyframe_matched = 0.8;
-    edges.frame_matched = 0.5;
-    EXPECT_EQ(placeConfidence(points, edges), 0);
-    edges.plausible = true;
-    EXPECT_NEAR(placeConfidence(points, edges), 0.6, 1e-12);
-    points.inliers = 10;
-    EXPECT_EQ(placeConfidence(points, edges), 0);
-}
-
-TEST_F(PlaceRegistration, EvidenceNeedsEdgesAndSurroundingsOrASecondLook) {
+TEST_F(PlaceRegistration, EvidenceIsWhatSurroundsThePointsAndThatEdgesHoldThePose) {
     Verification points;
     points.matches = 40;
-    points.inliers = 30;
+    points.inliers = 20;
     EdgeRegistration edges;
-    edges.determined = edges.plausible = edges.accepted = true;
-    edges.keyframe_matched = 0.7;
-    edges.frame_matched = 0.7;  // confidence 0.72
-    const Likeness same{100, 95}, twin{100, 90}, little{40, 40};
+    edges.determined = true;
+    edges.keyframe_matched = 0.9;
+    edges.frame_matched = 0.79;
+    const Likeness same{100, 99}, similar{100, 97}, twin{100, 96}, other{100, 79}, little{29, 29};
     EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kConclusive);
+    EXPECT_EQ(evidenceOf(points, edges, similar), Evidence::kStrong);
     EXPECT_EQ(evidenceOf(points, edges, twin), Evidence::kPlausible) << "another door of the same kind";
-    EXPECT_EQ(evidenceOf(points, edges, little), Evidence::kPlausible);
-    edges.keyframe_matched = edges.frame_matched = 0.8;
-    EXPECT_EQ(evidenceOf(points, edges, twin), Evidence::kStrong) << "seen from elsewhere";
-    edges.keyframe_matched = edges.frame_matched = 0.2;  // blurred
-    edges.plausible = edges.accepted = false;
-    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kStrong);
-    EXPECT_EQ(evidenceOf(points, edges, twin), Evidence::kNone);
+    EXPECT_EQ(evidenceOf(points, edges, other), Evidence::kNone);
+    EXPECT_EQ(evidenceOf(points, edges, little), Evidence::kNone);
+    edges.frame_matched = 0.8;
+    EXPECT_EQ(evidenceOf(points, edges, other), Evidence::kFitting) << "seen from elsewhere";
+    points.inliers = 19;
+    EXPECT_EQ(evidenceOf(points, edges, twin), Evidence::kWeak);
     points.inliers = 14;
-    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kNone);
-    points.inliers = 30;
+    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kStrong);
     edges.determined = false;
     EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kNone);
 }

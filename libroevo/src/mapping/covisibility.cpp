@@ -9,9 +9,7 @@ namespace roevo {
 
 namespace {
 
-/// Map keyframes keep every n-th point only, so that fewer of them must agree.
-FineOptions forThinned(FineOptions options) {
-    options.min_votes = 2;
+FineOptions withAllPoints(FineOptions options) {
     options.max_points = std::numeric_limits<int>::max();
     return options;
 }
@@ -19,7 +17,7 @@ FineOptions forThinned(FineOptions options) {
 }  // namespace
 
 CovisibilityGraph::CovisibilityGraph(const FineOptions& fine, int span)
-    : options_(forThinned(fine)), associator_(options_), span_(span) {}
+    : options_(withAllPoints(forThinned(fine))), associator_(options_), span_(span) {}
 
 void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<const MapKeyframe*>& others,
                                const PinholeCamera& camera, double radius) {

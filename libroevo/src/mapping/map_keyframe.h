@@ -3,6 +3,7 @@
 
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/edge_map.h"
+#include "roevo/options.h"
 #include "tracking/keyframe.h"
 
 namespace roevo {
@@ -46,5 +47,8 @@ void compact(MapKeyframe& keyframe);
 /// @param max_points  points are thinned evenly along the edges until there are no more than these
 MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,
                           const PinholeCamera& camera, int max_points);
+
+/// Of edges with every n-th point, fewer must agree on a pair of edges.
+FineOptions forThinned(FineOptions options);
 
 }  // namespace roevo

@@ -17,13 +17,13 @@ constexpr std::size_t kPoints = 200;    ///< kept of a keyframe, the most distin
 // Poses that are further apart are different places
 constexpr double kSamePlace = 0.3;               ///< m
 constexpr double kSameDirection = 15 * kDegree;  ///< rad
-// A place that is merely plausible is believed within so short a reach (what a hand goes in 2 s), where most
-// of it looks as it did: doors 4 m apart repeat
-constexpr double kShortReach = 3.5;   ///< m
-constexpr double kMostlyAlike = 0.6;  ///< share of its points in view
-// One sigma of poses whose edges do not fit
-constexpr double kUnfitPosition = 0.15;     ///< m
-constexpr double kUnfitTurn = 3 * kDegree;  ///< rad
+// A place that is merely plausible is believed within so short a reach (what a hand goes in 2 s): doors 4 m
+// apart repeat. One with weak evidence, where the camera is about there anyway
+constexpr double kShortReach = 3.5, kAboutThere = 1;  ///< m
+// What views from elsewhere have wrong alike, in depth, calibration and the time of rows, one sigma: between
+// real keyframes 0.1 to 0.4 m apart, poses were 1 to 2 cm and 0.4 to 1.4 degrees off where edges say 1 mm
+constexpr double kViewsDiffer = 0.01;         ///< m
+constexpr double kViewsTurn = 0.5 * kDegree;  ///< rad
 
 bool hasOthers(const std::vector<bool>& own) {
     return std::find(own.begin(), own.end(), false) != own.end();
@@ -31,13 +31,21 @@ bool hasOthers(const std::vector<bool>& own) {
 
 }  // namespace
 
+bool Whereabouts::allow(const Pose& T_world_there, int keyframe) const {
+    const Pose apart = T_world_camera.inverse() * T_world_there;
+    const Reach most = reach(keyframe);
+    return std::isfinite(most.distance) && apart.translation().norm() <= most.distance &&
+           rotationAngle(apart) <= most.turn;
+}
+
 Relocaliser::Relocaliser(const PinholeCamera& camera, const OdometryOptions& options)
     : camera_(camera),
       ideal_(camera.undistorted()),
       options_(scaledTo(camera, options)),
       describer_(camera),
       verifier_(options.sensor),
-      registrar_(camera, options) {}
+      registrar_(camera, options, true),
+      confirmer_(camera, options, false) {}
 
 void Relocaliser::load(std::vector<KnownPlace> places) {
     places_ = std::move(places);
@@ -129,24 +137,24 @@ std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& 
     const EdgePoints3D edges = lifted(frame);
     if (edges.size() == 0) return std::nullopt;
     const EdgeRegistration found =
-        registrar_.registerEdges(keyframe, frame, edges, T_keyframe_camera.inverse());
+        confirmer_.registerEdges(keyframe, frame, edges, T_keyframe_camera.inverse());
     if (!found.accepted) return std::nullopt;
     return found.T_frame_keyframe.inverse();
 }
 
-std::optional<RelativePose> Relocaliser::resembled(const Trajectory& trajectory,
-                                                   const Whereabouts& whereabouts) {
+std::vector<RelativePose> Relocaliser::resembled(const Trajectory& trajectory,
+                                                 const Whereabouts& whereabouts) {
     collect();
-    const auto isTwin = [&](const Alike& alike) {
-        const Pose there = trajectory.worldPose({alike.second, alike.first.T_candidate_query, {}});
-        return (there.translation() - whereabouts.centre).norm() > whereabouts.radius(alike.second);
-    };
-    newest_.alike.erase(std::remove_if(newest_.alike.begin(), newest_.alike.end(), isTwin),
-                        newest_.alike.end());
-    if (newest_.alike.empty() || newest_.alike.front().first.inliers < kLeastSimilarPoints)
-        return std::nullopt;
-    const auto& [points, id] = newest_.alike.front();
-    return RelativePose{id, points.T_candidate_query, {}};
+    std::vector<Alike> possible;
+    std::vector<RelativePose> poses;
+    for (const auto& [points, id] : newest_.alike) {
+        const RelativePose pose{id, points.T_candidate_query, {}};
+        if (!whereabouts.allow(trajectory.worldPose(pose), id)) continue;
+        possible.emplace_back(points, id);
+        poses.push_back(pose);
+    }
+    newest_.alike = std::move(possible);
+    return poses;
 }
 
 std::optional<RecognisedPlace> Relocaliser::recognised(const Trajectory& trajectory,
@@ -163,7 +171,7 @@ std::optional<RecognisedPlace> Relocaliser::recognisedElsewhere(const Trajectory
 std::optional<RecognisedPlace> Relocaliser::newestAmong(const std::vector<Alike>& alike,
                                                         const Trajectory& trajectory,
                                                         const Whereabouts& whereabouts) {
-    if (alike.empty() || alike.front().first.inliers < kLeastAgreeingPoints) return std::nullopt;
+    if (alike.empty()) return std::nullopt;
     return surest(registered(alike, *newest_.frame, newest_.edges, places_.back().row_motion), trajectory,
                   whereabouts);
 }
@@ -212,53 +220,49 @@ std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<
                                frame.pyramid.level(0), frame.images.depth);
         const Evidence evidence = evidenceOf(of_points, found, likeness);
         if (evidence == Evidence::kNone) continue;
-        const RelativePose pose{id, found.T_frame_keyframe.inverse(), {found.covariance, {}}};
-        recognised.push_back({pose, evidence, placeConfidence(of_points, found), likeness.share()});
+        RelativePose pose{id, found.T_frame_keyframe.inverse(), {found.covariance, {}}};
+        auto variances = pose.uncertainty.independent.diagonal().array();
+        variances.head<3>() += kViewsDiffer * kViewsDiffer;
+        variances.tail<3>() += kViewsTurn * kViewsTurn;
+        recognised.push_back({pose, evidence, likeness.share()});
     }
     return recognised;
-}
-
-/// Where edges do not fit, the pose is not as well known as they say.
-RecognisedPlace Relocaliser::placeOf(const Recognition& recognition, bool sure) {
-    RecognisedPlace place{recognition.pose, recognition.likeness, sure, recognition.confidence > 0};
-    if (place.fits) return place;
-    auto variances = place.pose.uncertainty.independent.diagonal().array();
-    variances.head<3>() += kUnfitPosition * kUnfitPosition;
-    variances.tail<3>() += kUnfitTurn * kUnfitTurn;
-    return place;
 }
 
 std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<Recognition>& recognised,
                                                    const Trajectory& trajectory,
                                                    const Whereabouts& whereabouts) {
     if (recognised.empty()) return std::nullopt;
-    const auto best = [&](auto&& rank) {
-        return *std::max_element(
-            recognised.begin(), recognised.end(),
-            [&](const Recognition& a, const Recognition& b) { return rank(a) < rank(b); });
+    const auto best = [](const std::vector<Recognition>& among) {
+        return *std::max_element(among.begin(), among.end(), [](const Recognition& a, const Recognition& b) {
+            return std::pair(a.evidence, a.likeness) < std::pair(b.evidence, b.likeness);
+        });
     };
-    const Recognition likeliest =
-        best([](const Recognition& r) { return std::pair(r.evidence, r.confidence); });
-    if (likeliest.evidence == Evidence::kConclusive) return placeOf(likeliest, true);
-    const Recognition fittest =
-        best([](const Recognition& r) { return std::pair(r.confidence, r.likeness); });
-    const Pose there = trajectory.worldPose(fittest.pose);
-    const auto trackOf = [&](const Recognition& of) { return trajectory.beginOfTrack(of.pose.keyframe); };
-    const bool has_rival = std::any_of(recognised.begin(), recognised.end(), [&](const Recognition& other) {
-        if (trackOf(other) != trackOf(fittest)) return false;  // the same place may be in both
-        const Pose apart = there.inverse() * trajectory.worldPose(other.pose);
+    const auto worldPose = [&](const Recognition& r) { return trajectory.worldPose(r.pose); };
+    const auto trackOf = [&](const Recognition& r) { return trajectory.beginOfTrack(r.pose.keyframe); };
+    // What the camera cannot have reached is believed only if it is like no other place, and is no rival
+    std::vector<Recognition> possible;
+    for (const Recognition& r : recognised)
+        if (whereabouts.allow(worldPose(r), r.pose.keyframe)) possible.push_back(r);
+    const std::vector<Recognition>& among = possible.empty() ? recognised : possible;
+    const Recognition likeliest = best(among);
+    if (likeliest.evidence == Evidence::kConclusive)
+        return RecognisedPlace{likeliest.pose, likeliest.likeness, true};
+    const Evidence rivals = std::min(likeliest.evidence, Evidence::kPlausible);
+    const bool has_rival = std::any_of(among.begin(), among.end(), [&](const Recognition& other) {
+        // The same place may be in two tracks
+        if (other.evidence < rivals || trackOf(other) != trackOf(likeliest)) return false;
+        const Pose apart = worldPose(likeliest).inverse() * worldPose(other);
         return apart.translation().norm() > kSamePlace || rotationAngle(apart) > kSameDirection;
     });
     if (has_rival) return std::nullopt;
-    const double distance = (there.translation() - whereabouts.centre).norm(),
-                 radius = whereabouts.radius(fittest.pose.keyframe);
-    const bool tells = fittest.evidence > Evidence::kPlausible ||
-                       (whereabouts.unseen <= kShortReach && fittest.likeness >= kMostlyAlike);
-    if (tells && std::isfinite(radius) && distance <= radius) return placeOf(fittest, true);
-    const Recognition strongest =
-        best([](const Recognition& r) { return std::pair(r.evidence, r.likeness); });
-    if (strongest.evidence != Evidence::kStrong) return std::nullopt;
-    return placeOf(strongest, false);
+    const bool is_about_there = whereabouts.reach(likeliest.pose.keyframe).distance <= kAboutThere;
+    const Evidence needed = is_about_there                      ? Evidence::kWeak
+                            : whereabouts.unseen <= kShortReach ? Evidence::kPlausible
+                                                                : Evidence::kStrong;
+    const bool sure = !possible.empty() && likeliest.evidence >= needed;
+    if (!sure && likeliest.evidence < Evidence::kFitting) return std::nullopt;
+    return RecognisedPlace{likeliest.pose, likeliest.likeness, sure};
 }
 
 }  // namespace roevo

@@ -13,13 +13,19 @@
 
 namespace roevo {
 
+/// How far a pose may be off at most. Infinite where that is not known at all.
+struct Reach {
+    double distance = 0, turn = 0;  ///< m, rad
+};
+
 /// Where a camera can be at most.
 struct Whereabouts {
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< in the world, m
-    /// How far from there, m, relative to a keyframe. Infinite where that is not known at all: of the places
-    /// there only those that are like no other are believed.
-    std::function<double(int keyframe)> radius;
+    Pose T_world_camera;  ///< where it is thought to be
+    /// How far from there, relative to a keyframe.
+    std::function<Reach(int keyframe)> reach;
     double unseen = 0;  ///< m; of it, how far it can have come while nothing was tracked
+
+    bool allow(const Pose& T_world_there, int keyframe) const;
 };
 
 /// What a keyframe is recognised by.
@@ -35,7 +41,6 @@ struct RecognisedPlace {
     RelativePose pose;
     double likeness = 0;  ///< share of the place's points in view that look as they did
     bool sure = false;    ///< else a second look must agree
-    bool fits = false;    ///< the edges do, so that the pose is as good as it says
 };
 
 /// Remembers what keyframes look like, and finds which of them a frame shows. Places that look alike are not
@@ -64,11 +69,11 @@ class Relocaliser {
     void add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, std::vector<bool> own,
              int end);
 
-    /// The older keyframe of its own track that the newest one looks most like, and its pose relative to that
-    /// by points alone: about right, with no covariance. Waits for the thread.
+    /// Older keyframes of its own track that the newest one looks like, and its poses relative to them by
+    /// points alone: about right, with no covariance. Waits for the thread.
     /// @param whereabouts  of the newest: places of its own track that are out of reach are twins
-    [[nodiscard]] std::optional<RelativePose> resembled(const Trajectory& trajectory,
-                                                        const Whereabouts& whereabouts);
+    [[nodiscard]] std::vector<RelativePose> resembled(const Trajectory& trajectory,
+                                                      const Whereabouts& whereabouts);
     /// The place of its own track that the newest keyframe shows; after resembled().
     [[nodiscard]] std::optional<RecognisedPlace> recognised(const Trajectory& trajectory,
                                                             const Whereabouts& whereabouts);
@@ -90,7 +95,7 @@ class Relocaliser {
     struct Recognition {
         RelativePose pose;
         Evidence evidence = Evidence::kNone;
-        double confidence = 0, likeness = 0;
+        double likeness = 0;
     };
     using Alike = std::pair<Verification, int>;  ///< and the keyframe
     struct Described {
@@ -99,7 +104,6 @@ class Relocaliser {
         EdgePoints3D edges;
         std::vector<Alike> alike, elsewhere;  ///< in its own track and in others
     };
-    static RecognisedPlace placeOf(const Recognition& recognition, bool sure);
     static std::optional<RecognisedPlace> surest(const std::vector<Recognition>& recognised,
                                                  const Trajectory& trajectory,
                                                  const Whereabouts& whereabouts);
@@ -120,7 +124,8 @@ class Relocaliser {
     PlaceDescriber describer_;
     PlaceIndex index_;
     PlaceVerifier verifier_;
-    EdgeRegistrar registrar_;
+    EdgeRegistrar registrar_;         ///< to what is remembered of keyframes
+    EdgeRegistrar confirmer_;         ///< to a whole one
     std::vector<KnownPlace> places_;  ///< of each keyframe, by its id
     PlacePoints points_;              ///< of the frame
     Described newest_;                ///< keyframe; its place is among places_

@@ -11,10 +11,11 @@
 namespace roevo {
 namespace {
 
-// How far a lost camera can have come
-constexpr double kReach = 0.3;     // m
-constexpr double kTopSpeed = 1.5;  // m/s
-constexpr double kTopTurn = 1.5;   // rad/s
+// How far off a tracked camera can be, and how far a lost one can have come
+constexpr double kReach = 0.3;               // m
+constexpr double kReachTurn = 20 * kDegree;  // rad
+constexpr double kTopSpeed = 1.5;            // m/s
+constexpr double kTopTurn = 1.5;             // rad/s
 
 // Two keyframes in a row that were recognised agree on where their track belongs
 constexpr int kInARow = 3;                // keyframes
@@ -148,11 +149,11 @@ Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker
         return fault;
     numberEdges(*fresh, nullptr, {}, next_cluster_);
     recognise();
-    Misplacement misplaced;
+    Reach misplaced;
     if (reference_) {
-        misplaced.distance = misplacementOf(reference_->id) + driftOf(reference_->id) + kTopSpeed * lost_for;
-        const auto before = misplacements_.find(trajectory_.beginOfTrack(reference_->id));
-        misplaced.turn = (before == misplacements_.end() ? 0 : before->second.turn) + kTopTurn * lost_for;
+        const Reach before = misplacementOf(reference_->id), drift = driftOf(reference_->id);
+        misplaced.distance = before.distance + drift.distance + kTopSpeed * lost_for;
+        misplaced.turn = before.turn + kTopTurn * lost_for;
     }
     fresh->id = trajectory_.beginTrack(frame.timestamp(), T_world_camera, covariance);
     misplacements_[fresh->id] = misplaced;
@@ -202,15 +203,16 @@ void World::noteTrack() {
     for (auto& [track, misplaced] : misplacements_) misplaced.distance = track == 0 ? 0 : kUnknown;
 }
 
-double World::misplacementOf(int keyframe) const {
+Reach World::misplacementOf(int keyframe) const {
     const int begin = trajectory_.beginOfTrack(keyframe);
     const auto found = misplacements_.find(begin);
-    if (found == misplacements_.end()) return 0;
+    if (found == misplacements_.end()) return {};
+    const auto& [distance, turn] = found->second;
     const Pose since = trajectory_.keyframePose(begin).inverse() * trajectory_.keyframePose(keyframe);
-    return found->second.distance + std::min(2.0, found->second.turn) * since.translation().norm();
+    return {distance + std::min(2.0, turn) * since.translation().norm(), turn};
 }
 
-double World::driftOf(int keyframe) const {
+Reach World::driftOf(int keyframe) const {
     const auto covarianceOf = [&](int id) {
         const Pose axes(trajectory_.keyframePose(id).rotation(), Eigen::Vector3d::Zero());
         const Matrix6d to_camera = carriedTo(axes);
@@ -220,9 +222,11 @@ double World::driftOf(int keyframe) const {
     const Matrix6d by =
         carriedTo(trajectory_.keyframePose(begin).inverse() * trajectory_.keyframePose(keyframe));
     const Matrix6d drift = covarianceOf(keyframe) - by * covarianceOf(begin) * by.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(drift.topLeftCorner<3, 3>(),
-                                                              Eigen::EigenvaluesOnly);
-    return kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
+    const auto most = [](const Eigen::Matrix3d& covariance) {
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
+        return kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
+    };
+    return {most(drift.topLeftCorner<3, 3>()), most(drift.bottomRightCorner<3, 3>())};
 }
 
 Matrix6d World::covariance(const RelativePose& pose) const {
@@ -240,15 +244,18 @@ Matrix6d World::motionCovariance(std::size_t from, std::size_t to) const {
 
 Whereabouts World::whereabouts(const RelativePose& pose, double lost_for) const {
     const int keyframe = pose.keyframe;
-    if (keyframe < 0) return {Eigen::Vector3d::Zero(), [](int) { return kUnknown; }, kUnknown};
-    const double unseen = kReach + kTopSpeed * lost_for, misplaced = misplacementOf(keyframe),
-                 within_track = unseen + driftOf(keyframe);
-    const auto radius = [this, keyframe, within_track, misplaced](int other) {
-        const bool own = trajectory_.beginOfTrack(other) == trajectory_.beginOfTrack(keyframe);
-        return own ? within_track : within_track + misplaced + misplacementOf(other);
+    if (keyframe < 0) return {Pose(), [](int) { return Reach{kUnknown, kUnknown}; }, kUnknown};
+    const Reach drift = driftOf(keyframe), misplaced = misplacementOf(keyframe);
+    const double unseen = kReach + kTopSpeed * lost_for;
+    const Reach within_track{unseen + drift.distance, kReachTurn + kTopTurn * lost_for + drift.turn};
+    const auto reach = [this, keyframe, within_track, misplaced](int other) {
+        if (trajectory_.beginOfTrack(other) == trajectory_.beginOfTrack(keyframe)) return within_track;
+        const Reach there = misplacementOf(other);
+        return Reach{within_track.distance + misplaced.distance + there.distance,
+                     within_track.turn + misplaced.turn + there.turn};
     };
     // What was lost before is not counted while it is lost again
-    return {trajectory_.worldPose(pose).translation(), radius, lost_for > 0 ? unseen : unseen + misplaced};
+    return {trajectory_.worldPose(pose), reach, lost_for > 0 ? unseen : unseen + misplaced.distance};
 }
 
 /// What older keyframe the newest one shows.
@@ -257,21 +264,23 @@ void World::recognise() {
     const RelativePose newest{reference_->id, Pose::Identity(), {}};
     const Whereabouts near = whereabouts(newest, 0);
     if (options_.loss.recognise && joinElsewhere(near)) return;
-    const auto alike = relocaliser_.resembled(trajectory_, near);
-    if (!alike) return;
-    if (isWithinReach(*alike)) {
-        trajectory_.relate(alike->keyframe, newest.keyframe);
-        return;
+    bool drifted = false;
+    for (const RelativePose& alike : relocaliser_.resembled(trajectory_, near)) {
+        if (isWithinReach(alike))
+            trajectory_.relate(alike.keyframe, newest.keyframe);
+        else
+            drifted = true;
     }
+    if (!drifted) return;
     const auto place = relocaliser_.recognised(trajectory_, near);
-    if (place && place->fits && !isWithinReach(place->pose)) closeLoop({newest.keyframe, *place});
+    if (place && !isWithinReach(place->pose)) closeLoop({newest.keyframe, *place});
 }
 
 /// Whether the map can relate the edges of the place by itself, where the newest keyframe is thought to be.
 bool World::isWithinReach(const RelativePose& pose) const {
     return imageMotion(trajectory_.worldPose(pose).inverse(),
                        trajectory_.keyframePose(reference_->id).inverse(), camera_.fx,
-                       reference_->typicalDepth()) <= options_.fine.search_radius;
+                       reference_->typicalDepth()) <= options_.fine.final_radius;
 }
 
 /// A track that was begun after a loss is moved to where its newest keyframe is recognised.

@@ -92,10 +92,10 @@ class World {
         RecognisedPlace place;
     };
     std::optional<Look> agreeingLook(const Look& newest, double tolerance);
-    /// How far a keyframe's track may be from where it was put, m, at the keyframe.
-    double misplacementOf(int keyframe) const;
-    /// How far a keyframe may have drifted from the first one of its track, m.
-    double driftOf(int keyframe) const;
+    /// How far a keyframe's track may be from where it was put, at the keyframe.
+    Reach misplacementOf(int keyframe) const;
+    /// How far a keyframe may have drifted from the first one of its track.
+    Reach driftOf(int keyframe) const;
     /// @param lost_for  s, since the pose was known; of no keyframe where nothing is
     Whereabouts whereabouts(const RelativePose& pose, double lost_for) const;
     bool joinElsewhere(const Whereabouts& near);
@@ -125,13 +125,10 @@ class World {
     bool held_ = false;
     bool localised_ = false;  // in the map that was loaded
     double timestamp_ = 0, seconds_per_row_ = 0;
-    struct Misplacement {
-        double distance = 0, turn = 0;  // m, rad
-    };
-    std::map<int, Misplacement> misplacements_;  // of tracks that were begun after a loss
-    double recognised_at_ = 0;                   // s; when the place of the newest keyframe is to be known
-    bool recognising_ = false;                   // it is not known yet
-    std::optional<Look> look_;                   // that a second one must agree with
+    std::map<int, Reach> misplacements_;  // of tracks that were begun after a loss
+    double recognised_at_ = 0;            // s; when the place of the newest keyframe is to be known
+    bool recognising_ = false;            // it is not known yet
+    std::optional<Look> look_;            // that a second one must agree with
     WorldChange change_;
 };
 

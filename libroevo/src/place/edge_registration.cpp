@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapping/map_keyframe.h"
 #include "tracking/camera_scale.h"
 #include "tracking/fine_tracker.h"
 
@@ -19,8 +20,6 @@ constexpr double kOverRelaxation = 1.6;  ///< of the steps once the radius is th
 // What it takes to be accepted
 constexpr int kLeastInliers = 150;
 constexpr double kLeastMatched = 0.4;  ///< of the edges, both ways
-/// Of the edges, both ways, where twenty points agree: no two different rooms had more than ten such points.
-constexpr double kLeastPlausible = 0.25;
 constexpr double kLeastVisible = 0.25;
 constexpr double kLeastDepthAgreement = 0.7;
 constexpr double kMostSigmaTranslation = 0.02;  ///< m
@@ -28,7 +27,8 @@ constexpr double kMostSigmaRotation = 1 * kDegree;
 constexpr double kDepthSigmas = 3;    ///< within which depths agree
 constexpr double kDepthFloor = 0.02;  ///< m, one sigma: foregrounds are found differently from elsewhere
 
-OdometryOptions widened(OdometryOptions options, double scale) {
+OdometryOptions widened(OdometryOptions options, double scale, bool thinned) {
+    if (thinned) options.fine = forThinned(options.fine);
     options.fine.search_radius = std::max(options.fine.search_radius, kSearchRadius * scale);
     options.fine.max_iterations = std::max(options.fine.max_iterations, kMostIterations);
     return options;
@@ -41,16 +41,9 @@ double worstSigma(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-double placeConfidence(const Verification& points, const EdgeRegistration& edges) {
-    if (!edges.plausible || points.inliers < kLeastSimilarPoints) return 0;
-    return (static_cast<double>(points.inliers) / points.matches + edges.keyframe_matched +
-            edges.frame_matched) /
-           3;
-}
-
-EdgeRegistrar::EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions& options)
+EdgeRegistrar::EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions& options, bool thinned)
     : ideal_(camera.undistorted()),
-      options_(widened(scaledTo(camera, options), camera.pixelScale())),
+      options_(widened(scaledTo(camera, options), camera.pixelScale(), thinned)),
       term_(camera, options_),
       associator_(options_.fine) {}
 
@@ -81,13 +74,11 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     out.inliers = term_.inliers();
     out.keyframe_matched = term_.matches().matchedRatio();
     lookBack(keyframe, frame_edges, out);
-    const double matched = std::min(out.keyframe_matched, out.frame_matched);
     out.determined = out.inliers >= kLeastInliers && out.visible >= kLeastVisible &&
                      out.depth_agreement >= kLeastDepthAgreement &&
                      out.sigma_translation <= kMostSigmaTranslation &&
                      out.sigma_rotation <= kMostSigmaRotation;
-    out.plausible = out.determined && matched >= kLeastPlausible;
-    out.accepted = out.plausible && matched >= kLeastMatched;
+    out.accepted = out.determined && std::min(out.keyframe_matched, out.frame_matched) >= kLeastMatched;
     return out;
 }
 

@@ -18,22 +18,8 @@ struct EdgeRegistration {
     double sigma_translation = 0;  ///< m, in the worst direction
     double sigma_rotation = 0;     ///< rad, about the worst axis
     bool determined = false;       ///< edges and depths of both hold the pose in every direction
-    bool plausible = false;        ///< and the edges do not contradict what points that look alike say
     bool accepted = false;         ///< and they agree; those of a place that looks alike do, too
 };
-
-/// How sure it is that this is the place, 0 to 1: the mean of the shares of similar points that agree and of
-/// edges found, both ways; 0 where the edges contradict or few points agree.
-double placeConfidence(const Verification& points, const EdgeRegistration& edges);
-
-/// Confidence from which on no other place looked so much alike where the edges were accepted (0.63 was the
-/// most, in a corridor with equal doors). Below it, something else must tell: how far the camera may have
-/// moved, or a second keyframe.
-inline constexpr double kUnambiguousConfidence = 0.68;
-
-/// Fewer similar points that agree prove nothing: symmetric furniture, seen from its other side, had up
-/// to 15.
-inline constexpr int kLeastSimilarPoints = 20;
 
 /// Registers a frame to a keyframe that it may never have been tracked against, by their edges only: from a
 /// pose that is known to some centimetres, with a search radius that narrows down, and no motion prior.
@@ -42,7 +28,8 @@ class EdgeRegistrar {
   public:
     /// @param camera   with its lens
     /// @param options  as given: scaled to the camera here
-    EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions& options);
+    /// @param thinned  keyframes come with every n-th point of their edges
+    EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions& options, bool thinned);
 
     /// @param frame_edges  those of the frame that have depth
     /// @param T_start      T_frame_keyframe

@@ -21,7 +21,7 @@ constexpr double kCellSize = 40;  ///< px, of the grid over the image
 // Whether a point of a place is seen again
 constexpr double kLeastInside = 0.5;  ///< radii of its patch, from the image's border
 constexpr double kHidden = 0.9;       ///< of its depth; what is nearer hides it
-constexpr int kAlikeBits = 64;        ///< that may differ
+constexpr int kAlikeBits = 96;        ///< that may differ; of anything else half of the 256 do
 
 /// The smaller eigenvalue of the second moments of the image gradient about a pixel, in grey levels squared:
 /// how well the place of the pixel is known in the worse direction, which is that of the edge. 0 at the

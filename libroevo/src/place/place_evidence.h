@@ -7,17 +7,16 @@ namespace roevo {
 /// How sure it is that a frame shows a place.
 enum class Evidence {
     kNone,        ///< contradicted, or too little
+    kWeak,        ///< to be believed only where the camera is about there anyway
     kPlausible,   ///< to be believed only where the camera can be, and where nothing else looks like it
-    kStrong,      ///< a second look that agrees is needed
+    kFitting,     ///< the same; elsewhere a second look must agree
+    kStrong,      ///< the same; to be believed where the camera can be
     kConclusive,  ///< to be believed at once
 };
 
-/// Fewer similar points that agree are no evidence.
-inline constexpr int kLeastAgreeingPoints = 15;
-
 /// Points that look alike and edges that fit are found at other places, too, where doors or furniture repeat;
-/// what differs there is what else surrounds them. Edges of one place may fit badly where one image is
-/// blurred; what surrounds its points looks the same then.
+/// what differs there is what else surrounds the points. Where a camera can be tells more than all of this:
+/// what repeats does so some metres apart, or turned.
 Evidence evidenceOf(const Verification& points, const EdgeRegistration& edges, const Likeness& likeness);
 
 }  // namespace roevo
