@@ -107,8 +107,9 @@ TEST_F(PlaceRegistration, EvidenceIsWhatSurroundsThePointsAndThatEdgesHoldThePos
     EXPECT_EQ(evidenceOf(points, edges, other), Evidence::kFitting) << "seen from elsewhere";
     points.inliers = 19;
     EXPECT_EQ(evidenceOf(points, edges, twin), Evidence::kWeak);
-    points.inliers = 14;
-    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kStrong);
+    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kConclusive);
+    points.inliers = 15;
+    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kWeak) << "furniture seen from its other side";
     edges.determined = false;
     EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kNone);
 }

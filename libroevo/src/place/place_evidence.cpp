@@ -14,16 +14,16 @@ constexpr double kSame = 0.99, kSimilar = 0.97, kLeast = 0.8;  ///< shares of wh
 constexpr double kMatched = 0.8,
                  kFit = 0.7;  ///< shares of edges found both ways; mean of these and of points
 /// Points that agree: symmetric furniture, seen from its other side, had up to 15.
-constexpr int kManyPoints = 20, kSomePoints = 15;
+constexpr int kManyPoints = 20, kSomePoints = 16;
 
 }  // namespace
 
 Evidence evidenceOf(const Verification& points, const EdgeRegistration& edges, const Likeness& likeness) {
     if (!edges.determined || likeness.visible < kLeastInView) return Evidence::kNone;
     const double alike = likeness.share();
-    const bool many = points.inliers >= kManyPoints;
-    if (alike >= kSame && points.inliers >= kSomePoints) return Evidence::kConclusive;
-    if (alike >= kSimilar) return Evidence::kStrong;
+    const bool some = points.inliers >= kSomePoints, many = points.inliers >= kManyPoints;
+    if (some && alike >= kSame) return Evidence::kConclusive;
+    if (some && alike >= kSimilar) return Evidence::kStrong;
     const double agreed = static_cast<double>(points.inliers) / points.matches;
     const double fit = (agreed + edges.keyframe_matched + edges.frame_matched) / 3;
     if (many && fit >= kFit && std::min(edges.keyframe_matched, edges.frame_matched) >= kMatched)
