@@ -97,7 +97,8 @@ TEST_F(PlaceRegistration, EvidenceIsWhatSurroundsThePointsAndThatEdgesHoldThePos
     edges.determined = true;
     edges.keyframe_matched = 0.9;
     edges.frame_matched = 0.79;
-    const Likeness same{100, 99}, similar{100, 97}, twin{100, 96}, other{100, 79}, little{29, 29};
+    edges.visible = 0.49;
+    const Likeness same{100, 99}, similar{100, 98}, twin{100, 97}, other{100, 79}, little{29, 29};
     EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kConclusive);
     EXPECT_EQ(evidenceOf(points, edges, similar), Evidence::kStrong);
     EXPECT_EQ(evidenceOf(points, edges, twin), Evidence::kPlausible) << "another door of the same kind";
@@ -105,6 +106,8 @@ TEST_F(PlaceRegistration, EvidenceIsWhatSurroundsThePointsAndThatEdgesHoldThePos
     EXPECT_EQ(evidenceOf(points, edges, little), Evidence::kNone);
     edges.frame_matched = 0.8;
     EXPECT_EQ(evidenceOf(points, edges, other), Evidence::kFitting) << "seen from elsewhere";
+    edges.visible = 0.5;
+    EXPECT_EQ(evidenceOf(points, edges, other), Evidence::kNone);
     points.inliers = 19;
     EXPECT_EQ(evidenceOf(points, edges, twin), Evidence::kWeak);
     EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kConclusive);
