@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 
 #include "core/support/real_clip.h"
 #include "evaluation/evaluate.h"
@@ -87,6 +88,29 @@ INSTANTIATE_TEST_SUITE_P(Clips, RealClip,
                                            Clip{"tum_fr3_structure_notexture_far_80", 0.016, 0.012},
                                            Clip{"icl_office_kt0_50", 0.009, 0.006}),
                          [](const auto& info) { return std::string(info.param.name); });
+
+// The same desk, recorded twice, minutes apart; motion capture knows both in one frame.
+class TwoRecordings : public ::testing::TestWithParam<Mode> {};
+
+TEST_P(TwoRecordings, OfADeskAreOneMap) {
+    OdometryOptions options;
+    options.mode = GetParam();
+    std::unique_ptr<Odometry> odometry;
+    std::vector<StampedPose> truth;
+    for (const char* name : {"tum_fr1_xyz_150", "tum_fr1_rpy_100"}) {
+        const std::string folder = test::dataFolder() + "/" + name;
+        if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
+        const DatasetReader reader = openDataset(folder);
+        for (const StampedPose& pose : readTumTrajectory(reader.groundTruthPath())) truth.push_back(pose);
+        if (!odometry) odometry = std::make_unique<Odometry>(reader.camera(), options);
+        for (std::size_t i = 0; i < reader.size(); ++i) (void)odometry->processFrame(reader.readFrame(i));
+    }
+    const double both = evaluate(truth, odometry->trajectory()).ate.translation.rmse;
+    RecordProperty("cm", std::to_string(100 * both));
+    EXPECT_LT(both, GetParam() == Mode::kBundleAdjustment ? 0.008 : 0.016);
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, TwoRecordings, ::testing::Values(Mode::kTracking, Mode::kBundleAdjustment));
 
 }  // namespace
 }  // namespace roevo
