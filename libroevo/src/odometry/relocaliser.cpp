@@ -18,8 +18,10 @@ constexpr std::size_t kPoints = 200;    ///< kept of a keyframe, the most distin
 constexpr double kSamePlace = 0.3;               ///< m
 constexpr double kSameDirection = 15 * kDegree;  ///< rad
 // A place that is merely plausible is believed within so short a reach (what a hand goes in 2 s): doors 4 m
-// apart repeat. One with weak evidence, where the camera is about there anyway
+// apart repeat. One with weak evidence is worth a second look where the camera is about there anyway
 constexpr double kShortReach = 3.5, kAboutThere = 1;  ///< m
+/// Of the edges, both ways: fewer, as of a blurred image, tell the place and not the pose.
+constexpr double kLeastMatched = 0.25;
 // What views from elsewhere have wrong alike, in depth, calibration and the time of rows, one sigma: between
 // real keyframes 0.1 to 0.4 m apart, poses were 1 to 2 cm and 0.4 to 1.4 degrees off where edges say 1 mm
 constexpr double kViewsDiffer = 0.01;         ///< m
@@ -224,7 +226,8 @@ std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<
         auto variances = pose.uncertainty.independent.diagonal().array();
         variances.head<3>() += kViewsDiffer * kViewsDiffer;
         variances.tail<3>() += kViewsTurn * kViewsTurn;
-        recognised.push_back({pose, evidence, likeness.share()});
+        const double matched = std::min(found.keyframe_matched, found.frame_matched);
+        recognised.push_back({pose, evidence, likeness.share(), matched});
     }
     return recognised;
 }
@@ -246,7 +249,8 @@ std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<Recognition
         if (whereabouts.allow(worldPose(r), r.pose.keyframe)) possible.push_back(r);
     const std::vector<Recognition>& among = possible.empty() ? recognised : possible;
     const Recognition likeliest = best(among);
-    if (likeliest.evidence == Evidence::kConclusive)
+    const bool holds = likeliest.matched >= kLeastMatched;
+    if (holds && likeliest.evidence == Evidence::kConclusive)
         return RecognisedPlace{likeliest.pose, likeliest.likeness, true};
     const Evidence rivals = std::min(likeliest.evidence, Evidence::kPlausible);
     const bool has_rival = std::any_of(among.begin(), among.end(), [&](const Recognition& other) {
@@ -256,12 +260,12 @@ std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<Recognition
         return apart.translation().norm() > kSamePlace || rotationAngle(apart) > kSameDirection;
     });
     if (has_rival) return std::nullopt;
-    const bool is_about_there = whereabouts.reach(likeliest.pose.keyframe).distance <= kAboutThere;
-    const Evidence needed = is_about_there                      ? Evidence::kWeak
-                            : whereabouts.unseen <= kShortReach ? Evidence::kPlausible
-                                                                : Evidence::kStrong;
-    const bool sure = !possible.empty() && likeliest.evidence >= needed;
-    if (!sure && likeliest.evidence < Evidence::kFitting) return std::nullopt;
+    const bool is_possible = !possible.empty();
+    const Evidence needed = whereabouts.unseen <= kShortReach ? Evidence::kPlausible : Evidence::kStrong;
+    const bool sure = holds && is_possible && likeliest.evidence >= needed;
+    const bool is_about_there =
+        is_possible && whereabouts.reach(likeliest.pose.keyframe).distance <= kAboutThere;
+    if (!sure && !is_about_there && likeliest.evidence < Evidence::kFitting) return std::nullopt;
     return RecognisedPlace{likeliest.pose, likeliest.likeness, sure};
 }
 

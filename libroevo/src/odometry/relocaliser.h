@@ -95,7 +95,7 @@ class Relocaliser {
     struct Recognition {
         RelativePose pose;
         Evidence evidence = Evidence::kNone;
-        double likeness = 0;
+        double likeness = 0, matched = 0;
     };
     using Alike = std::pair<Verification, int>;  ///< and the keyframe
     struct Described {

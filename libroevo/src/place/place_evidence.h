@@ -7,7 +7,7 @@ namespace roevo {
 /// How sure it is that a frame shows a place.
 enum class Evidence {
     kNone,        ///< contradicted, or too little
-    kWeak,        ///< to be believed only where the camera is about there anyway
+    kWeak,        ///< a second look must agree where the camera is about there anyway; else the same
     kPlausible,   ///< to be believed only where the camera can be, and where nothing else looks like it
     kFitting,     ///< the same; elsewhere a second look must agree
     kStrong,      ///< the same; to be believed where the camera can be
