@@ -141,7 +141,7 @@ TEST_F(PlaceClips, ADeskIsFoundAgainInAnotherRecording) {
         errors.push_back(poseError(place.T_frame_keyframe, truth));
     }
     RecordProperty("found", found);
-    ASSERT_GE(found, 4) << "of " << second.views.size() << ", of which many are blurred or look elsewhere";
+    ASSERT_GE(found, 18) << "of " << second.views.size();
     EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.09);
 }
 

@@ -6,6 +6,7 @@
 #include "core/support/place_views.h"
 #include "core/support/random_pose.h"
 #include "core/support/simulated.h"
+#include "mapping/map_keyframe.h"
 #include "place/place_evidence.h"
 
 namespace roevo {
@@ -49,6 +50,30 @@ TEST_F(PlaceRegistration, ConvergesFromWhatSimilarPointsTell) {
         EXPECT_GT(found.depth_agreement, 0.8);
         EXPECT_LT(found.sigma_translation, 0.01);
     }
+}
+
+TEST_F(PlaceRegistration, EdgesOfAThinnedKeyframeAreFoundAsThoseOfAWholeOne) {
+    constexpr std::size_t kEvery = 5;
+    Keyframe thinned;
+    const EdgePoints3D& whole = keyframe_->keyframe.edges;
+    const std::vector<Rgb> colours(whole.size());
+    MapKeyframe kept =
+        toMapKeyframe(keyframe_->keyframe, colours, camera_, static_cast<int>(whole.size() / kEvery));
+    ASSERT_LT(kept.size(), whole.size() / 4);
+    thinned.median_depth = kept.median_depth;
+    thinned.edges.image = kept.image;
+    thinned.edges.points = kept.points;
+    thinned.edges.weight = kept.weight;
+    thinned.edges.correction.assign(kept.size(), 0);
+    for (int e = 0; e < kept.image.numEdges(); ++e) thinned.clusters.push_back(e);
+    const auto matched = [&](bool says_so) {
+        return EdgeRegistrar(camera_, OdometryOptions(), says_so)
+            .registerEdges(thinned, frame_->frame, frame_->keyframe.edges, truth())
+            .keyframe_matched;
+    };
+    const double of_whole = from(truth()).keyframe_matched;
+    EXPECT_GT(matched(true), 0.9 * of_whole);
+    EXPECT_LT(matched(false), 0.9 * of_whole) << "or the votes make no difference, and the case tests little";
 }
 
 TEST_F(PlaceRegistration, IsNotAcceptedSomewhereElse) {

@@ -7,10 +7,10 @@ namespace roevo {
 /// How sure it is that a frame shows a place.
 enum class Evidence {
     kNone,        ///< contradicted, or too little
-    kWeak,        ///< a second look must agree where the camera is about there anyway; else the same
-    kPlausible,   ///< to be believed only where the camera can be, and where nothing else looks like it
-    kFitting,     ///< the same; elsewhere a second look must agree
-    kStrong,      ///< the same; to be believed where the camera can be
+    kWeak,        ///< worth a second look where the camera is about there anyway
+    kPlausible,   ///< to be believed where the camera came little unseen, and nothing there looks like it
+    kFitting,     ///< and worth a second look elsewhere
+    kStrong,      ///< to be believed wherever the camera can be, and nothing there looks like it
     kConclusive,  ///< to be believed at once
 };
 
