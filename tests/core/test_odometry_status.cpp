@@ -301,6 +301,33 @@ TEST_F(OdometryStatus, ALongLossIsHeldAndReanchoredWithAReason) {
     }
 }
 
+TEST_F(OdometryStatus, FramesThatWereLostAreTrackedFromWhereTrackingBeginsAnew) {
+    feedRoom(0, 10);
+    const auto before = static_cast<std::ptrdiff_t>(odometry_.trajectory().size());
+    auto elsewhere = smallRoom();
+    elsewhere.scene = "corridor";
+    const int bridged = OdometryOptions().loss.max_predicted;
+    const Sequence other = simulate(elsewhere, bridged + 2);
+    double time = frameAt(9).timestamp;
+    std::vector<FrameStatus> statuses;
+    for (RgbdFrame frame : other.frames) {
+        frame.timestamp = (time += 1 / 30.0);
+        statuses.push_back(feed(frame).status);
+    }
+    std::vector<FrameStatus> expected(static_cast<std::size_t>(bridged), FrameStatus::kPredicted);
+    expected.push_back(FrameStatus::kInitialised);
+    expected.push_back(FrameStatus::kOk);
+    EXPECT_EQ(statuses, expected);
+    const auto trajectory = odometry_.trajectory();
+    const std::vector<StampedPose> final(trajectory.begin() + before, trajectory.end());
+    ASSERT_EQ(final.size(), other.truth.size());
+    for (std::size_t i = 0; i < final.size(); ++i) {
+        const Pose estimated = final.back().T_world_camera.inverse() * final[i].T_world_camera;
+        const Pose truth = other.truth.back().T_world_camera.inverse() * other.truth[i].T_world_camera;
+        EXPECT_LT((estimated.translation() - truth.translation()).norm(), 0.004) << i;
+    }
+}
+
 TEST_F(OdometryStatus, UnusableFirstFramesAreRejectedUntilOneWillDo) {
     const FrameResult dark = feed(black(0.1));
     EXPECT_EQ(dark.status, FrameStatus::kRejected);

@@ -126,11 +126,16 @@ TEST(Trajectory, FramesWithoutAMeasuredPoseAreInterpolatedInTime) {
     for (const double t : {1.0, 3.0}) trajectory.addFrame(t, from(0, at(-7)), false);
     trajectory.addFrame(4, from(0, at(8)));
     trajectory.addFrame(5, from(0, at(-7)), false);
-    const auto frames = trajectory.frames();
+    auto frames = trajectory.frames();
     EXPECT_NEAR(frames[1].T_world_camera.translation().x(), 2, 1e-12);
     EXPECT_NEAR(frames[2].T_world_camera.translation().x(), 6, 1e-12);
     EXPECT_NEAR(frames[4].T_world_camera.translation().x(), -7, 1e-12) << "no other end is known";
     EXPECT_NEAR(trajectory.live()[1].T_world_camera.translation().x(), -7, 1e-12);
+    trajectory.measureAfterwards(3, from(0, at(5)));
+    frames = trajectory.frames();
+    EXPECT_NEAR(frames[2].T_world_camera.translation().x(), 5, 1e-12);
+    EXPECT_NEAR(frames[1].T_world_camera.translation().x(), 5.0 / 3, 1e-12) << "interpolated up to it";
+    EXPECT_NEAR(trajectory.live()[2].T_world_camera.translation().x(), -7, 1e-12) << "as it was known then";
 }
 
 /// Keyframes 0 and 1 of one track, 2 of another, and 3, which was recognised at keyframe 0.

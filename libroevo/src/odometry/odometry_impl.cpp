@@ -6,6 +6,11 @@
 #include "tracking/se3.h"
 
 namespace roevo {
+namespace {
+
+constexpr std::size_t kTrackedBack = 10;  // lost frames that are kept
+
+}  // namespace
 
 /// The paper's pipeline figure.
 FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // Sec. IV
@@ -22,6 +27,7 @@ FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // 
 
     lost_frames = 0;
     learn(tracking, prediction);
+    if (!lost.empty()) trackBack(tracking);
     Outcome outcome;
     outcome.tracking = std::move(tracking);
     if (keyframeIsDue(world.reference(), outcome.tracking, options.keyframe))
@@ -41,7 +47,10 @@ void Odometry::Impl::expect(double timestamp) {
 void Odometry::Impl::take(std::unique_ptr<Frame> fresh) {
     is_frozen = false;
     expect(fresh->timestamp());
-    preparer.giveBack(std::exchange(frame_before, std::exchange(frame, std::move(fresh))));
+    auto before = std::exchange(frame, std::move(fresh));
+    if (lost_frames == 0) return preparer.giveBack(std::exchange(frame_before, std::move(before)));
+    lost.push_back(std::move(before));
+    if (lost.size() > kTrackedBack) lost.erase(lost.begin());
 }
 
 Tracking Odometry::Impl::track(const Prediction& prediction) {
@@ -217,6 +226,28 @@ void Odometry::Impl::learn(const Tracking& tracking, const Prediction& predictio
             motion.firstRows(frame->timestamp() - reference.timestamp, tracking.pose.T_keyframe_camera));
     else
         tracker->learnReadout(reference, *frame, tracking, prediction.shutter, motion.readout());
+}
+
+/// Frames in which the camera was lost are tracked once more from where it was found, backwards in time.
+void Odometry::Impl::trackBack(const Tracking& tracking) {
+    MotionModel backwards(options.motion, options.sensor, camera.height);
+    backwards.expect(-frame->timestamp());
+    backwards.anchor(-frame->timestamp(), tracking.pose.T_keyframe_camera);
+    if (measured) {  // the frame before, in which the camera was found
+        backwards.expect(-frame_before->timestamp());
+        backwards.measure(-frame_before->timestamp(), motion.lastPose());
+    }
+    for (; !lost.empty(); lost.pop_back()) {
+        const Frame& before = *lost.back();
+        backwards.expect(-before.timestamp());
+        Prediction prediction = backwards.predict(-before.timestamp());
+        if (prediction.blind) continue;
+        prediction.shutter.seconds_per_row = -motion.secondsPerRow();  // time and velocity are negative
+        const Tracking again = tracker->track(world.reference(), before, prediction);
+        if (again.lost() || again.depth_fault) continue;
+        backwards.measure(-before.timestamp(), again.pose.T_keyframe_camera, again.measured);
+        world.measureAfterwards(before.timestamp(), again.pose);
+    }
 }
 
 /// A tracked pose is what the next one is predicted from.

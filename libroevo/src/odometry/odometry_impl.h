@@ -32,7 +32,8 @@ struct Odometry::Impl {
     World world;
 
     std::unique_ptr<Frame> frame, frame_before;
-    std::optional<Tracking> candidate;  // of the frame before, if it can still become a keyframe
+    std::vector<std::unique_ptr<Frame>> lost;  // the last ones, since the camera's pose was known
+    std::optional<Tracking> candidate;         // of the frame before, if it can still become a keyframe
     double last_timestamp = -std::numeric_limits<double>::infinity();
     double edges_ms = 0;
     bool measured = false;   // the pose of what is in `frame` was
@@ -53,6 +54,7 @@ struct Odometry::Impl {
     Outcome bridge(Tracking failed, double since_measured);
     void renewReference(Outcome& outcome);
     void learn(const Tracking& tracking, const Prediction& prediction);
+    void trackBack(const Tracking& tracking);
     void settle(const Outcome& outcome);
     Fault beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for = 0);
     Fault promote(const Frame& promoted, const Tracking& tracked);

@@ -89,6 +89,13 @@ void Trajectory::addFrame(double timestamp, const RelativePose& pose, bool measu
         forgetAll(frames_[recent_].pose.uncertainty);
 }
 
+void Trajectory::measureAfterwards(double timestamp, const RelativePose& pose) {
+    const auto frame = std::lower_bound(frames_.begin(), frames_.end(), timestamp,
+                                        [](const Frame& f, double t) { return f.timestamp < t; });
+    *frame = {timestamp, pose, true};
+    if (frame - frames_.begin() < static_cast<std::ptrdiff_t>(recent_)) forgetAll(frame->pose.uncertainty);
+}
+
 RelativePose Trajectory::inWorld(const RelativePose& pose) const {
     return compose({-1, keyframePose(pose.keyframe), in_world_[static_cast<std::size_t>(pose.keyframe)]},
                    pose);

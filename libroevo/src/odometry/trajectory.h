@@ -33,6 +33,8 @@ class Trajectory {
     int addKeyframe(double timestamp, const RelativePose& pose, const std::vector<std::int32_t>& clusters);
     /// @param measured  else its final pose is interpolated between measured ones, where there are any
     void addFrame(double timestamp, const RelativePose& pose, bool measured = true);
+    /// The pose of a frame that was added without a measured one, now that there is one.
+    void measureAfterwards(double timestamp, const RelativePose& pose);
 
     /// First keyframe of a keyframe's track.
     int beginOfTrack(int keyframe) const;

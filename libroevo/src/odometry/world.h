@@ -49,6 +49,9 @@ class World {
     void addFrame(double timestamp, const RelativePose& pose, bool measured) {
         trajectory_.addFrame(timestamp, pose, measured);
     }
+    void measureAfterwards(double timestamp, const RelativePose& pose) {
+        trajectory_.measureAfterwards(timestamp, pose);
+    }
 
     /// Brings everything to the time of a frame: map updates and recognised places that are due take effect.
     /// @param seconds_per_row  read-out time as known by now
