@@ -110,7 +110,7 @@ struct MappingOptions {
     bool reuse_keyframes = true;   ///< old keyframes that look at the same place take part again
     int max_reused = 4;            ///< at most this many of them
     bool close_loops = true;       ///< places that are recognised correct the whole path since
-    int final_rounds = 5;          ///< most rounds in which all keyframes are refined together at the end
+    int final_rounds = 20;         ///< most rounds in which all keyframes are refined together at the end
     bool deterministic = true;     ///< the tracker waits for the map; else it takes what is ready
     int latency = 4;               ///< frames after which the mapping of a keyframe takes effect
     double pseudo_weight = 0.3;    ///< what pseudo-edges of the keyframe still count in tracking

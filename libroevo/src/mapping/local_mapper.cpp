@@ -120,6 +120,19 @@ std::vector<const MapKeyframe*> LocalMapper::nearbyOf(const MapKeyframe& keyfram
     return nearby;
 }
 
+LocalMapper::Neighbourhood LocalMapper::neighbourhoodOf(const MapKeyframe& keyframe) const {
+    Neighbourhood out{&keyframe, recentOf(keyframe), {}};
+    if (options_.mapping.reuse_keyframes) out.nearby = nearbyOf(keyframe, out.recent);
+    return out;
+}
+
+/// As they are now; what was related before is forgotten.
+void LocalMapper::relate(const Neighbourhood& neighbourhood, double radius) {
+    graph_.setLinks(neighbourhood.of->id, {});
+    graph_.insert(*neighbourhood.of, neighbourhood.recent, camera_, radius);
+    graph_.insert(*neighbourhood.of, neighbourhood.nearby, camera_, radius);
+}
+
 void LocalMapper::buildWindow(int newest, const std::vector<const MapKeyframe*>& reused) {
     window_.clear();
     // In the order of time: fused points take the colour and the place of their first observation
@@ -218,15 +231,11 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
         inserted.track = parent->second.track;
     }
     MapKeyframe& keyframe = keyframes_.emplace(id, std::move(inserted)).first->second;
-    const std::vector<const MapKeyframe*> recent = recentOf(keyframe);
-    prepare(recent);
-    graph_.insert(keyframe, recent, camera_, options_.fine.final_radius);
-    std::vector<const MapKeyframe*> reused;
-    if (options_.mapping.reuse_keyframes) {
-        reused = nearbyOf(keyframe, recent);
-        prepare(reused);
-        graph_.insert(keyframe, reused, camera_, options_.fine.final_radius);
-    }
+    const Neighbourhood neighbourhood = neighbourhoodOf(keyframe);
+    const std::vector<const MapKeyframe*>& reused = neighbourhood.nearby;
+    prepare(neighbourhood.recent);
+    prepare(reused);
+    relate(neighbourhood, options_.fine.final_radius);
 
     MapUpdate update;
     update.keyframe = id;

@@ -101,6 +101,14 @@ class LocalMapper {
     std::map<int, MapKeyframe> unpacked() const;
     std::vector<const MapKeyframe*> nearbyOf(const MapKeyframe& keyframe,
                                              const std::vector<const MapKeyframe*>& recent) const;
+    /// A keyframe and those that its edges are related to: the ones just before it, and older ones that see
+    /// about the same.
+    struct Neighbourhood {
+        const MapKeyframe* of;
+        std::vector<const MapKeyframe*> recent, nearby;
+    };
+    Neighbourhood neighbourhoodOf(const MapKeyframe& keyframe) const;
+    void relate(const Neighbourhood& neighbourhood, double radius);
     void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
     void takePoses(MapUpdate& update);
     void refineTogether(const std::vector<const MapKeyframe*>& part, std::size_t fixed,
@@ -108,7 +116,6 @@ class LocalMapper {
     std::optional<MapRefusal> refusalOf(const WindowKeyframe& view, int inliers) const;
     void addPriors();
     void addRecognisedPlaces();
-    std::vector<const MapKeyframe*> relatedBefore(const std::vector<const MapKeyframe*>& members) const;
     void keepVerdicts();
     std::vector<std::int32_t> trackedClusters() const;
 

@@ -15,7 +15,9 @@ constexpr int kMostTogether = 200, kMostFixed = 100;
 /// Of recognised places, against all points: as that of tracked motions, because edges mostly relate them,
 /// too.
 constexpr double kPlaceWeight = 0.15;
-constexpr double kSettled = 0.05;  ///< px of image motion; smaller steps end the last refinement
+/// px of image motion: rounds whose last step is smaller end it. Edges that are related anew make such steps
+/// for ever.
+constexpr double kSettled = 0.3;
 
 }  // namespace
 
@@ -35,24 +37,21 @@ void LocalMapper::addRecognisedPlaces() {
     }
 }
 
-/// Older keyframes of the same track that the edges of some of these are related to.
-std::vector<const MapKeyframe*> LocalMapper::relatedBefore(
-    const std::vector<const MapKeyframe*>& members) const {
-    std::map<int, const MapKeyframe*> related;
-    for (const MapKeyframe* member : members)
-        for (const CovisibilityGraph::Links& links : graph_.linksOf(member->id)) {
-            const MapKeyframe& other = keyframes_.at(links.other);
-            if (other.id < members.front()->id && other.track == member->track) related[other.id] = &other;
-        }
-    std::vector<const MapKeyframe*> out;
-    for (const auto& [id, keyframe] : related) out.push_back(keyframe);
-    return out;
-}
-
-/// Fuses anew at the poses of each round. @param fixed  members, the first ones
+/// Relates and fuses edges anew at the poses of each round: where a loop was closed or a track was joined,
+/// they were not related yet. @param fixed  members, the first ones
 void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, std::size_t fixed,
                                  BundleAdjuster& adjuster, MapUpdate& update) {
-    std::vector<const MapKeyframe*> members = relatedBefore(part);
+    std::vector<Neighbourhood> neighbourhoods;
+    std::map<int, const MapKeyframe*> before;
+    for (std::size_t k = fixed; k < part.size(); ++k) {
+        if (part[k]->id < loaded_) continue;
+        neighbourhoods.push_back(neighbourhoodOf(*part[k]));
+        for (const auto* others : {&neighbourhoods.back().recent, &neighbourhoods.back().nearby})
+            for (const MapKeyframe* other : *others)
+                if (other->id < part.front()->id) before[other->id] = other;
+    }
+    std::vector<const MapKeyframe*> members;
+    for (const auto& [id, keyframe] : before) members.push_back(keyframe);
     fixed += members.size();
     members.insert(members.end(), part.begin(), part.end());
     const auto isFixed = [&](std::size_t slot) { return slot < fixed || members[slot]->id < loaded_; };
@@ -60,6 +59,9 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
     prepare(members);
     MapUpdate last;
     for (int round = 0; round < options_.mapping.final_rounds; ++round) {
+        // Wide at first, as tracking is
+        const double radius = round == 0 ? options_.fine.search_radius : options_.fine.final_radius;
+        for (const Neighbourhood& neighbourhood : neighbourhoods) relate(neighbourhood, radius);
         window_.clear();
         for (std::size_t slot = 0; slot < members.size(); ++slot)
             window_.push_back({members[slot], members[slot]->T_world_camera, isFixed(slot)});
@@ -71,7 +73,7 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
         last.refinement = adjuster.refine(window_, fused_, priors_, options_.mapping.max_iterations,
                                           round == 0 ? kDriftScale : 0);
         takePoses(last);
-        if (last.refinement.last_step < kSettled) break;
+        if (round > 0 && last.refinement.last_step < kSettled) break;
     }
     update.refusals.insert(update.refusals.end(), last.refusals.begin(), last.refusals.end());
     // Where they are now: what a round left as it was may have moved in the one before

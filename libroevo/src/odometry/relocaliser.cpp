@@ -117,9 +117,6 @@ Keyframe Relocaliser::unpacked(int id) const {
     Keyframe keyframe;
     keyframe.id = id;
     keyframe.edges.image = std::move(edges.image);
-    // The normal is on the gradient's side
-    keyframe.edges.image.gradient_x = keyframe.edges.image.normal_x;
-    keyframe.edges.image.gradient_y = keyframe.edges.image.normal_y;
     keyframe.edges.points = std::move(edges.points);
     keyframe.edges.weight = std::move(edges.weight);
     keyframe.edges.correction.assign(keyframe.edges.size(), 0);

@@ -49,10 +49,10 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
             if (!(u[i] >= margin && v[i] >= margin && u[i] <= max_u && v[i] <= max_v)) continue;
             ++visible;
             const auto [before, end] = own.around(i, reach);
-            const float gx = turn.x() * reference.gradient_x[i] - turn.y() * reference.gradient_y[i];
-            const float gy = turn.y() * reference.gradient_x[i] + turn.x() * reference.gradient_y[i];
+            const float side_x = turn.x() * reference.normal_x[i] - turn.y() * reference.normal_y[i];
+            const float side_y = turn.y() * reference.normal_x[i] + turn.x() * reference.normal_y[i];
             float nx, ny;
-            if (!edgeNormal(u[end - 1] - u[before], v[end - 1] - v[before], gx, gy, nx, ny)) continue;
+            if (!edgeNormal(u[end - 1] - u[before], v[end - 1] - v[before], side_x, side_y, nx, ny)) continue;
             const int guess =
                 before_this < 0
                     ? -1
