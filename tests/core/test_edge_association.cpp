@@ -42,9 +42,10 @@ OrganizedEdges line(double u, double v, int count, double degrees = 0, int side 
 }
 
 /// Associates `reference`, shifted by `shift`, with `current`.
-EdgeMatches match(const OrganizedEdges& reference, OrganizedEdges current,
+EdgeMatches match(OrganizedEdges reference, OrganizedEdges current,
                   const FineOptions& options = FineOptions(), const Eigen::Vector2f& shift = {0, 0},
                   const Eigen::Vector2f& turn = kNoTurn) {
+    computeNormals(reference, kSpan);
     computeNormals(current, kSpan);
     EdgeGrid grid;
     grid.build(current, kWidth, kHeight);
@@ -101,7 +102,7 @@ TEST(EdgeAssociation, AnEdgeOfOppositeGradientIsAnotherEdge) {
     EXPECT_EQ(countByEdge(match(reference, both), both), (std::map<int, int>{{1, 80}}));
 }
 
-TEST(EdgeAssociation, TheTurnCarriesTheReferencesGradients) {
+TEST(EdgeAssociation, TheTurnCarriesTheReferencesNormals) {
     // Upside down: the points of a level edge change their order, and its gradient points up
     OrganizedEdges turned = line(100, 60, 80);
     std::reverse(turned.x.begin(), turned.x.end());

@@ -86,8 +86,7 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
         const Eigen::VectorXd step = -hessian.selfadjointView<Eigen::Upper>().ldlt().solve(gradient);
         if (!step.allFinite()) break;
         ++result.iterations;
-        result.last_step = move(window, step);
-        if (result.last_step < kStill) break;
+        if (move(window, step) < kStill) break;
     }
     result.scale = equations.scale;
     result.inliers = equations.inliers;

@@ -27,7 +27,6 @@ struct RelativePrior {
 
 struct RefinementResult {
     int iterations = 0;
-    double last_step = 0;      ///< largest change of a pose in the last iteration, px of image motion
     double scale = 0;          ///< robust spread of the point-to-tangent residuals, px
     std::vector<int> inliers;  ///< of each window keyframe
 };

@@ -5,6 +5,7 @@
 
 #include "map_edges.h"
 #include "mapping/local_mapper.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -15,9 +16,9 @@ constexpr int kMostTogether = 200, kMostFixed = 100;
 /// Of recognised places, against all points: as that of tracked motions, because edges mostly relate them,
 /// too.
 constexpr double kPlaceWeight = 0.15;
-/// px of image motion: rounds whose last step is smaller end it. Edges that are related anew make such steps
-/// for ever.
-constexpr double kSettled = 0.3;
+/// px of image motion, mean of the keyframes: a round that moves them less is the last. Edges that are
+/// related anew move them by half of that for ever.
+constexpr double kSettled = 0.25;
 
 }  // namespace
 
@@ -63,8 +64,11 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
         const double radius = round == 0 ? options_.fine.search_radius : options_.fine.final_radius;
         for (const Neighbourhood& neighbourhood : neighbourhoods) relate(neighbourhood, radius);
         window_.clear();
-        for (std::size_t slot = 0; slot < members.size(); ++slot)
+        std::vector<Pose> before_round;
+        for (std::size_t slot = 0; slot < members.size(); ++slot) {
+            before_round.push_back(members[slot]->T_world_camera);
             window_.push_back({members[slot], members[slot]->T_world_camera, isFixed(slot)});
+        }
         addPriors();
         addRecognisedPlaces();
         fuser_.fuse(window_, graph_.clusters(members), fused_);
@@ -73,7 +77,11 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
         last.refinement = adjuster.refine(window_, fused_, priors_, options_.mapping.max_iterations,
                                           round == 0 ? kDriftScale : 0);
         takePoses(last);
-        if (round > 0 && last.refinement.last_step < kSettled) break;
+        double moved = 0;
+        for (std::size_t slot = 0; slot < members.size(); ++slot)
+            moved += imageMotion(members[slot]->T_world_camera.inverse(), before_round[slot].inverse(),
+                                 camera_.fx, members[slot]->median_depth);
+        if (round > 0 && moved < kSettled * static_cast<double>(members.size())) break;
     }
     update.refusals.insert(update.refusals.end(), last.refusals.begin(), last.refusals.end());
     // Where they are now: what a round left as it was may have moved in the one before

@@ -41,9 +41,9 @@ class EdgeAssociator {
     /// One point of so many was looked up the last time.
     std::size_t stride() const { return stride_; }
 
-    /// @param reference  reference edges (spans and gradients)
+    /// @param reference  reference edges (spans and normals)
     /// @param u, v       their reprojected points, px; outside the image where not visible
-    /// @param turn       cosine and sine of the rotation that carries reference gradients into the current
+    /// @param turn       cosine and sine of the rotation that carries reference normals into the current
     /// image
     /// @param span       points before and after that the tangent of a reprojected point is taken between
     void associate(const OrganizedEdges& reference, const float* u, const float* v,
