@@ -1,7 +1,6 @@
 // All keyframes refined together, when a recording ends or there is time.
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <map>
 #include <optional>
 
@@ -39,6 +38,26 @@ class RefineAll : public ::testing::Test {
         std::mt19937 random(4);
         for (int id = 0; id < keyframes; ++id)
             mapper_->insert(keyframeAt(id, randomPose(random, 0.003, 0.2 * kDegree)));
+    }
+    /// A second track of five keyframes, moved by `off` to where its last one was recognised.
+    /// @return T_4_9, which was recognised
+    Pose joinTracks(const Pose& off, double sigma) {
+        for (int id = 5; id < 10; ++id) {
+            MapKeyframe keyframe = keyframeAt(id, Pose::Identity());
+            if (id == 5) keyframe.parent = -1, keyframe.track = 5;
+            mapper_->insert(std::move(keyframe));
+        }
+        Correction join;
+        join.recognised = 4;
+        for (int id = 5; id < 10; ++id) {
+            join.keyframes.push_back(id);
+            join.motions.push_back(off);
+        }
+        const auto poseOf = [&](int id) { return mapper_->keyframes().at(id).T_world_camera; };
+        const Pose T_4_9 = poseOf(4).inverse() * off * poseOf(9);
+        join.places.push_back({4, 9, T_4_9, sigma * sigma * Matrix6d::Identity()});
+        mapper_->correct(join);
+        return T_4_9;
     }
     double worstError() const {
         double worst = 0;
@@ -93,36 +112,10 @@ TEST_F(RefineAll, EachTrackKeepsItsFirstKeyframe) {
     EXPECT_EQ(mapper_->keyframes().at(5).T_world_camera.matrix(), begin.matrix());
 }
 
-/// Two tracks of five keyframes each. The younger one is moved to where its last keyframe was recognised,
-/// which is `off` from where it is.
-Pose joinTracks(LocalMapper& mapper, const std::function<MapKeyframe(int)>& keyframeAt, const Pose& off,
-                double sigma) {
-    for (int id = 5; id < 10; ++id) {
-        MapKeyframe keyframe = keyframeAt(id);
-        if (id == 5) {
-            keyframe.parent = -1;
-            keyframe.track = 5;
-        }
-        mapper.insert(std::move(keyframe));
-    }
-    Correction join;
-    join.recognised = 4;
-    for (int id = 5; id < 10; ++id) {
-        join.keyframes.push_back(id);
-        join.motions.push_back(off);
-    }
-    const auto poseOf = [&](int id) { return mapper.keyframes().at(id).T_world_camera; };
-    const Pose T_4_9 = poseOf(4).inverse() * off * poseOf(9);
-    join.places.push_back({4, 9, T_4_9, sigma * sigma * Matrix6d::Identity()});
-    mapper.correct(join);
-    return T_4_9;
-}
-
 TEST_F(RefineAll, WhatWasRecognisedHoldsAJoinedTrack) {
     map(5);
-    const Pose T_4_9 = joinTracks(
-        *mapper_, [](int id) { return keyframeAt(id, Pose::Identity()); },
-        Pose(Eigen::Quaterniond::Identity(), {0.3, 0, 0}), 1e-4);  // so far apart that no edges are related
+    const Pose so_far(Eigen::Quaterniond::Identity(), {0.3, 0, 0});  // that no edges are related
+    const Pose T_4_9 = joinTracks(so_far, 1e-4);
     mapper_->refineAll();
     const Pose now =
         mapper_->keyframes().at(4).T_world_camera.inverse() * mapper_->keyframes().at(9).T_world_camera;
@@ -132,9 +125,7 @@ TEST_F(RefineAll, WhatWasRecognisedHoldsAJoinedTrack) {
 TEST_F(RefineAll, EdgesOfAJoinedTrackAreRelatedToTheOldOnes) {
     mapper_.emplace(mappingCamera(), options_);
     for (int id = 0; id < 5; ++id) mapper_->insert(keyframeAt(id, Pose::Identity()));
-    joinTracks(
-        *mapper_, [](int id) { return keyframeAt(id, Pose::Identity()); },
-        Pose(Eigen::Quaterniond::Identity(), {0.008, 0, 0}), 0.01);
+    joinTracks(Pose(Eigen::Quaterniond::Identity(), {0.008, 0, 0}), 0.01);
     EXPECT_GT(worstError(), 0.007);
     EXPECT_TRUE(mapper_->refineAll().refusals.empty());
     EXPECT_LT(worstError(), 5e-4) << "edges know better than what was recognised";
