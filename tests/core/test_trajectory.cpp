@@ -1,6 +1,8 @@
 // What final poses become of frames between keyframes.
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "odometry/trajectory.h"
 #include "tracking/se3.h"
 
@@ -136,6 +138,8 @@ TEST(Trajectory, FramesWithoutAMeasuredPoseAreInterpolatedInTime) {
     EXPECT_NEAR(frames[2].T_world_camera.translation().x(), 5, 1e-12);
     EXPECT_NEAR(frames[1].T_world_camera.translation().x(), 5.0 / 3, 1e-12) << "interpolated up to it";
     EXPECT_NEAR(trajectory.live()[2].T_world_camera.translation().x(), -7, 1e-12) << "as it was known then";
+    for (const double unknown : {3.5, 9.0})
+        EXPECT_THROW(trajectory.measureAfterwards(unknown, from(0, at(5))), std::logic_error);
 }
 
 /// Keyframes 0 and 1 of one track, 2 of another, and 3, which was recognised at keyframe 0.

@@ -72,8 +72,9 @@ class LocalMapper {
 
     void correct(const Correction& correction);
 
-    /// Refines all keyframes of each track together, but for the first one and those that were loaded. Edges
-    /// and places that were recognised hold them. Which edges are pseudo-edges stays as it was judged.
+    /// Refines all keyframes of each track together, but for the first one and those that were loaded. Edges,
+    /// which are related anew, and places that were recognised hold them. Which edges are pseudo-edges stays
+    /// as it was judged.
     MapUpdate refineAll();
 
     /// How often the frames after a keyframe found its edges (see MapKeyframe::found).

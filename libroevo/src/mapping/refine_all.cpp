@@ -22,7 +22,7 @@ constexpr double kSettled = 0.25;
 
 }  // namespace
 
-/// No edges relate what has only just been recognised, or a track that was joined.
+/// They hold what is too far apart for its edges to be related, and what too few edges relate.
 void LocalMapper::addRecognisedPlaces() {
     const auto slotOf = [&](int id) {
         const auto at = std::find_if(window_.begin(), window_.end(),

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 #include "tracking/se3.h"
 
@@ -92,6 +93,8 @@ void Trajectory::addFrame(double timestamp, const RelativePose& pose, bool measu
 void Trajectory::measureAfterwards(double timestamp, const RelativePose& pose) {
     const auto frame = std::lower_bound(frames_.begin(), frames_.end(), timestamp,
                                         [](const Frame& f, double t) { return f.timestamp < t; });
+    if (frame == frames_.end() || frame->timestamp != timestamp)
+        throw std::logic_error("a frame that was not added has no pose to be measured");
     *frame = {timestamp, pose, true};
     if (frame - frames_.begin() < static_cast<std::ptrdiff_t>(recent_)) forgetAll(frame->pose.uncertainty);
 }
