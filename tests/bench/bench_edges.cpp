@@ -97,8 +97,8 @@ void gridQueries(benchmark::State& state) {
         for (std::size_t i = 0; i < edges.size(); i += kStep) {
             const float nx = edges.normal_x[i], ny = edges.normal_y[i];
             const int nearest =
-                grid.nearest(edges.x[i] + 1.3F, edges.y[i] - 0.7F, radius, [&](std::size_t candidate) {
-                    return nx * edges.normal_x[candidate] + ny * edges.normal_y[candidate] >= kMinCosine;
+                grid.nearest(edges.x[i] + 1.3F, edges.y[i] - 0.7F, radius, [&](const EdgeGrid::Point& point) {
+                    return nx * point.normal_x + ny * point.normal_y >= kMinCosine;
                 });
             benchmark::DoNotOptimize(nearest);
             ++asked;

@@ -23,6 +23,7 @@ OrganizedEdges scattered(std::mt19937& random, int width, int height, int count)
         edges.addPoint(x, y, 1, 0, 1);
     }
     edges.finishEdge();
+    computeNormals(edges, 1);
     return edges;
 }
 
@@ -40,12 +41,14 @@ TEST(EdgeGrid, NearestIsThatOfBruteForce) {
             const auto u = static_cast<float>(uniform(random, -20, 110)),
                        v = static_cast<float>(uniform(random, -20, 90));
             const auto radius = static_cast<float>(uniform(random, 0.3, EdgeGrid::kMaxRadius));
-            const auto accept = [&](std::size_t i) { return allowed[i] != 0; };
+            const auto accept = [&](const EdgeGrid::Point& point) {
+                return allowed[static_cast<std::size_t>(point.index)] != 0;
+            };
             int expected = -1;
             float best = radius * radius;
             for (std::size_t i = 0; i < edges.size(); ++i) {
                 const float dx = edges.x[i] - u, dy = edges.y[i] - v;
-                if (!accept(i) || dx * dx + dy * dy >= best) continue;
+                if (allowed[i] == 0 || dx * dx + dy * dy >= best) continue;
                 best = dx * dx + dy * dy;
                 expected = static_cast<int>(i);
             }
@@ -68,8 +71,9 @@ TEST(EdgeGrid, RebuildingForgetsTheOldPoints) {
     fresh.clear();
     fresh.addPoint(30.2F, 20.1F, 1, 0, 1);
     fresh.finishEdge();
+    computeNormals(fresh, 1);
     grid.build(fresh, 60, 50);
-    const auto any = [](std::size_t) { return true; };
+    const auto any = [](const EdgeGrid::Point&) { return true; };
     EXPECT_EQ(grid.nearest(30, 20, 2, any), 0);
     EXPECT_EQ(grid.nearest(10, 40, 5, any), -1);
     grid.build(fresh, 100, 100);  // another size
@@ -81,8 +85,8 @@ TEST(EdgeGrid, FarAwayQueriesFindNothing) {
     EdgeGrid grid;
     const OrganizedEdges edges = scattered(random, 60, 50, 400);
     grid.build(edges, 60, 50);
-    EXPECT_EQ(grid.nearest(-1e6F, -1e6F, 15, [](std::size_t) { return true; }), -1);
-    EXPECT_EQ(grid.nearest(30, 25, 15, [](std::size_t) { return false; }), -1);
+    EXPECT_EQ(grid.nearest(-1e6F, -1e6F, 15, [](const EdgeGrid::Point&) { return true; }), -1);
+    EXPECT_EQ(grid.nearest(30, 25, 15, [](const EdgeGrid::Point&) { return false; }), -1);
 }
 
 }  // namespace

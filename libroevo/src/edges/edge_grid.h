@@ -15,15 +15,20 @@ inline int nearestPixel(float coordinate) {
     return towards_zero - (shifted < static_cast<float>(towards_zero) ? 1 : 0);
 }
 
-/// Pixel-index grid over the points of organized edges: which point, if any, lies in a pixel. Building it is
-/// linear; a radius search looks at one word of occupancy bits per row and then only at the pixels that hold
-/// a point.
+/// Finds points of organized edges by where they are. Building it is linear; a radius search looks at one
+/// word of occupancy bits per row and then only at the points in it, which are next to each other in memory.
 class EdgeGrid {
   public:
+    /// What a search asks of a point: one line of the cache.
+    struct Point {
+        float x, y, normal_x, normal_y;
+        std::int32_t index;
+    };
+
     void build(const OrganizedEdges& edges, int width, int height);
 
-    /// Nearest point to (u, v) within `radius` (at most kMaxRadius) pixels that `accept(index)` agrees to, or
-    /// -1. (u, v) may lie outside the image.
+    /// Nearest point to (u, v) within `radius` (at most kMaxRadius) pixels that `accept(point)` agrees to,
+    /// or -1. (u, v) may lie outside the image. Of points in one pixel only the last is found.
     /// @param guess  a point that may well be it, so that less is searched; -1 for none
     template <class Accept>
     int nearest(float u, float v, float radius, Accept&& accept, int guess = -1) const;
@@ -32,20 +37,31 @@ class EdgeGrid {
 
   private:
     static constexpr int kPadding = 64;  ///< px of empty occupancy left and right of a row
+    Point pointAt(std::size_t index) const {
+        const OrganizedEdges& edges = *edges_;
+        return {edges.x[index], edges.y[index], edges.normal_x[index], edges.normal_y[index],
+                static_cast<std::int32_t>(index)};
+    }
     std::size_t bitIndex(int x, int y) const {
         return static_cast<std::size_t>(y) * row_bits_ + static_cast<std::size_t>(x + kPadding);
     }
-    /// `count` (< 64) occupancy bits of row y from x on, the first in the lowest bit.
-    std::uint64_t occupancy(int x, int y, int count) const {
-        const std::size_t first = bitIndex(x, y), word = first / 64, shift = first % 64;
+    /// `count` (< 64) occupancy bits from this one on, the first in the lowest bit.
+    std::uint64_t occupancy(std::size_t first, int count) const {
+        const std::size_t word = first / 64, shift = first % 64;
         const std::uint64_t low = bits_[word] >> shift, high = bits_[word + 1] << 1 << (63 - shift);
         return (low | high) & ((std::uint64_t{1} << count) - 1);
+    }
+    /// How many points are in pixels before this one.
+    std::size_t rank(std::size_t bit) const {
+        const std::uint64_t before = bits_[bit / 64] & ((std::uint64_t{1} << (bit % 64)) - 1);
+        return static_cast<std::size_t>(before_[bit / 64] + __builtin_popcountll(before));
     }
 
     int width_ = 0, height_ = 0;
     std::size_t row_bits_ = 0;
-    std::vector<std::int32_t> cell_;  ///< point index where the occupancy bit is set
-    std::vector<std::uint64_t> bits_;
+    std::vector<std::uint64_t> bits_;   ///< of each pixel, whether there is a point
+    std::vector<std::int32_t> before_;  ///< of each word of them, how many points are in those before it
+    std::vector<Point> points_;         ///< by pixel, row after row
     const OrganizedEdges* edges_ = nullptr;
 };
 
@@ -60,26 +76,26 @@ int EdgeGrid::nearest(float u, float v, float radius, Accept&& accept, int guess
     const float within = std::min(radius, static_cast<float>(kMaxRadius));
     int best = -1;
     float best_squared = within * within;
-    const auto consider = [&](std::size_t i) {
-        const float dx = edges_->x[i] - u, dv = edges_->y[i] - v;
+    const auto consider = [&](const Point& point) {
+        const float dx = point.x - u, dv = point.y - v;
         const float squared = dx * dx + dv * dv;
-        if (squared >= best_squared || !accept(i)) return;
-        best = static_cast<int>(i);
+        if (squared >= best_squared || !accept(point)) return;
+        best = point.index;
         best_squared = squared;
     };
-    if (guess >= 0) consider(static_cast<std::size_t>(guess));
+    if (guess >= 0) consider(pointAt(static_cast<std::size_t>(guess)));
     for (int away = 0;; ++away) {  // rows 0, -1, +1, -2, +2 ...
         // Points are within half a pixel of their cell's centre, the query within half a pixel of its own
         const auto gap = static_cast<float>(std::max(0, away - 1));
         const float left = best_squared - gap * gap;
         if (left <= 0) break;
-        const int reach = static_cast<int>(std::sqrt(left)) + 1, first = cu - reach;
+        const int reach = static_cast<int>(std::sqrt(left)) + 1;
         const auto look = [&](int y) {
             if (y < 0 || y >= height_) return;
-            for (std::uint64_t row = occupancy(first, y, 2 * reach + 1); row != 0; row &= row - 1) {
-                const int x = first + __builtin_ctzll(row);
-                consider(static_cast<std::size_t>(cell_[static_cast<std::size_t>(y * width_ + x)]));
-            }
+            const std::size_t first = bitIndex(cu - reach, y);
+            std::uint64_t row = occupancy(first, 2 * reach + 1);
+            if (row == 0) return;
+            for (std::size_t i = rank(first); row != 0; row &= row - 1) consider(points_[i++]);
         };
         look(cv - away);
         if (away > 0) look(cv + away);

@@ -57,8 +57,8 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
                 before_this < 0
                     ? -1
                     : static_cast<int>(walk(current, static_cast<std::size_t>(before_this), u[i], v[i]));
-            const auto agrees = [&](std::size_t candidate) {
-                return nx * current.normal_x[candidate] + ny * current.normal_y[candidate] >= min_cosine;
+            const auto agrees = [&](const EdgeGrid::Point& point) {
+                return nx * point.normal_x + ny * point.normal_y >= min_cosine;
             };
             const int found = grid.nearest(u[i], v[i], static_cast<float>(radius), agrees, guess);
             if (found < 0) continue;
