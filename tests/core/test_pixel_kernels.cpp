@@ -151,7 +151,8 @@ TEST(PixelKernels, RemapReadsWhatItShouldAndNothingElse) {
         offset.resize(fraction.size());
         for (const auto* table : tables()) {
             std::vector<std::uint8_t> out(static_cast<std::size_t>(count));
-            table->remap(image.data(), width, {offset.data(), fraction.data()}, count, out.data());
+            table->remap(image.data(), image.data() + image.size(), width, {offset.data(), fraction.data()},
+                         count, out.data());
             for (std::size_t i = 0; i < out.size(); ++i) {
                 const auto* p = &image[static_cast<std::size_t>(offset[i])];
                 const double fx = fraction[i] % 256 / 32.0, fy = fraction[i] / 256 / 32.0;

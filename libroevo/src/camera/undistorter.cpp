@@ -45,7 +45,8 @@ const cv::Mat& Undistorter::apply(const cv::Mat& image, cv::Mat& buffer) const {
     if (isIdentity()) return image;
     const cv::Mat whole = image.isContinuous() ? image : image.clone();  // as the offsets assume
     buffer.create(height_, width_, CV_8UC1);
-    pixels::best().remap(whole.ptr<std::uint8_t>(), width_, {offset_.data(), fraction_.data()},
+    const auto* first = whole.ptr<std::uint8_t>();
+    pixels::best().remap(first, first + whole.total(), width_, {offset_.data(), fraction_.data()},
                          width_ * height_, buffer.ptr<std::uint8_t>());
     return buffer;
 }

@@ -103,9 +103,9 @@ struct Table {
     /// @param stride  of the magnitude, pixels
     Ridges (*ridges)(const float* magnitude, std::ptrdiff_t stride, const std::int16_t* gx,
                      const std::int16_t* gy, int count, float low, float high);
-    /// Bilinear samples of an 8-bit image (stride in bytes), rounded.
-    void (*remap)(const std::uint8_t* image, std::ptrdiff_t stride, const Remap& from, int count,
-                  std::uint8_t* out);
+    /// Bilinear samples of an 8-bit image (stride in bytes; nothing from `end` on is read), rounded.
+    void (*remap)(const std::uint8_t* image, const std::uint8_t* end, std::ptrdiff_t stride,
+                  const Remap& from, int count, std::uint8_t* out);
     /// Rounded means of 2x2 pixels: `count` of them from two rows.
     void (*halve)(const std::uint8_t* upper, const std::uint8_t* lower, int count, std::uint8_t* out);
     /// Moves edge pixels to the ridge of the magnitude: the vertex of the parabola through its logarithms

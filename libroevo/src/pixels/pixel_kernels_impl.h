@@ -146,8 +146,38 @@ inline void storeBytes(IntLanes values, int count, std::uint8_t* out) {
         __builtin_memcpy(out, &bytes, static_cast<std::size_t>(count));
 }
 
-/// Of eight pixels, the four neighbours of each blended, in 1/1024 of a grey level.
-inline IntLanes blend(IntLanes upper, IntLanes lower, ShortLanes fractions) {
+/// Of eight pixels, the four neighbours of each: the upper two in the lower bytes. They end before `end`.
+inline IntLanes neighbours(const std::uint8_t* image, std::ptrdiff_t stride, IntLanes offset,
+                           const std::uint8_t* end) {
+#ifdef __AVX2__
+    // Mostly all eight come from the same two rows, near each other: shuffled bytes cost less than gathered
+    // ones
+    constexpr int kTogether = 16;
+    const std::uint8_t* first = image + offset[0];
+    const IntLanes further = offset - offset[0];
+    const bool together = !any((further < 0) | (further > kTogether - 2));
+    if (together && end - first >= stride + kTogether) {
+        const auto sixteen = [](const std::uint8_t* p) {
+            return _mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)));
+        };
+        const auto nothing = static_cast<std::int32_t>(0x80808080U);
+        const IntLanes pairs = (further | further << 8) + 0x0100;
+        const __m256i upper = (__m256i)(pairs | (nothing & ~0xFFFF)),
+                      lower = (__m256i)(pairs << 16 | (nothing & 0xFFFF));
+        return (IntLanes)_mm256_or_si256(_mm256_shuffle_epi8(sixteen(first), upper),
+                                         _mm256_shuffle_epi8(sixteen(first + stride), lower));
+    }
+    // Two bytes early, so that the word around the last pixel ends with it
+    return (IntLanes)_mm256_blend_epi16((__m256i)gather(image, offset),
+                                        (__m256i)gather(image + stride - 2, offset), 0xAA);
+#else
+    static_cast<void>(end);
+    return (gather(image, offset) & 0xFFFF) | (gather(image + stride - 2, offset) & ~0xFFFF);
+#endif
+}
+
+/// Of eight pixels, these neighbours blended, in 1/1024 of a grey level.
+inline IntLanes blend(IntLanes four, ShortLanes fractions) {
 #ifdef __AVX2__
     // [32 - f, f] of both directions, as weights of neighbouring bytes and of neighbouring words
     const __m256i fraction = _mm256_cvtepi16_epi32((__m128i)fractions);
@@ -161,27 +191,24 @@ inline IntLanes blend(IntLanes upper, IntLanes lower, ShortLanes fractions) {
                                              _mm256_set1_epi16(1 << kFractionBits));
     const __m256i by_words = _mm256_add_epi16(_mm256_sign_epi16(down, _mm256_set1_epi32(0x0001FFFF)),
                                               _mm256_set1_epi32(1 << kFractionBits));
-    const __m256i four = _mm256_blend_epi16((__m256i)upper, (__m256i)lower, 0xAA);
-    return (IntLanes)_mm256_madd_epi16(_mm256_maddubs_epi16(four, by_bytes), by_words);
+    return (IntLanes)_mm256_madd_epi16(_mm256_maddubs_epi16((__m256i)four, by_bytes), by_words);
 #else
     constexpr int kOne = 1 << kFractionBits;
     const IntLanes fraction = __builtin_convertvector(fractions, IntLanes);
     const IntLanes right = fraction & 255, down = fraction >> 8;
-    const IntLanes i00 = upper & 255, i01 = (upper >> 8) & 255;
-    const IntLanes i10 = (lower >> 16) & 255, i11 = (lower >> 24) & 255;
+    const IntLanes i00 = four & 255, i01 = (four >> 8) & 255;
+    const IntLanes i10 = (four >> 16) & 255, i11 = (four >> 24) & 255;
     const IntLanes top = kOne * i00 + right * (i01 - i00), bottom = kOne * i10 + right * (i11 - i10);
     return kOne * top + down * (bottom - top);
 #endif
 }
 
-void remap(const std::uint8_t* image, std::ptrdiff_t stride, const Remap& from, int count,
-           std::uint8_t* out) {
-    // Two bytes early, so that the word around the last pixel ends with it
-    const std::uint8_t* lower_image = image + stride - 2;
+void remap(const std::uint8_t* image, const std::uint8_t* end, std::ptrdiff_t stride, const Remap& from,
+           int count, std::uint8_t* out) {
     for (int i = 0; i < count; i += kLanes) {
         const auto offset = load<IntLanes>(from.offset + i);
         const IntLanes value =
-            blend(gather(image, offset), gather(lower_image, offset), load<ShortLanes>(from.fraction + i));
+            blend(neighbours(image, stride, offset, end), load<ShortLanes>(from.fraction + i));
         storeBytes((value + (1 << (2 * kFractionBits - 1))) >> (2 * kFractionBits), count - i, out + i);
     }
 }
