@@ -88,7 +88,6 @@ void adjustAdjacency(EdgeMask& edges) {
 void EdgeOrganizer::growCluster(const Gradient& gradient, std::int32_t seed, float min_cosine) {
     const auto* gx = gradient.gx.ptr<std::int16_t>();
     const auto* gy = gradient.gy.ptr<std::int16_t>();
-    const auto* magnitude = gradient.magnitude.ptr<float>();
     std::int32_t offset[8];
     for (int k = 0; k < 8; ++k) offset[k] = kStepY[k] * width_ + kStepX[k];
     std::uint8_t* open = open_.data();
@@ -101,12 +100,13 @@ void EdgeOrganizer::growCluster(const Gradient& gradient, std::int32_t seed, flo
         const unsigned bits = neighbourhood(open, p, width_);
         if (bits == 0) continue;
         const auto px = static_cast<float>(gx[p]), py = static_cast<float>(gy[p]);
-        const float least = min_cosine * magnitude[p];
+        const float least = min_cosine * min_cosine * (px * px + py * py);
         std::uint32_t next = kNeighbours[bits].first;
         for (int left = kNeighbours[bits].count; left > 0; --left, next >>= 4) {
             const std::int32_t q = p + offset[next & 7];
-            const float dot = px * static_cast<float>(gx[q]) + py * static_cast<float>(gy[q]);
-            if (dot < least * magnitude[q]) continue;
+            const auto qx = static_cast<float>(gx[q]), qy = static_cast<float>(gy[q]);
+            const float dot = px * qx + py * qy;
+            if (dot < 0 || dot * dot < least * (qx * qx + qy * qy)) continue;
             open[q] = 0;
             tree[nodes++] = {q, static_cast<std::int32_t>(i), 0, 0, -1, -1};
         }
