@@ -103,6 +103,21 @@ TEST_F(FineTracking, ABadGuessDoesNotReplaceAGoodStart) {
     EXPECT_LT(errorOf(result), 0.002);
 }
 
+TEST_F(FineTracking, APoseIsAssessedByTheEdgesItWasFoundWithAsByThoseAssociatedAnew) {
+    FineTracker tracker(sequence_->camera, options_), fresh(sequence_->camera, options_);
+    const Pose pose = tracker.track(keyframe_, frame_, turned(0.3) * truth_, {truth_, 1, 1}, {}, Brightness())
+                          .T_current_keyframe;
+    const FineResult own = tracker.assess(keyframe_, frame_, pose, {}),
+                     anew = fresh.assess(keyframe_, frame_, pose, {});
+    EXPECT_NEAR(own.inliers, anew.inliers, 0.02 * anew.inliers);
+    EXPECT_NEAR(own.matched_ratio, anew.matched_ratio, 0.01);
+    EXPECT_NEAR(own.scale, anew.scale, 0.02 * anew.scale);
+    // Far from there they are of no use
+    const Pose away = turned(2) * pose;
+    EXPECT_EQ(tracker.assess(keyframe_, frame_, away, {}).inliers,
+              fresh.assess(keyframe_, frame_, away, {}).inliers);
+}
+
 TEST_F(FineTracking, EdgesThatMoveAcrossThemselvesAreTrustedLess) {
     // The camera rolls: what is far from the image's middle, and what points at it least, is off the most
     constexpr double kInterval = 1. / 30;

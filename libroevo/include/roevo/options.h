@@ -64,7 +64,7 @@ struct FineOptions {
     double vote_ratio = 0.3;      ///< share of the shorter edge's points that must agree on a pair of edges
     int min_votes = 5;            ///< and at least this many points
     int max_points = 3500;        ///< keyframe edge points used
-    int max_iterations = 12;      ///< Gauss-Newton steps, associations renewed in each
+    int max_iterations = 12;      ///< Gauss-Newton steps
     double chi2 = 16;             ///< chi-square limit of a residual
     double photometric_weight =
         0.05;                   ///< alpha^2 of Eq. (9) after both residuals are normalised by their spread

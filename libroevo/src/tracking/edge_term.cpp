@@ -18,7 +18,7 @@ constexpr double kSameEdges = 1.5;
 constexpr double kNarrowing = 2;    ///< iterations in which the radius narrows down
 constexpr int kFirstPoints = 1600;  ///< looked up as it does
 /// Neighbours along an edge look at much the same pixels of the depth image: every n-th speaks for all.
-constexpr std::size_t kDepthStride = 3;
+constexpr std::size_t kDepthStride = 6;
 constexpr float kUnknown = -1;  ///< depth not looked up yet
 
 }  // namespace
@@ -32,13 +32,14 @@ EdgeTerm::EdgeTerm(const PinholeCamera& camera, const OdometryOptions& options)
       associator_(options.fine) {}
 
 void EdgeTerm::look(const Keyframe& keyframe, const Frame& frame) {
-    if (frame_ != &frame || looked_at_ != frame.timestamp() || current_depth_.size() != frame.edges.size())
-        current_depth_.assign(frame.edges.size(), kUnknown);
+    const bool is_other =
+        frame_ != &frame || looked_at_ != frame.timestamp() || current_depth_.size() != frame.edges.size();
+    if (is_other) current_depth_.assign(frame.edges.size(), kUnknown);
+    if (is_other || keyframe_ != &keyframe) associated_within_ = 0;
     looked_at_ = frame.timestamp();
     keyframe_ = &keyframe;
     frame_ = &frame;
     free_readout_ = false;
-    associated_within_ = 0;
     associator_.limit(options_.max_points);
 }
 
@@ -96,16 +97,24 @@ bool EdgeTerm::isAssociated(const Pose& T_current_keyframe, double radius) const
 }
 
 void EdgeTerm::associate(const Pose& T_current_keyframe, const RowMotion& rows, double radius) {
+    associated_within_ = 0;
     project(keyframe_->edges.points, T_current_keyframe, ideal_, rows, projected_);
     associator_.associate(keyframe_->edges.image, projected_.u.data(), projected_.v.data(),
                           imageRotation(T_current_keyframe), edge_options_.tangent_span, frame_->edges,
                           frame_->grid, ideal_.width, ideal_.height, radius, matches_);
 }
 
-void EdgeTerm::assess(const Pose& T_current_keyframe, const RowMotion& rows) {
+void EdgeTerm::renewMatches(const Pose& T_current_keyframe, const RowMotion& rows) {
     associate(T_current_keyframe, rows, options_.final_radius);
     gather();
+}
+
+void EdgeTerm::assess(const Pose& T_current_keyframe, const RowMotion& rows) {
+    const bool all = associator_.stride() == strideFor(keyframe_->edges.size(), options_.max_points);
+    const bool follows = all && isAssociated(T_current_keyframe, options_.final_radius);
+    if (!follows) renewMatches(T_current_keyframe, rows);
     projectMatched(T_current_keyframe, rows);
+    if (follows) follow();
     tangentResiduals(rows);
     weigh();
 }

@@ -38,7 +38,10 @@ class EdgeTerm : public ResidualTerm {
 
     /// Edge-wise association at a given pose within `radius` px: fills matches().
     void associate(const Pose& T_current_keyframe, const RowMotion& rows, double radius);
-    /// The same within the final radius, and the weights that follow.
+    /// The same within the final radius, of a pair that was started.
+    void renewMatches(const Pose& T_current_keyframe, const RowMotion& rows);
+    /// Matches within the final radius, and the weights that follow. After linearise() near this pose its
+    /// edges stay associated.
     void assess(const Pose& T_current_keyframe, const RowMotion& rows);
 
     /// Of the inliers whose depth is known in the frame, the share that is about where it should be; 1 where

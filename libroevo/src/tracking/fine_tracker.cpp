@@ -129,6 +129,8 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
     if (estimator.worth(share(first.hessian), share(first.readout_mixed), first.readout_hessian / kCaution) <
         kLeastWorth)
         return;
+    // Those that followed the pose lack more of it (fr1_rpy backwards in tr: 0.59 cm with them, 0.53)
+    edges_.renewMatches(T_current_keyframe, shutter.motion(T_current_keyframe));
     GaussNewtonOptions loop;
     loop.max_iterations = kReadoutSteps;
     loop.focal_length = ideal_.fx;
