@@ -6,6 +6,7 @@
 
 #include "core/support/analytic_image.h"
 #include "edges/canny.h"
+#include "pixels/pixel_kernels.h"
 
 namespace roevo {
 namespace {
@@ -15,6 +16,17 @@ struct Detected {
     EdgeMask edges;
     std::vector<cv::Point2f> points;
 };
+
+/// From an edge pixel to the ridge of the gradient's magnitude, px.
+cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y) {
+    const std::int32_t pixel = y * gradient.magnitude.cols + x;
+    if (gradient.gx.at<std::int16_t>(y, x) == 0 && gradient.gy.at<std::int16_t>(y, x) == 0) return {0, 0};
+    cv::Point2f point;
+    float gradient_x, gradient_y, strength;
+    pixels::best().refine(gradient.view(), &pixel, 1,
+                          {&point.x, &point.y, &gradient_x, &gradient_y, &strength});
+    return point - cv::Point2f(static_cast<float>(x), static_cast<float>(y));
+}
 
 Detected detect(const cv::Mat& image, double low, double high, double blur = 0) {
     Detected result;

@@ -24,7 +24,6 @@ MapKeyframe someKeyframe() {
         keyframe.weight[i] =
             static_cast<float>(depthWeight(static_cast<double>(keyframe.points.z[i]), SensorOptions()));
     }
-    compact(keyframe);
     return keyframe;
 }
 

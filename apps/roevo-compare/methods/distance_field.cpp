@@ -157,7 +157,6 @@ FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const Frame& fr
     const Pose& pose = found.T_current_keyframe;
     FineResult result;
     result.inliers = inliers_;
-    result.scale = scale_;
     result.matched_ratio = visible_ > 0 ? static_cast<double>(near_.size()) / visible_ : 0;
     result.converged = inliers_ >= options_.min_inliers && pose.isFinite();
     result.T_current_keyframe = result.converged ? pose : T_start;

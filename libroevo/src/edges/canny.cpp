@@ -124,14 +124,4 @@ void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
     listStrong(bits, out);
 }
 
-cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y) {
-    const std::int32_t pixel = y * gradient.magnitude.cols + x;
-    if (gradient.gx.at<std::int16_t>(y, x) == 0 && gradient.gy.at<std::int16_t>(y, x) == 0) return {0, 0};
-    cv::Point2f point;
-    float gradient_x, gradient_y, strength;
-    pixels::best().refine(gradient.view(), &pixel, 1,
-                          {&point.x, &point.y, &gradient_x, &gradient_y, &strength});
-    return point - cv::Point2f(static_cast<float>(x), static_cast<float>(y));
-}
-
 }  // namespace roevo

@@ -24,8 +24,4 @@ struct EdgeMask {
 /// @param low, high  thresholds on the gradient magnitude, Sobel units, low <= high
 void canny(const Gradient& gradient, double low, double high, EdgeMask& out);
 
-/// Sub-pixel offset (pixels, along x and y) from an edge pixel to the ridge of the gradient magnitude: the
-/// vertex of the parabola through the magnitudes before, at and after the pixel along the gradient.
-cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y);
-
 }  // namespace roevo

@@ -74,7 +74,6 @@ void LocalMapper::prepare(const std::vector<const MapKeyframe*>& members) {
 }
 
 void LocalMapper::leaveWindow(MapKeyframe& newest) {
-    compact(newest);
     // What the window of the next one begins with
     std::vector<const MapKeyframe*> held = recentOf(newest);
     held.insert(held.begin(), &newest);
@@ -199,7 +198,6 @@ void LocalMapper::correct(const Correction& correction) {
 void LocalMapper::load(const KeyframeInfo& info, KeptKeyframe kept) {
     MapKeyframe keyframe;
     keyframe.id = info.id;
-    keyframe.timestamp = info.timestamp;
     keyframe.T_world_camera = info.T_world_camera;
     keyframe.median_depth = kept.median_depth;
     keyframe.row_motion = kept.row_motion;

@@ -10,18 +10,6 @@ namespace {
 constexpr std::size_t kSlopeSpan = 4;  ///< points to each side: depth is noisy
 constexpr float kLeastSpread = 1.0f;   ///< px^2 times points^2; less and a slope cannot be told
 
-/// Arrays that grow by doubling would waste half of their memory.
-void reserve(MapKeyframe& keyframe, std::size_t points) {
-    OrganizedEdges& image = keyframe.image;
-    for (auto* array : {&image.x, &image.y, &image.gradient_x, &image.gradient_y, &image.normal_x,
-                        &image.normal_y, &image.strength, &keyframe.weight}) {
-        array->reserve(points);
-    }
-    keyframe.points.reserve(points);
-    image.edge_of.reserve(points);
-    keyframe.colours.reserve(points);
-}
-
 }  // namespace
 
 void computeSlopes(MapKeyframe& keyframe) {
@@ -53,31 +41,30 @@ void setRowMotion(MapKeyframe& keyframe, const RowMotion& rows, const PinholeCam
     keyframe.row_motion = rows;
 }
 
-void compact(MapKeyframe& keyframe) {
-    for (auto* array : {&keyframe.image.gradient_x, &keyframe.image.gradient_y, &keyframe.image.strength}) {
-        array->clear();
-        array->shrink_to_fit();
-    }
-}
-
 MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,
                           const PinholeCamera& camera, int max_points) {
     MapKeyframe out;
     out.id = keyframe.id;
-    out.timestamp = keyframe.timestamp;
     out.median_depth = keyframe.median_depth;
     out.clusters = keyframe.clusters;
     const EdgePoints3D& edges = keyframe.edges;
     const std::size_t stride = strideFor(edges.size(), max_points);
     out.image.clear();
-    reserve(out, edges.size() / stride + static_cast<std::size_t>(edges.image.numEdges()));
+    // Arrays that grow by doubling would waste half of their memory
+    const std::size_t most = edges.size() / stride + static_cast<std::size_t>(edges.image.numEdges());
+    for (auto* array : {&out.image.x, &out.image.y, &out.image.normal_x, &out.image.normal_y, &out.weight})
+        array->reserve(most);
+    out.points.reserve(most);
+    out.image.edge_of.reserve(most);
+    out.colours.reserve(most);
     for (int e = 0; e < edges.image.numEdges(); ++e) {
         const auto [first, end] = edges.image.pointsOf(e);
         for (std::size_t i = first + (end - first - 1) % stride / 2; i < end; i += stride) {
             const Eigen::Vector3d point = edges.points.at(i);
             const Eigen::Vector2d pixel = camera.project(point);
-            out.image.addPoint(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
-                               edges.image.gradient_x[i], edges.image.gradient_y[i], edges.image.strength[i]);
+            out.image.x.push_back(static_cast<float>(pixel.x()));
+            out.image.y.push_back(static_cast<float>(pixel.y()));
+            out.image.edge_of.push_back(e);
             out.image.normal_x.push_back(edges.image.normal_x[i]);
             out.image.normal_y.push_back(edges.image.normal_y[i]);
             out.points.add(point);

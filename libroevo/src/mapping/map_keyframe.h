@@ -12,7 +12,6 @@ namespace roevo {
 /// shutter.
 struct MapKeyframe {
     int id = 0;
-    double timestamp = 0;
     Pose T_world_camera = Pose::Identity();
     int parent = -1;  ///< keyframe that it was tracked from, -1: none (the first, or re-anchored)
     Pose T_parent_camera = Pose::Identity();  ///< as tracked
@@ -21,7 +20,8 @@ struct MapKeyframe {
     int track = 0;
     Matrix6d parent_information =
         Matrix6d::Zero();       ///< of T_parent_camera: position, then orientation, along the camera's axes
-    OrganizedEdges image;       ///< where the points would be seen at the reference row's time, ideal px
+    OrganizedEdges image;       ///< where the points would be seen at the reference row's time, ideal px;
+                                ///< without gradients
     Points3 points;             ///< camera frame, m; padded
     std::vector<float> weight;  ///< w_s(depth), Eq. (20)
     std::vector<float> slope;   ///< of depth along the edge towards (-normal_y, normal_x), m/px
@@ -39,9 +39,6 @@ void computeSlopes(MapKeyframe& keyframe);
 
 /// Moves the points to where they are with another motion of the rows.
 void setRowMotion(MapKeyframe& keyframe, const RowMotion& rows, const PinholeCamera& camera);
-
-/// Drops what only a new keyframe needs: image gradients.
-void compact(MapKeyframe& keyframe);
 
 /// @param colours  one per point of the keyframe's edges
 /// @param max_points  points are thinned evenly along the edges until there are no more than these

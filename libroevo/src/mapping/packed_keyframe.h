@@ -35,7 +35,7 @@ class PackedKeyframe {
     PackedKeyframe() = default;
     explicit PackedKeyframe(const MapKeyframe& keyframe);
 
-    /// Puts the points back, as compact() leaves them, within half a step. Touches nothing else of
+    /// Puts the points back, within half a step. Touches nothing else of
     /// `keyframe`.
     void unpackInto(MapKeyframe& keyframe, const PinholeCamera& camera, const SensorOptions& sensor) const;
 

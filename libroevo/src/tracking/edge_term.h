@@ -54,7 +54,6 @@ class EdgeTerm : public ResidualTerm {
     int narrowed() const;
     const EdgeMatches& matches() const { return matches_; }
     int inliers() const { return inliers_; }  ///< matches that passed the chi-square test
-    double scale() const { return scale_; }   ///< robust spread of the point-to-tangent residual, px, at rest
     double slope() const { return slope_; }   ///< see studentSlope(): mean over the inliers by their weights
     /// Of the matches, padded; 0 where one is an outlier.
     const std::vector<float>& weights() const { return weight_; }
@@ -105,7 +104,8 @@ class EdgeTerm : public ResidualTerm {
     std::vector<float> current_depth_;  // of the frame's points, m
     std::vector<float> scratch_;
     InformationRows rows_;
-    double scale_ = 1, slope_ = 1;
+    double scale_ = 1;  ///< robust spread of the point-to-tangent residual, px, of edges at rest
+    double slope_ = 1;
     int inliers_ = 0;
 };
 

@@ -80,9 +80,6 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
     const GaussNewtonResult found = minimise(T_start, shutter, terms, loop);
     FineResult result;
     result.T_current_keyframe = found.T_current_keyframe;
-    result.inliers = edges_.inliers();
-    result.scale = edges_.scale();
-    result.matched_ratio = matches().matchedRatio();
     if (found.complete) {
         clusters_.start(keyframe.clusters);
         for (const ResidualTerm* term : terms) term->addTo(clusters_);
@@ -107,7 +104,6 @@ FineResult FineTracker::assess(const Keyframe& keyframe, const Frame& frame, con
     result.T_current_keyframe = T_current_keyframe;
     const int matched = static_cast<int>(matches().size());
     result.inliers = matched < options_.min_inliers ? matched : edges_.inliers();
-    result.scale = edges_.scale();
     result.matched_ratio = matches().matchedRatio();
     result.converged = result.inliers >= options_.min_inliers &&
                        result.matched_ratio >= options_.min_matched_ratio && T_current_keyframe.isFinite();

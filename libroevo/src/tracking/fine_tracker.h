@@ -9,11 +9,10 @@ namespace roevo {
 struct FineResult {
     bool converged = false;
     Pose T_current_keyframe = Pose::Identity();
-    int inliers = 0;              ///< associated points that passed the chi-square test
-    double scale = 0;             ///< robust spread of the point-to-tangent residual, px, of edges at rest
-    double matched_ratio = 0;     ///< see EdgeMatches
-    double depth_agreement = 1;   ///< see EdgeTerm::depthAgreement()
-    PoseUncertainty uncertainty;  ///< of the left perturbation (t, phi) of T_current_keyframe
+    int inliers = 0;                      ///< associated points that passed the chi-square test
+    double matched_ratio = 0;             ///< see EdgeMatches
+    double depth_agreement = 1;           ///< see EdgeTerm::depthAgreement()
+    PoseUncertainty uncertainty;          ///< of the left perturbation (t, phi) of T_current_keyframe
     Matrix6d of_rows = Matrix6d::Zero();  ///< covariance that a guessed motion of the rows adds to it
 };
 
@@ -24,13 +23,12 @@ class FineTracker {
     FineTracker(const PinholeCamera& camera, const OdometryOptions& options)
         : options_(options.fine), ideal_(camera.undistorted()), edges_(camera, options) {}
 
-    /// Minimises. What is reported but the pose and its covariance is that of the last step; assess() tells
-    /// more.
+    /// Minimises: the pose and its covariance. assess() tells the rest.
     [[nodiscard]] FineResult track(const Keyframe& keyframe, const Frame& frame, const Pose& T_start,
                                    const PosePrior& prior, const RollingShutter& shutter,
                                    const Brightness& brightness);
 
-    /// Inliers, scale, matched ratio and agreement of depths at a given pose; converged where these are
+    /// Inliers, matched ratio and agreement of depths at a given pose; converged where these are
     /// enough. No covariance. Fills matches().
     [[nodiscard]] FineResult assess(const Keyframe& keyframe, const Frame& frame,
                                     const Pose& T_current_keyframe, const RowMotion& rows);

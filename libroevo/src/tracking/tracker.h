@@ -69,7 +69,7 @@ class Tracker {
     virtual CoarseResult align(const Keyframe& reference, const Frame& frame, const RollingShutter& shutter,
                                const std::vector<Pose>& guesses, const Brightness& brightness);
     /// Refines a coarse pose (T_current_keyframe). Of the result its pose, uncertainty and `converged` count;
-    /// whether the frame is tracked is judged by assessing its pose, as ever.
+    /// whether the frame is tracked is judged by assessing its pose, as ever, with edges associated anew.
     virtual FineResult refine(const Keyframe& reference, const Frame& frame, const Pose& T_start,
                               const PosePrior& prior, const RollingShutter& shutter,
                               const Brightness& brightness);

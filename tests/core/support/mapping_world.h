@@ -95,7 +95,6 @@ inline TestKeyframe makeKeyframe(int id, const Pose& pose, const std::vector<Cur
     TestKeyframe made;
     MapKeyframe& out = made.keyframe;
     out.id = id;
-    out.timestamp = id;
     out.T_world_camera = pose;
     out.image.clear();
     out.median_depth = 2;
