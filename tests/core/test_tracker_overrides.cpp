@@ -62,7 +62,8 @@ TEST(TrackerOverrides, FineTrackingPutInFromOutsideChangesNothing) {
         OdometryOptions options;
         options.mode = mode;
         int calls = 0;
-        // Our own refinement leaves its associations to be assessed; with another one edges are associated anew
+        // Our own refinement leaves its associations to be assessed; with another one edges are associated
+        // anew
         expectSame(run(options), run(options, std::make_unique<OwnRefinement>(options, calls)), 0.005);
         EXPECT_GE(calls, 29);
     }
