@@ -50,6 +50,7 @@ void EdgeTerm::start(const Keyframe& keyframe, const Frame& frame) {
 
 void EdgeTerm::startReadout(const Keyframe& keyframe, const Frame& frame, const EdgeMatches& matches) {
     look(keyframe, frame);
+    associated_within_ = 0;  // these matches are another's
     free_readout_ = true;
     matches_ = matches;
     gather();
