@@ -102,7 +102,9 @@ TEST_F(PseudoEdges, AnEdgeThatOneOfFiveKeyframesSeesIsVanishing) {
     }
     look(5, [](int k, Sighting&) { return k == 1 || k == 3; });
     EXPECT_EQ(judge(), EdgeVerdict::kVanishing) << "one of four others";
-    look(5, [](int k, Sighting&) { return k != 1 && k != 3; });
+    // Not one that misses it between two that see it: that one looks from nearer by, and counts for a bit
+    // more
+    look(5, [](int k, Sighting&) { return k < 3; });
     EXPECT_EQ(judge(), EdgeVerdict::kTrue) << "two of four others";
 }
 
@@ -124,6 +126,28 @@ TEST_F(PseudoEdges, FewLooksDoNotCondemn) {
     const auto at =
         std::find(edges_.clusters.begin(), edges_.clusters.end(), kJudged) - edges_.clusters.begin();
     EXPECT_EQ(edges_.verdicts[static_cast<std::size_t>(at)], EdgeVerdict::kTrue);
+}
+
+TEST_F(PseudoEdges, WhoLooksFromTheSideProvesLittle) {
+    // Two of six keyframes see it; the others look at it from where they are carried around it
+    const Curve& curve = curves_[kJudged];
+    const Eigen::Translation3d centre(curve.at(curve.length / 2));
+    const auto carried = [&](double degrees) {
+        look(6, [](int k, Sighting&) { return k < 2; });
+        for (int k = 2; k < 6; ++k) {
+            TestKeyframe& made = made_[static_cast<std::size_t>(k)];
+            const Eigen::AngleAxisd turn(degrees * kDegree, Eigen::Vector3d::UnitY());
+            const Pose around(Eigen::Isometry3d(centre * turn * centre.inverse()));
+            std::vector<Sighting> others;
+            for (int c = 0; c < static_cast<int>(curves_.size()); ++c)
+                if (c != kJudged) others.push_back({c});
+            made = makeKeyframe(k, around * made.keyframe.T_world_camera, curves_, others);
+        }
+        return judge();
+    };
+    EXPECT_EQ(carried(5), EdgeVerdict::kVanishing);
+    EXPECT_EQ(carried(35), EdgeVerdict::kTrue);
+    EXPECT_EQ(carried(-35), EdgeVerdict::kTrue);
 }
 
 TEST_F(PseudoEdges, WhatTheFramesInBetweenHardlyFoundIsVanishing) {

@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "point_buckets.h"
 #include "tracking/robust.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
 
-constexpr double kNearest = 0.05;       ///< m; nearer points cannot be projected
-constexpr double kFarOff = 100;         ///< px, for a point that cannot be projected
-constexpr double kLookShare = 0.7;      ///< a keyframe looks at an edge when this share of it is in its image
-constexpr double kSeeShare = 0.3;       ///< and sees it when this share of that is observed
+constexpr double kNearest = 0.05;   ///< m; nearer points cannot be projected
+constexpr double kFarOff = 100;     ///< px, for a point that cannot be projected
+constexpr double kLookShare = 0.7;  ///< a keyframe looks at an edge when this share of it is in its image
+constexpr double kSeeShare = 0.3;   ///< and sees it when this share of that is observed
+/// A look counts by the angle to the nearest view that the edge was seen from, one sigma: seen from the side,
+/// a true edge is often missed, too.
+constexpr double kSideways = 15 * kDegree;
 constexpr std::size_t kMostLooks = 12;  ///< points of an edge that are looked for, evenly along it
 /// An edge is in an image when this share of it has an edge point near it and about in its direction:
 constexpr double kImageShare = 0.5;
@@ -65,7 +70,7 @@ bool PseudoEdgeJudge::project(std::size_t slot, const Eigen::Vector3d& point, Ei
     return isInside(q);
 }
 
-void PseudoEdgeJudge::countLooks(const FusedEdges& edges, std::size_t edge, Looks& looks) {
+void PseudoEdgeJudge::countPoints(const FusedEdges& edges, std::size_t edge) {
     const auto [first, end] = edges.pointsOf(edge);
     const std::size_t slots = T_camera_world_.size(), stride = 1 + (end - first) / kMostLooks;
     inside_.assign(slots, 0);
@@ -80,17 +85,36 @@ void PseudoEdgeJudge::countLooks(const FusedEdges& edges, std::size_t edge, Look
             observed_[slot] += observer_of_[slot] == p ? 1 : 0;
         }
     }
+}
+
+PseudoEdgeJudge::Looks PseudoEdgeJudge::looksAt(const std::vector<WindowKeyframe>& window,
+                                                const FusedEdges& edges, std::size_t edge) {
+    countPoints(edges, edge);
+    const auto [first, end] = edges.pointsOf(edge);
+    const std::size_t stride = 1 + (end - first) / kMostLooks;
     const double count = static_cast<double>((end - first + stride - 1) / stride);
-    looks = {0, 0, std::move(looks.missed)};
-    looks.missed.clear();
-    for (std::size_t slot = 0; slot < slots; ++slot) {
+    rays_.clear();
+    for (const WindowKeyframe& view : window)
+        rays_.push_back((view.T_world_camera.translation() - edges.points[(first + end) / 2]).normalized());
+    Looks looks;
+    bool is_first = true;
+    for (std::size_t slot = 0; slot < window.size(); ++slot) {
         if (inside_[slot] < kLookShare * count) continue;
-        ++looks.looked;
+        // The keyframe in which an edge was found first proves nothing
+        if (observed_[slot] > 0 && std::exchange(is_first, false)) continue;
+        double nearest = -1;  // cosine
+        for (std::size_t other = 0; other < window.size(); ++other)
+            if (other != slot && observed_[other] > 0)
+                nearest = std::max(nearest, rays_[slot].dot(rays_[other]));
+        const double aside = std::acos(std::min(nearest, 1.0)) / kSideways;
+        const double weight = std::exp(-aside * aside / 2);
+        looks.looked += weight;
         if (observed_[slot] >= kSeeShare * inside_[slot])
-            ++looks.seen;
+            looks.seen += weight;
         else
-            looks.missed.push_back(static_cast<int>(slot));
+            looks.missed.emplace_back(slot, weight);
     }
+    return looks;
 }
 
 bool PseudoEdgeJudge::isInImage(std::size_t slot, const OrganizedEdges& image, const FusedEdges& edges,
@@ -122,7 +146,6 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
     for (const WindowKeyframe& view : window) T_camera_world_.push_back(view.T_world_camera.inverse());
     observer_of_.assign(window.size(), edges.points.size());
     std::vector<double> spreads;
-    Looks looks;
     for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
         EdgeVerdict& verdict = edges.verdicts[edge];
         verdict = edges.views[edge] > 1 ? EdgeVerdict::kTrue : EdgeVerdict::kUnconfirmed;
@@ -135,37 +158,37 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
             verdict = EdgeVerdict::kSpread;
             continue;
         }
-        countLooks(edges, edge, looks);
-        const double found = foundShare(window, edges, edge);
-        if (isVanishing(looks, found)) suspects_.push_back({edge, looks, found, 0});
+        Suspect suspect{edge, looksAt(window, edges, edge), foundShare(window, edges, edge), 0};
+        if (isVanishing(suspect)) suspects_.push_back(std::move(suspect));
     }
-    // Associations miss edges that are in pieces: before an edge is called vanishing, the images themselves
+    askImages(window, edges);
+    for (const Suspect& suspect : suspects_) {
+        if (isVanishing(suspect)) edges.verdicts[suspect.edge] = EdgeVerdict::kVanishing;
+    }
+}
+
+/// Associations miss edges that are in pieces: before an edge is called vanishing, the images themselves.
+void PseudoEdgeJudge::askImages(const std::vector<WindowKeyframe>& window, const FusedEdges& edges) {
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
         const OrganizedEdges& image = window[slot].keyframe->image;
         bool built = false;
         for (Suspect& suspect : suspects_) {
             const auto& missed = suspect.looks.missed;
-            if (suspect.asked == missed.size() || missed[suspect.asked] != static_cast<int>(slot)) continue;
-            ++suspect.asked;
-            Looks at_best{suspect.looks.looked, suspect.looks.seen, {}};
-            at_best.seen += static_cast<int>(missed.size() - suspect.asked) + 1;
-            if (!isVanishing(suspect.looks, suspect.found) || isVanishing(at_best, suspect.found)) continue;
+            if (suspect.asked == missed.size() || missed[suspect.asked].first != slot) continue;
+            const double weight = missed[suspect.asked++].second;
+            if (!isVanishing(suspect)) continue;
             if (!built) buckets_->build(image, camera_.width, camera_.height);
             built = true;
-            suspect.looks.seen += isInImage(slot, image, edges, suspect.edge) ? 1 : 0;
+            if (isInImage(slot, image, edges, suspect.edge)) suspect.looks.seen += weight;
         }
-    }
-    for (const Suspect& suspect : suspects_) {
-        if (isVanishing(suspect.looks, suspect.found)) edges.verdicts[suspect.edge] = EdgeVerdict::kVanishing;
     }
 }
 
-bool PseudoEdgeJudge::isVanishing(const Looks& looks, double found) const {
-    const double frames = found < 0 ? 0 : kFrameEvidence;
-    // The keyframe in which an edge was found first proves nothing
-    const double evidence = looks.looked - 1 + frames;
+bool PseudoEdgeJudge::isVanishing(const Suspect& suspect) const {
+    const double frames = suspect.found < 0 ? 0 : kFrameEvidence;
+    const double evidence = suspect.looks.looked + frames;
     if (evidence < options_.min_looks - 1) return false;
-    return looks.seen - 1 + frames * found < options_.min_seen * evidence;
+    return suspect.looks.seen + frames * suspect.found < options_.min_seen * evidence;
 }
 
 double PseudoEdgeJudge::foundShare(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "mapping/edge_fusion.h"
@@ -24,10 +25,10 @@ class PseudoEdgeJudge {
 
   private:
     double spreadOf(const std::vector<WindowKeyframe>& window, const FusedEdges& edges, std::size_t p) const;
-    /// Keyframes that look at the place of an edge, those of them that observe it, and those that do not.
+    /// Keyframes that look at the place of an edge, but for the first that observes it.
     struct Looks {
-        int looked = 0, seen = 0;
-        std::vector<int> missed;
+        double looked = 0, seen = 0;  ///< their weights, and those of them that observe it
+        std::vector<std::pair<std::size_t, double>> missed;  ///< slot and weight of the others
     };
     struct Suspect {
         std::size_t edge = 0;
@@ -36,11 +37,14 @@ class PseudoEdgeJudge {
         std::size_t asked = 0;  ///< of looks.missed, whose images were asked
     };
 
-    void countLooks(const FusedEdges& edges, std::size_t edge, Looks& looks);
+    /// How many points of an edge each keyframe looks at, and how many it observes.
+    void countPoints(const FusedEdges& edges, std::size_t edge);
+    Looks looksAt(const std::vector<WindowKeyframe>& window, const FusedEdges& edges, std::size_t edge);
+    void askImages(const std::vector<WindowKeyframe>& window, const FusedEdges& edges);
     /// Whether a keyframe's image has an edge in the place of a fused one, associated or not.
     bool isInImage(std::size_t slot, const OrganizedEdges& image, const FusedEdges& edges,
                    std::size_t edge) const;
-    bool isVanishing(const Looks& looks, double found) const;
+    bool isVanishing(const Suspect& suspect) const;
     /// Whether a point of the camera frame is in the image.
     bool isInside(const Eigen::Vector3d& in_camera) const;
     /// Whether a point is in a keyframe's image, and where.
@@ -55,7 +59,8 @@ class PseudoEdgeJudge {
     std::vector<Pose> T_camera_world_;  ///< of the window
     std::vector<Suspect> suspects_;
     std::vector<std::size_t> observer_of_;  ///< of each slot: the last point that it was seen to observe
-    std::vector<int> inside_, observed_;    ///< of each slot
+    std::vector<int> inside_, observed_;    ///< of each slot: points of the edge
+    std::vector<Eigen::Vector3d> rays_;     ///< of each slot: from the edge to the camera
     std::unique_ptr<PointBuckets> buckets_;
 };
 
