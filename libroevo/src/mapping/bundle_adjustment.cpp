@@ -112,7 +112,7 @@ double BundleAdjuster::move(std::vector<WindowKeyframe>& window, const Eigen::Ve
         window[s].T_world_camera = poseIncrement(xi) * T_origin_camera;
         window[s].T_world_camera.translation() += equations_->origin();
         const double moved = (window[s].T_world_camera.translation() - before.translation()).norm() /
-                                 std::max(0.1, window[s].keyframe->median_depth) +
+                                 window[s].keyframe->typicalDepth() +
                              xi.tail<3>().norm();
         largest = std::max(largest, focal_length_ * moved);
     }

@@ -102,7 +102,7 @@ std::vector<const MapKeyframe*> LocalMapper::nearbyOf(const MapKeyframe& keyfram
     for (auto it = keyframes_.begin(); it->first < end; ++it) {
         if (it->second.track != keyframe.track) continue;
         const Pose T = it->second.T_world_camera.inverse() * keyframe.T_world_camera;
-        const double distance = T.translation().norm() / std::max(0.1, keyframe.median_depth);
+        const double distance = T.translation().norm() / keyframe.typicalDepth();
         const double degrees = rotationAngle(T) / kDegree;
         if (distance > kNearDistance || degrees > kNearDegrees) continue;
         // About as near, the older is the better: it has less of the drift
@@ -154,7 +154,7 @@ std::optional<MapRefusal> LocalMapper::refusalOf(const WindowKeyframe& view, int
     const MapRefusal refusal{MapRefusal::Kind::kFewObservations, keyframe.id, inliers, moved, degrees};
     if (inliers < options_.fine.min_inliers) return refusal;
     const bool sound = view.T_world_camera.isFinite() && degrees <= kLargestTurn &&
-                       moved <= kLargestJump * std::max(0.1, keyframe.median_depth);
+                       moved <= kLargestJump * keyframe.typicalDepth();
     if (sound) return std::nullopt;
     return MapRefusal{MapRefusal::Kind::kMovedTooFar, keyframe.id, inliers, moved, degrees};
 }

@@ -80,9 +80,4 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
     return out;
 }
 
-FineOptions forThinned(FineOptions options) {
-    options.min_votes = std::min(options.min_votes, 2);
-    return options;
-}
-
 }  // namespace roevo

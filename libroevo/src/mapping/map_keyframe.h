@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "roevo/camera/pinhole_camera.h"
@@ -32,6 +33,8 @@ struct MapKeyframe {
     RowMotion row_motion;      ///< that the points were moved with
 
     std::size_t size() const { return image.size(); }
+    /// For what only needs an order of magnitude, m.
+    double typicalDepth() const { return std::max(median_depth, 0.1); }
 };
 
 /// Fills slope: a line through the depths of the points up to 4 places before and after.
@@ -44,8 +47,5 @@ void setRowMotion(MapKeyframe& keyframe, const RowMotion& rows, const PinholeCam
 /// @param max_points  points are thinned evenly along the edges until there are no more than these
 MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colours,
                           const PinholeCamera& camera, int max_points);
-
-/// Of edges with every n-th point, fewer must agree on a pair of edges.
-FineOptions forThinned(FineOptions options);
 
 }  // namespace roevo

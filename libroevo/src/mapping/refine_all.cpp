@@ -80,7 +80,7 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
         double moved = 0;
         for (std::size_t slot = 0; slot < members.size(); ++slot)
             moved += imageMotion(members[slot]->T_world_camera.inverse(), before_round[slot].inverse(),
-                                 camera_.fx, members[slot]->median_depth);
+                                 camera_.fx, members[slot]->typicalDepth());
         if (round > 0 && moved < kSettled * static_cast<double>(members.size())) break;
     }
     update.refusals.insert(update.refusals.end(), last.refusals.begin(), last.refusals.end());

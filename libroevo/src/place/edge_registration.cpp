@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mapping/map_keyframe.h"
 #include "tracking/camera_scale.h"
 #include "tracking/fine_tracker.h"
 

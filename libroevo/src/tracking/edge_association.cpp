@@ -109,4 +109,9 @@ void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges&
     matches.current.resize(kept);
 }
 
+FineOptions forThinned(FineOptions options) {
+    options.min_votes = std::min(options.min_votes, 2);
+    return options;
+}
+
 }  // namespace roevo

@@ -58,4 +58,7 @@ class EdgeAssociator {
     std::size_t stride_ = 1;  ///< every n-th point of a reference edge is looked up
 };
 
+/// Of edges with every n-th point, fewer must agree on a pair of edges.
+FineOptions forThinned(FineOptions options);
+
 }  // namespace roevo

@@ -8,11 +8,6 @@
 #include "tracking/gauss_newton.h"
 
 namespace roevo {
-namespace {
-
-constexpr double kNothingKnown = 1;  // m and rad
-
-}  // namespace
 
 Matrix6d PoseUncertainty::covariance() const {
     Matrix6d sum = independent;

@@ -10,6 +10,8 @@ namespace roevo {
 
 struct PoseSystem;
 
+inline constexpr double kNothingKnown = 1;  ///< m and rad: sigma of a pose that nothing tells of
+
 /// What one edge does to a pose: by how much that would move if the edge were left out.
 struct EdgeInfluence {
     std::int32_t cluster = 0;  ///< see Keyframe::clusters

@@ -37,7 +37,6 @@ Fault describeFailure(const FineResult& refined, const FineOptions& options) {
 PoseUncertainty photometricUncertainty(const Keyframe& reference, const Frame& frame,
                                        const PinholeCamera& camera, const RowMotion& rows,
                                        const CoarseResult& aligned) {
-    constexpr double kNothingKnown = 1;  // m and rad
     PhotometricResiduals residuals;
     PhotometricTerm term(residuals, reference.photometric, 0, frame.pyramid.level(0), camera,
                          aligned.brightness);
