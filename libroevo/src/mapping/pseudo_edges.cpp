@@ -176,7 +176,10 @@ void PseudoEdgeJudge::askImages(const std::vector<WindowKeyframe>& window, const
             const auto& missed = suspect.looks.missed;
             if (suspect.asked == missed.size() || missed[suspect.asked].first != slot) continue;
             const double weight = missed[suspect.asked++].second;
-            if (!isVanishing(suspect)) continue;
+            Suspect at_best{suspect.edge, {suspect.looks.looked, suspect.looks.seen, {}}, suspect.found, 0};
+            for (std::size_t k = suspect.asked - 1; k < missed.size(); ++k)
+                at_best.looks.seen += missed[k].second;
+            if (!isVanishing(suspect) || isVanishing(at_best)) continue;
             if (!built) buckets_->build(image, camera_.width, camera_.height);
             built = true;
             if (isInImage(slot, image, edges, suspect.edge)) suspect.looks.seen += weight;
