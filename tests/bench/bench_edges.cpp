@@ -89,22 +89,21 @@ void gridQueries(benchmark::State& state) {
     const OrganizedEdges& edges = room().edges;
     EdgeGrid grid;
     grid.build(edges, room().camera.width, room().camera.height);
-    const auto radius = static_cast<float>(state.range(0));
-    constexpr float kMinCosine = 0.9962F;  // 5 degrees
-    constexpr std::size_t kStep = 2;
-    std::int64_t asked = 0;
-    for (auto _ : state) {
-        for (std::size_t i = 0; i < edges.size(); i += kStep) {
-            const float nx = edges.normal_x[i], ny = edges.normal_y[i];
-            const int nearest =
-                grid.nearest(edges.x[i] + 1.3F, edges.y[i] - 0.7F, radius, [&](const EdgeGrid::Point& point) {
-                    return nx * point.normal_x + ny * point.normal_y >= kMinCosine;
-                });
-            benchmark::DoNotOptimize(nearest);
-            ++asked;
-        }
+    const auto radius = static_cast<double>(state.range(0));
+    constexpr double kMinCosine = 0.9962;  // 5 degrees
+    EdgeQueries queries;
+    for (std::size_t i = 0; i < edges.size(); i += 2) {
+        queries.u.push_back(edges.x[i] + 1.3F);
+        queries.v.push_back(edges.y[i] - 0.7F);
+        queries.normal_x.push_back(edges.normal_x[i]);
+        queries.normal_y.push_back(edges.normal_y[i]);
     }
-    state.SetItemsProcessed(asked);
+    std::vector<std::int32_t> nearest(queries.u.size());
+    for (auto _ : state) {
+        grid.nearest(queries, nearest.size(), radius, kMinCosine, nearest.data());
+        benchmark::DoNotOptimize(nearest.data());
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(nearest.size()));
 }
 BENCHMARK(gridQueries)->ArgName("radius")->Arg(3)->Arg(6)->Unit(benchmark::kMicrosecond);
 

@@ -142,10 +142,9 @@ Verdict judgeEdges(const OrganizedEdges& reference, const TrueView& view, const 
         verdict.right += right;
         if (near == 0 || static_cast<double>(right) < kHalf * static_cast<double>(near)) continue;
         for (const std::size_t i : curve.points())
-            verdict.correct += grid.nearest(view.u[i], view.v[i], kTolerance, [&](const auto& point) {
-                const auto i = static_cast<std::size_t>(point.index);
-                return std::binary_search(links[e].begin(), links[e].end(), current.edge_of[i]);
-            }) >= 0;
+            verdict.correct += grid.any(view.u[i], view.v[i], kTolerance, [&](std::size_t point) {
+                return std::binary_search(links[e].begin(), links[e].end(), current.edge_of[point]);
+            });
     }
     return verdict;
 }

@@ -1,33 +1,46 @@
 #include "edges/edge_grid.h"
 
+#include <algorithm>
+
 namespace roevo {
+namespace {
+
+constexpr float kNowhere = 1e9F;  // px; nearer than any radius to no query
+
+}  // namespace
 
 void EdgeGrid::build(const OrganizedEdges& edges, int width, int height) {
-    width_ = width;
-    height_ = height;
-    row_bits_ = static_cast<std::size_t>(width + 2 * kPadding + 63) / 64 * 64;
-    // One word more for the last row's overlap
-    bits_.assign(row_bits_ / 64 * static_cast<std::size_t>(height) + 1, 0);
-    edges_ = &edges;
-    const auto most_x = static_cast<float>(width - 1), most_y = static_cast<float>(height - 1);
-    const auto bitOf = [&](std::size_t i) {
-        // As nearestPixel() of what is inside
-        const int x = static_cast<int>(std::clamp(edges.x[i], 0.0F, most_x) + 0.5F);
-        const int y = static_cast<int>(std::clamp(edges.y[i], 0.0F, most_y) + 0.5F);
-        return bitIndex(x, y);
-    };
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        const std::size_t bit = bitOf(i);
-        bits_[bit / 64] |= std::uint64_t{1} << (bit % 64);
+    columns_ = width / pixels::kCellWidth + 1;
+    rows_ = height / pixels::kCellHeight + 1;
+    const std::size_t n = edges.size(), cells = static_cast<std::size_t>(columns_ * rows_);
+    first_.assign(cells + 1, 0);
+    cell_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        cell_[i] = row(edges.y[i]) * columns_ + column(edges.x[i]);
+        ++first_[static_cast<std::size_t>(cell_[i])];
     }
-    before_.resize(bits_.size());
-    std::int32_t count = 0;
-    for (std::size_t word = 0; word < bits_.size(); ++word) {
-        before_[word] = count;
-        count += __builtin_popcountll(bits_[word]);
+    std::int32_t end = 0;
+    for (std::int32_t& first : first_) first = end += first;  // filled from their ends
+    index_.resize(n);
+    for (auto* values : {&x_, &y_, &normal_x_, &normal_y_}) values->resize(n + pixels::kGridPadding);
+    for (std::size_t i = n; i-- > 0;) {
+        const auto k = static_cast<std::size_t>(--first_[static_cast<std::size_t>(cell_[i])]);
+        index_[k] = static_cast<std::int32_t>(i);
+        x_[k] = edges.x[i];
+        y_[k] = edges.y[i];
+        normal_x_[k] = edges.normal_x[i];
+        normal_y_[k] = edges.normal_y[i];
     }
-    points_.resize(static_cast<std::size_t>(count));
-    for (std::size_t i = 0; i < edges.size(); ++i) points_[rank(bitOf(i))] = pointAt(i);
+    std::fill(x_.begin() + static_cast<std::ptrdiff_t>(n), x_.end(), kNowhere);
+}
+
+void EdgeGrid::nearest(const EdgeQueries& queries, std::size_t count, double radius, double min_cosine,
+                       std::int32_t* found) const {
+    const pixels::EdgeCells cells{x_.data(),     y_.data(),     normal_x_.data(), normal_y_.data(),
+                                  index_.data(), first_.data(), columns_,         rows_};
+    pixels::best().nearestPoints(cells, queries.u.data(), queries.v.data(), queries.normal_x.data(),
+                                 queries.normal_y.data(), count, static_cast<float>(radius),
+                                 static_cast<float>(min_cosine), found);
 }
 
 }  // namespace roevo

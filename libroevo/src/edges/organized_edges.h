@@ -58,21 +58,6 @@ struct OrganizedEdges {
     }
 };
 
-/// Unit normal to a chord (u, v) of an edge, px, on the side of the image gradient, Eqs. (4)-(6).
-/// @return false where the chord has no length
-inline bool edgeNormal(float u, float v, float gradient_x, float gradient_y, float& normal_x,
-                       float& normal_y) {
-    const float length = std::sqrt(u * u + v * v);
-    if (!(length > 0)) return false;
-    normal_x = -v / length;  // Eq. (4)
-    normal_y = u / length;
-    if (normal_x * gradient_x + normal_y * gradient_y < 0) {  // Eqs. (5), (6)
-        normal_x = -normal_x;
-        normal_y = -normal_y;
-    }
-    return true;
-}
-
 /// The n with which every n-th of `count` points makes no more than `most`.
 inline std::size_t strideFor(std::size_t count, int most) {
     const auto limit = static_cast<std::size_t>(std::max(1, most));

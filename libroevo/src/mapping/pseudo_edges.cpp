@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "point_buckets.h"
 #include "tracking/robust.h"
 #include "tracking/se3.h"
 
@@ -37,8 +36,7 @@ double tangentResidual(const PinholeCamera& camera, const MapKeyframe& keyframe,
 
 PseudoEdgeJudge::PseudoEdgeJudge(const MappingOptions& mapping, const SensorOptions& sensor,
                                  const PinholeCamera& camera)
-    : options_(mapping), sensor_(sensor), camera_(camera), buckets_(std::make_unique<PointBuckets>()) {}
-PseudoEdgeJudge::~PseudoEdgeJudge() = default;
+    : options_(mapping), sensor_(sensor), camera_(camera) {}
 
 double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
                                  std::size_t p) const {
@@ -133,7 +131,7 @@ bool PseudoEdgeJudge::isInImage(std::size_t slot, const OrganizedEdges& image, c
         project(slot, edges.points[std::min(end - 1, p + kTangentSpan)], after);
         const Eigen::Vector2f chord = after - before;
         const float limit = kLookSine * chord.norm();
-        found += buckets_->any(pixel.x(), pixel.y(), radius, [&](std::size_t i) {
+        found += grid_.any(pixel.x(), pixel.y(), radius, [&](std::size_t i) {
             return std::abs(chord.x() * image.normal_x[i] + chord.y() * image.normal_y[i]) < limit;
         });
     }
@@ -180,7 +178,7 @@ void PseudoEdgeJudge::askImages(const std::vector<WindowKeyframe>& window, const
             for (std::size_t k = suspect.asked - 1; k < missed.size(); ++k)
                 at_best.looks.seen += missed[k].second;
             if (!isVanishing(suspect) || isVanishing(at_best)) continue;
-            if (!built) buckets_->build(image, camera_.width, camera_.height);
+            if (!built) grid_.build(image, camera_.width, camera_.height);
             built = true;
             if (isInImage(slot, image, edges, suspect.edge)) suspect.looks.seen += weight;
         }

@@ -1,21 +1,18 @@
 #pragma once
-#include <memory>
 #include <utility>
 #include <vector>
 
+#include "edges/edge_grid.h"
 #include "mapping/edge_fusion.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/options.h"
 
 namespace roevo {
 
-class PointBuckets;
-
 /// Recognises pseudo-edges: cast shadows that move, reflections, occlusion borders.
 class PseudoEdgeJudge {
   public:
     PseudoEdgeJudge(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera);
-    ~PseudoEdgeJudge();
 
     /// Gives every edge its verdict: by the spread of its observations (instead of Eq. (16)'s largest
     /// eigenvalue, which the depth noise of the sensor dominates, across the edge in the images), and by
@@ -61,7 +58,7 @@ class PseudoEdgeJudge {
     std::vector<std::size_t> observer_of_;  ///< of each slot: the last point that it was seen to observe
     std::vector<int> inside_, observed_;    ///< of each slot: points of the edge
     std::vector<Eigen::Vector3d> rays_;     ///< of each slot: from the edge to the camera
-    std::unique_ptr<PointBuckets> buckets_;
+    EdgeGrid grid_;                         ///< of the image that is asked
 };
 
 }  // namespace roevo

@@ -102,19 +102,6 @@ void normals(const float* u, const float* v, const float* gradient_x, const floa
     __builtin_memcpy(ny + i, values[5], bytes);
 }
 
-/// Where the least-squares plane of inverse depths is at (u, v), or their mean where they span none.
-inline float planeAt(float u, float v, float n, Lanes sums) {
-    const float sx = sums[0], sy = sums[1], sxx = sums[2], sxy = sums[3], syy = sums[4], sq = sums[5],
-                sxq = sums[6], syq = sums[7];
-    const float mx = sx / n, my = sy / n, mq = sq / n;
-    const float xx = sxx - sx * mx, xy = sxy - sx * my, yy = syy - sy * my;
-    const float xq = sxq - sx * mq, yq = syq - sy * mq;
-    const float determinant = xx * yy - xy * xy;
-    if (n < 6 || determinant < 0.05F * n * n) return mq;
-    const float b = (xq * yy - yq * xy) / determinant, c = (yq * xx - xq * xy) / determinant;
-    return mq + b * (u - mx) + c * (v - my);
-}
-
 inline Lanes lesserOf(Lanes a, Lanes b) {
 #ifdef __AVX2__
     return (Lanes)_mm256_min_ps((__m256)a, (__m256)b);
@@ -132,11 +119,60 @@ inline Lanes greaterOf(Lanes a, Lanes b) {
 }
 
 /// What `choose` leaves of all lanes, in each.
-template <class Choose>
-inline Lanes reduce(Lanes v, const Choose& choose) {
+template <class Vector, class Choose>
+inline Vector reduce(Vector v, const Choose& choose) {
     v = choose(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
     v = choose(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
     return choose(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
+}
+
+/// The cell that a coordinate is in, or the outermost one.
+inline int cellOf(float at, float per_pixel, int count) {
+    const int cell = static_cast<int>(at * per_pixel);
+    return cell < 0 ? 0 : cell < count ? cell : count - 1;
+}
+
+void nearestPoints(const EdgeCells& cells, const float* u, const float* v, const float* nx, const float* ny,
+                   std::size_t count, float radius, float min_cosine, std::int32_t* found) {
+    constexpr IntLanes kLane = {0, 1, 2, 3, 4, 5, 6, 7};
+    constexpr float kColumns = 1.0F / kCellWidth, kRows = 1.0F / kCellHeight;
+    for (std::size_t i = 0; i < count; ++i) {
+        const int left = cellOf(u[i] - radius, kColumns, cells.columns),
+                  right = cellOf(u[i] + radius, kColumns, cells.columns),
+                  bottom = cellOf(v[i] + radius, kRows, cells.rows);
+        Lanes nearest = splat(radius * radius);
+        IntLanes best = IntLanes{} - 1;
+        for (int row = cellOf(v[i] - radius, kRows, cells.rows); row <= bottom; ++row) {
+            const std::int32_t* first = cells.first + row * cells.columns;
+            const std::int32_t end = first[right + 1];
+            // What is read beyond the end are points as good as any
+            for (std::int32_t k = first[left]; k < end; k += kLanes) {
+                const Lanes du = load(cells.x + k) - u[i], dv = load(cells.y + k) - v[i];
+                const Lanes squared = du * du + dv * dv;
+                const Lanes cosine = load(cells.normal_x + k) * nx[i] + load(cells.normal_y + k) * ny[i];
+                const IntLanes better = (squared < nearest) & (cosine >= splat(min_cosine));
+                nearest = better ? squared : nearest;
+                best = better ? kLane + k : best;
+            }
+        }
+        const Lanes least = reduce(nearest, lesserOf);
+        const std::int32_t point = reduce(nearest == least ? best : IntLanes{} + INT32_MAX,
+                                          [](IntLanes a, IntLanes b) { return a < b ? a : b; })[0];
+        found[i] = point < 0 ? -1 : cells.index[point];
+    }
+}
+
+/// Where the least-squares plane of inverse depths is at (u, v), or their mean where they span none.
+inline float planeAt(float u, float v, float n, Lanes sums) {
+    const float sx = sums[0], sy = sums[1], sxx = sums[2], sxy = sums[3], syy = sums[4], sq = sums[5],
+                sxq = sums[6], syq = sums[7];
+    const float mx = sx / n, my = sy / n, mq = sq / n;
+    const float xx = sxx - sx * mx, xy = sxy - sx * my, yy = syy - sy * my;
+    const float xq = sxq - sx * mq, yq = syq - sy * mq;
+    const float determinant = xx * yy - xy * xy;
+    if (n < 6 || determinant < 0.05F * n * n) return mq;
+    const float b = (xq * yy - yq * xy) / determinant, c = (yq * xx - xq * xy) / determinant;
+    return mq + b * (u - mx) + c * (v - my);
 }
 
 /// The farthest of the depths that follow each other within the jump from the nearest one on.

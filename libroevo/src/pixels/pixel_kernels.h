@@ -59,6 +59,17 @@ struct DepthPatch {
     float inverse;            ///< 1/m, of their plane, or of their mean where they span none
 };
 
+constexpr int kCellWidth = 4, kCellHeight = 8;  ///< px, of EdgeCells
+constexpr int kGridPadding = 8 - 1;             ///< points that may be read past the last one
+
+/// Points of edges in cells, row after row of them.
+struct EdgeCells {
+    const float *x, *y, *normal_x, *normal_y;  ///< px; past the last point x is far from everything
+    const std::int32_t* index;                 ///< by which a point is known
+    const std::int32_t* first;                 ///< point of each cell, and where the last one's end
+    int columns, rows;
+};
+
 /// A depth image, m.
 struct DepthView {
     const float* data;
@@ -118,6 +129,12 @@ struct Table {
     /// has no length, Eqs. (4)-(6). Any of the arrays may be an output.
     void (*normals)(const float* u, const float* v, const float* gradient_x, const float* gradient_y,
                     std::size_t count, float* nx, float* ny);
+    /// Of each of `count` queries the nearest point within `radius` px of (u, v) with
+    /// nx normal_x + ny normal_y >= min_cosine, the first of those as near; -1 where there is none.
+    /// Coordinates are within 1e6 px.
+    void (*nearestPoints)(const EdgeCells& cells, const float* u, const float* v, const float* nx,
+                          const float* ny, std::size_t count, float radius, float min_cosine,
+                          std::int32_t* found);
     /// The nearest surface in a square, its plane (in inverse depth) evaluated at (u, v) from the centre, px.
     void (*depthPatch)(const DepthSquare& square, const DepthLimits& limits, float u, float v,
                        DepthPatch& out);

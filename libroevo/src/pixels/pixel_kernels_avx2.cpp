@@ -8,7 +8,8 @@ namespace {
 }  // namespace
 
 const Table* avx2() {
-    static const Table table{"avx2", gradient, ridges, remap, halve, refine, normals, depthPatch, side};
+    static const Table table{"avx2", gradient, ridges,        remap,      halve,
+                             refine, normals,  nearestPoints, depthPatch, side};
     return __builtin_cpu_supports("avx2") ? &table : nullptr;
 }
 

@@ -6,7 +6,8 @@ namespace {
 }  // namespace
 
 const Table& baseline() {
-    static const Table table{"baseline", gradient, ridges, remap, halve, refine, normals, depthPatch, side};
+    static const Table table{"baseline", gradient, ridges,        remap,      halve,
+                             refine,     normals,  nearestPoints, depthPatch, side};
     return table;
 }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edges/edge_grid.h"
-
 namespace roevo {
 namespace {
 
@@ -17,9 +15,8 @@ constexpr double kAperture = 0.9;
 OdometryOptions scaledTo(const PinholeCamera& camera, OdometryOptions options) {
     // Noise of pixels does not shrink with the image: smaller ones keep the numbers
     const double motion = std::max(1.0, camera.pixelScale()), sampling = std::max(1.0, camera.width / 640.);
-    const auto radius = [&](double px) { return std::min<double>(motion * px, EdgeGrid::kMaxRadius); };
-    options.fine.search_radius = radius(options.fine.search_radius);
-    options.fine.final_radius = radius(options.fine.final_radius);
+    options.fine.search_radius *= motion;
+    options.fine.final_radius *= motion;
     const auto points = [&](int count) { return static_cast<int>(std::lround(sampling * count)); };
     options.edges.min_length = points(options.edges.min_length);
     options.edges.tangent_span = points(options.edges.tangent_span);

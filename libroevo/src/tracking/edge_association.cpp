@@ -7,68 +7,54 @@
 #include "roevo/types.h"
 
 namespace roevo {
-namespace {
-
-/// Along an edge from point p to where it is nearest to (u, v), as long as it comes nearer.
-std::size_t walk(const OrganizedEdges& edges, std::size_t p, float u, float v) {
-    const IndexRange edge = edges.pointsOf(edges.edge_of[p]);
-    const auto squaredTo = [&](std::size_t point) {
-        const float du = edges.x[point] - u, dv = edges.y[point] - v;
-        return du * du + dv * dv;
-    };
-    const float here = squaredTo(p);
-    float nearest = here;
-    for (float next; p + 1 < edge.end && (next = squaredTo(p + 1)) < nearest; ++p) nearest = next;
-    if (nearest == here)
-        for (float next; p > edge.first && (next = squaredTo(p - 1)) < nearest; --p) nearest = next;
-    return p;
-}
-
-}  // namespace
-
 void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, const float* v,
                                const Eigen::Vector2f& turn, int span, const OrganizedEdges& current,
                                const EdgeGrid& grid, int width, int height, double radius, EdgeMatches& out) {
-    out.reference.clear();
-    out.current.clear();
-    out.looked_up_points = out.visible_points = 0;
-    const auto min_cosine = static_cast<float>(std::cos(options_.normal_angle_deg * kDegree));
     const float margin = EdgeMask::kBorder;
     const float max_u = static_cast<float>(width) - 1 - margin,
                 max_v = static_cast<float>(height) - 1 - margin;
-    out.visible.assign(static_cast<std::size_t>(reference.numEdges()), 0);
     stride_ = strideFor(reference.size(), options_.max_points);
     const auto reach = static_cast<std::size_t>(span);
+    const std::size_t most = reference.size() / stride_ + static_cast<std::size_t>(reference.numEdges());
+    for (auto* values :
+         {&queries_.u, &queries_.v, &queries_.normal_x, &queries_.normal_y, &side_x_, &side_y_})
+        values->resize(most);
+    out.reference.resize(most);
+    out.visible.resize(static_cast<std::size_t>(reference.numEdges()));
+    out.looked_up_points = 0;
+    std::size_t n = 0;
     for (int e = 0; e < reference.numEdges(); ++e) {
         const IndexRange own = reference.pointsOf(e);
-        int visible = 0;
-        int before_this = -1;  // what a point before is associated with: it goes on along that edge, mostly
+        const std::size_t before_this = n;
         for (std::size_t i = own.first + (stride_ / 2 + stride_ - own.first % stride_) % stride_; i < own.end;
              i += stride_) {
             ++out.looked_up_points;
             if (!(u[i] >= margin && v[i] >= margin && u[i] <= max_u && v[i] <= max_v)) continue;
-            ++visible;
             const auto [before, end] = own.around(i, reach);
-            const float side_x = turn.x() * reference.normal_x[i] - turn.y() * reference.normal_y[i];
-            const float side_y = turn.y() * reference.normal_x[i] + turn.x() * reference.normal_y[i];
-            float nx, ny;
-            if (!edgeNormal(u[end - 1] - u[before], v[end - 1] - v[before], side_x, side_y, nx, ny)) continue;
-            const int guess =
-                before_this < 0
-                    ? -1
-                    : static_cast<int>(walk(current, static_cast<std::size_t>(before_this), u[i], v[i]));
-            const auto agrees = [&](const EdgeGrid::Point& point) {
-                return nx * point.normal_x + ny * point.normal_y >= min_cosine;
-            };
-            const int found = grid.nearest(u[i], v[i], static_cast<float>(radius), agrees, guess);
-            if (found < 0) continue;
-            before_this = found;
-            out.reference.push_back(static_cast<std::int32_t>(i));
-            out.current.push_back(found);
+            out.reference[n] = static_cast<std::int32_t>(i);
+            queries_.u[n] = u[i];
+            queries_.v[n] = v[i];
+            queries_.normal_x[n] = u[end - 1] - u[before];  // the chord, at first
+            queries_.normal_y[n] = v[end - 1] - v[before];
+            side_x_[n] = turn.x() * reference.normal_x[i] - turn.y() * reference.normal_y[i];
+            side_y_[n] = turn.y() * reference.normal_x[i] + turn.x() * reference.normal_y[i];
+            ++n;
         }
-        out.visible[static_cast<std::size_t>(e)] = visible;
-        out.visible_points += visible;
+        out.visible[static_cast<std::size_t>(e)] = static_cast<std::int32_t>(n - before_this);
     }
+    out.visible_points = static_cast<int>(n);
+    pixels::best().normals(queries_.normal_x.data(), queries_.normal_y.data(), side_x_.data(), side_y_.data(),
+                           n, queries_.normal_x.data(), queries_.normal_y.data());
+    out.current.resize(n);
+    grid.nearest(queries_, n, radius, std::cos(options_.normal_angle_deg * kDegree), out.current.data());
+    std::size_t found = 0;
+    for (std::size_t pair = 0; pair < n; ++pair) {
+        out.reference[found] = out.reference[pair];
+        out.current[found] = out.current[pair];
+        found += out.current[pair] >= 0 ? 1 : 0;
+    }
+    out.reference.resize(found);
+    out.current.resize(found);
     vote(reference, current, out);
 }
 

@@ -54,6 +54,8 @@ class EdgeAssociator {
     void vote(const OrganizedEdges& reference, const OrganizedEdges& current, EdgeMatches& matches);
 
     FineOptions options_;
+    EdgeQueries queries_;
+    std::vector<float> side_x_, side_y_;  ///< that their normals are on
     std::vector<std::int32_t> votes_, touched_;
     std::size_t stride_ = 1;  ///< every n-th point of a reference edge is looked up
 };
