@@ -1,6 +1,8 @@
 // From grey image to organized edges, stage by stage, and the searches over them.
 #include <benchmark/benchmark.h>
 
+#include <opencv2/imgproc.hpp>
+
 #include "bench/room.h"
 #include "edges/edge_extractor.h"
 #include "edges/edge_grid.h"
@@ -64,6 +66,18 @@ void edgeExtractor(benchmark::State& state) {
     }
 }
 BENCHMARK(edgeExtractor)->Unit(benchmark::kMicrosecond);
+
+/// What a user of OpenCV would pay for unordered edge pixels alone, with the same thresholds.
+void openCvCanny(benchmark::State& state) {
+    const cv::Mat& grey = room().frames.front().grey;
+    cv::Mat out;
+    for (auto _ : state) {
+        cv::Canny(grey, out, room().low, room().high, 3, true);
+        benchmark::DoNotOptimize(out.data);
+        benchmark::ClobberMemory();
+    }
+}
+BENCHMARK(openCvCanny)->Unit(benchmark::kMicrosecond);
 
 void edgeDepth(benchmark::State& state) {
     const OdometryOptions options;

@@ -43,7 +43,7 @@ TEST_F(PlaceRegistration, ConvergesFromWhatSimilarPointsTell) {
     for (int seed = 0; seed < 5; ++seed) {
         std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
         const EdgeRegistration found = from(randomPose(random, 0.02, 0.012) * truth());
-        EXPECT_TRUE(found.accepted) << seed;
+        EXPECT_TRUE(found.confirmed) << seed;
         EXPECT_LT(poseError(found.T_frame_keyframe, truth()), 0.004) << seed;
         EXPECT_GT(found.keyframe_matched, 0.7);
         EXPECT_GT(found.frame_matched, 0.7);
@@ -76,14 +76,14 @@ TEST_F(PlaceRegistration, EdgesOfAThinnedKeyframeAreFoundAsThoseOfAWholeOne) {
     EXPECT_LT(matched(false), 0.9 * of_whole) << "or the votes make no difference, and the case tests little";
 }
 
-TEST_F(PlaceRegistration, IsNotAcceptedSomewhereElse) {
+TEST_F(PlaceRegistration, IsNotConfirmedSomewhereElse) {
     for (int seed = 0; seed < 10; ++seed) {
         std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
         Vector6d xi = Vector6d::Zero();
         xi[0] = uniform(random, 0.4, 0.8);
         xi[4] = uniform(random, 0.2, 0.5);
         const EdgeRegistration found = from(poseIncrement(xi) * truth());
-        EXPECT_FALSE(found.accepted && poseError(found.T_frame_keyframe, truth()) > 0.05) << seed;
+        EXPECT_FALSE(found.confirmed && poseError(found.T_frame_keyframe, truth()) > 0.05) << seed;
     }
 }
 
@@ -98,7 +98,7 @@ TEST_F(PlaceRegistration, SameBytesWhateverCameBefore) {
     EXPECT_EQ(run(truth()).covariance, first.covariance);
 }
 
-TEST_F(PlaceRegistration, ParallelEdgesAloneAreNotAccepted) {
+TEST_F(PlaceRegistration, ParallelEdgesAloneConfirmNothing) {
     // A wall of upright stripes: nothing tells how high the camera is
     RgbdFrame stripes;
     stripes.timestamp = 1;
@@ -111,7 +111,7 @@ TEST_F(PlaceRegistration, ParallelEdgesAloneAreNotAccepted) {
     const EdgeRegistration found =
         EdgeRegistrar(camera_, OdometryOptions(), false)
             .registerEdges(view->keyframe, view->frame, view->keyframe.edges, Pose::Identity());
-    EXPECT_FALSE(found.accepted);
+    EXPECT_FALSE(found.confirmed);
 }
 
 TEST_F(PlaceRegistration, EvidenceIsWhatSurroundsThePointsAndThatEdgesHoldThePose) {

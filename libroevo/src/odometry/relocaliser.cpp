@@ -137,7 +137,7 @@ std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& 
     if (edges.size() == 0) return std::nullopt;
     const EdgeRegistration found =
         confirmer_.registerEdges(keyframe, frame, edges, T_keyframe_camera.inverse());
-    if (!found.accepted) return std::nullopt;
+    if (!found.confirmed) return std::nullopt;
     return found.T_frame_keyframe.inverse();
 }
 

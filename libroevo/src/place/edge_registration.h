@@ -18,7 +18,8 @@ struct EdgeRegistration {
     double sigma_translation = 0;  ///< m, in the worst direction
     double sigma_rotation = 0;     ///< rad, about the worst axis
     bool determined = false;       ///< edges and depths of both hold the pose in every direction
-    bool accepted = false;         ///< and they agree; those of a place that looks alike do, too
+    bool confirmed = false;        ///< they do, and agree; enough where tracking says the same, among all
+                                   ///< places it is not: those of one that looks alike agree, too
 };
 
 /// Registers a frame to a keyframe that it may never have been tracked against, by their edges only: from a
