@@ -43,7 +43,7 @@ TEST_F(PlaceRegistration, ConvergesFromWhatSimilarPointsTell) {
     for (int seed = 0; seed < 5; ++seed) {
         std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
         const EdgeRegistration found = from(randomPose(random, 0.02, 0.012) * truth());
-        EXPECT_TRUE(found.confirmed) << seed;
+        EXPECT_TRUE(confirms(found, {})) << seed;
         EXPECT_LT(poseError(found.T_frame_keyframe, truth()), 0.004) << seed;
         EXPECT_GT(found.keyframe_matched, 0.7);
         EXPECT_GT(found.frame_matched, 0.7);
@@ -83,7 +83,7 @@ TEST_F(PlaceRegistration, IsNotConfirmedSomewhereElse) {
         xi[0] = uniform(random, 0.4, 0.8);
         xi[4] = uniform(random, 0.2, 0.5);
         const EdgeRegistration found = from(poseIncrement(xi) * truth());
-        EXPECT_FALSE(found.confirmed && poseError(found.T_frame_keyframe, truth()) > 0.05) << seed;
+        EXPECT_FALSE(confirms(found, {}) && poseError(found.T_frame_keyframe, truth()) > 0.05) << seed;
     }
 }
 
@@ -111,7 +111,7 @@ TEST_F(PlaceRegistration, ParallelEdgesAloneConfirmNothing) {
     const EdgeRegistration found =
         EdgeRegistrar(camera_, OdometryOptions(), false)
             .registerEdges(view->keyframe, view->frame, view->keyframe.edges, Pose::Identity());
-    EXPECT_FALSE(found.confirmed);
+    EXPECT_FALSE(confirms(found, {}));
 }
 
 TEST_F(PlaceRegistration, EvidenceIsWhatSurroundsThePointsAndThatEdgesHoldThePose) {
@@ -119,7 +119,8 @@ TEST_F(PlaceRegistration, EvidenceIsWhatSurroundsThePointsAndThatEdgesHoldThePos
     points.matches = 40;
     points.inliers = 20;
     EdgeRegistration edges;
-    edges.determined = true;
+    edges.held = true;
+    edges.depth_agreement = 0.7;
     edges.keyframe_matched = 0.9;
     edges.frame_matched = 0.79;
     edges.visible = 0.49;
@@ -138,8 +139,31 @@ TEST_F(PlaceRegistration, EvidenceIsWhatSurroundsThePointsAndThatEdgesHoldThePos
     EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kConclusive);
     points.inliers = 15;
     EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kWeak) << "furniture seen from its other side";
-    edges.determined = false;
+    edges.held = false;
     EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kNone);
+    edges.held = true;
+    edges.depth_agreement = 0.69;
+    EXPECT_EQ(evidenceOf(points, edges, same), Evidence::kNone);
+}
+
+TEST_F(PlaceRegistration, WhatTrackingSaysIsConfirmedByEdgesDepthsAndSurroundings) {
+    EdgeRegistration edges;
+    edges.held = true;
+    edges.keyframe_matched = 0.61;
+    edges.frame_matched = 0.69;
+    edges.depth_agreement = 0.64;
+    const Likeness same{100, 97}, other{100, 62}, unknown{29, 0};
+    EXPECT_TRUE(confirms(edges, same)) << "around the cabinet";
+    EXPECT_TRUE(confirms(edges, unknown));
+    EXPECT_FALSE(confirms(edges, other)) << "0.8 m off along a row of shadows";
+    edges.depth_agreement = 0.57;
+    EXPECT_FALSE(confirms(edges, same)) << "another door";
+    edges.depth_agreement = 0.64;
+    edges.frame_matched = 0.34;
+    EXPECT_FALSE(confirms(edges, same));
+    edges.frame_matched = 0.69;
+    edges.held = false;
+    EXPECT_FALSE(confirms(edges, same));
 }
 
 }  // namespace

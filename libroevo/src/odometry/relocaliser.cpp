@@ -137,7 +137,11 @@ std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& 
     if (edges.size() == 0) return std::nullopt;
     const EdgeRegistration found =
         confirmer_.registerEdges(keyframe, frame, edges, T_keyframe_camera.inverse());
-    if (!found.confirmed) return std::nullopt;
+    collect();
+    const PlacePoints& points = places_[static_cast<std::size_t>(keyframe.id)].points;
+    const Likeness likeness =
+        describer_.compare(points, found.T_frame_keyframe, frame.pyramid.level(0), frame.images.depth);
+    if (!confirms(found, likeness)) return std::nullopt;
     return found.T_frame_keyframe.inverse();
 }
 
@@ -213,7 +217,7 @@ std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<
         const auto& [of_points, id] = alike[k];
         const EdgeRegistration found =
             registrar_.registerEdges(unpacked(id), frame, edges, of_points.T_candidate_query.inverse(), rows);
-        if (!found.determined) continue;
+        if (!found.held) continue;
         const Likeness likeness =
             describer_.compare(places_[static_cast<std::size_t>(id)].points, found.T_frame_keyframe,
                                frame.pyramid.level(0), frame.images.depth);

@@ -16,16 +16,11 @@ constexpr int kMostIterations = 15;
 constexpr double kStill = 0.03;          ///< px; tracking goes on from here
 constexpr double kOverRelaxation = 1.6;  ///< of the steps once the radius is the final one, as in FineTracker
 
-// What a pose takes
+// What it takes to hold a pose
 constexpr int kLeastInliers = 150;
 constexpr double kLeastVisible = 0.25;
 constexpr double kMostSigmaTranslation = 0.02;  ///< m
 constexpr double kMostSigmaRotation = 1 * kDegree;
-constexpr double kLeastDepthAgreement = 0.7;  ///< where the camera may be anywhere
-// Where tracking says the same: right poses around a cabinet, with a view in 0.67 s, agree to 64 % and more;
-// wrong ones in a corridor with many doors to 57 % and less, or they are not held
-constexpr double kConfirmingDepths = 0.6;
-constexpr double kLeastMatched = 0.4;  ///< of the edges, both ways
 
 constexpr double kDepthSigmas = 3;    ///< within which depths agree
 constexpr double kDepthFloor = 0.02;  ///< m, one sigma: foregrounds are found differently from elsewhere
@@ -77,12 +72,8 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     out.inliers = term_.inliers();
     out.keyframe_matched = term_.matches().matchedRatio();
     lookBack(keyframe, frame_edges, out);
-    const bool held = out.inliers >= kLeastInliers && out.visible >= kLeastVisible &&
-                      out.sigma_translation <= kMostSigmaTranslation &&
-                      out.sigma_rotation <= kMostSigmaRotation;
-    out.determined = held && out.depth_agreement >= kLeastDepthAgreement;
-    out.confirmed = held && out.depth_agreement >= kConfirmingDepths &&
-                    std::min(out.keyframe_matched, out.frame_matched) >= kLeastMatched;
+    out.held = out.inliers >= kLeastInliers && out.visible >= kLeastVisible &&
+               out.sigma_translation <= kMostSigmaTranslation && out.sigma_rotation <= kMostSigmaRotation;
     return out;
 }
 

@@ -17,9 +17,8 @@ struct EdgeRegistration {
     double depth_agreement = 0;    ///< share of the associated points whose depths agree
     double sigma_translation = 0;  ///< m, in the worst direction
     double sigma_rotation = 0;     ///< rad, about the worst axis
-    bool determined = false;       ///< edges and depths of both hold the pose in every direction
-    bool confirmed = false;        ///< they do, and agree; enough where tracking says the same, among all
-                                   ///< places it is not: those of one that looks alike agree, too
+    bool held = false;             ///< edges hold the pose in every direction; those of a place that
+                                   ///< looks alike do, too
 };
 
 /// Registers a frame to a keyframe that it may never have been tracked against, by their edges only: from a

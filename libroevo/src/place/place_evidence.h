@@ -19,4 +19,8 @@ enum class Evidence {
 /// what repeats does so some metres apart, or turned.
 Evidence evidenceOf(const Verification& points, const EdgeRegistration& edges, const Likeness& likeness);
 
+/// Whether a registration confirms a pose that tracking says, too. Surroundings that are not known do not
+/// matter.
+bool confirms(const EdgeRegistration& edges, const Likeness& likeness);
+
 }  // namespace roevo
