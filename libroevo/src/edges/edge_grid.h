@@ -25,7 +25,7 @@ class EdgeGrid {
     void nearest(const EdgeQueries& queries, std::size_t count, double radius, double min_cosine,
                  std::int32_t* found) const;
 
-    /// Whether a point within `radius` px of (u, v) is one that `accept(index)` agrees to.
+    /// Whether a point nearer than `radius` px to (u, v) is one that `accept(index)` agrees to.
     template <class Accept>
     bool any(float u, float v, float radius, Accept&& accept) const;
 
@@ -52,7 +52,7 @@ bool EdgeGrid::any(float u, float v, float radius, Accept&& accept) const {
                    end = static_cast<std::size_t>(first_[cells + static_cast<std::size_t>(right) + 1]);
         for (std::size_t k = first; k < end; ++k) {
             const float du = x_[k] - u, dv = y_[k] - v;
-            if (du * du + dv * dv <= radius * radius && accept(static_cast<std::size_t>(index_[k])))
+            if (du * du + dv * dv < radius * radius && accept(static_cast<std::size_t>(index_[k])))
                 return true;
         }
     }

@@ -30,6 +30,11 @@ constexpr unsigned bitOf(int x, int y) {
     return 1U << (3 * (1 - x) + y + 1);
 }
 
+/// Of a neighbour's neighbourhood: the bit of the pixel that it is a neighbour of.
+constexpr unsigned backFrom(unsigned step) {
+    return bitOf(-kStepX[step], -kStepY[step]);
+}
+
 struct Neighbours {
     std::uint32_t first = 0;  ///< numbers of the neighbours that are there, four bits each, the first lowest
     std::uint8_t count = 0;
@@ -85,30 +90,34 @@ void adjustAdjacency(EdgeMask& edges) {
     edges.pixels.resize(kept);
 }
 
-void EdgeOrganizer::growCluster(const Gradient& gradient, std::int32_t seed, float min_cosine) {
+void EdgeOrganizer::growCluster(const Gradient& gradient, const std::uint8_t* mask, std::int32_t seed,
+                                float min_cosine) {
     const auto* gx = gradient.gx.ptr<std::int16_t>();
     const auto* gy = gradient.gy.ptr<std::int16_t>();
     std::int32_t offset[8];
     for (int k = 0; k < 8; ++k) offset[k] = kStepY[k] * width_ + kStepX[k];
     std::uint8_t* open = open_.data();
     Node* tree = tree_.data();
-    tree[0] = {seed, -1, 0, 0, -1, -1};
+    tree[0] = {seed, -1, 0, 0, -1, -1, 0};
     open[seed] = 0;
     std::size_t nodes = 1;
     for (std::size_t i = 0; i < nodes; ++i) {
         const std::int32_t p = tree[i].pixel;
-        const unsigned bits = neighbourhood(open, p, width_);
-        if (bits == 0) continue;
+        // Of the mask, which does not change, and not of what is open: words of bytes just written would have
+        // to wait for them
+        const unsigned bits = neighbourhood(mask, p, width_) & ~tree[i].parent_bit;
         const auto px = static_cast<float>(gx[p]), py = static_cast<float>(gy[p]);
         const float least = min_cosine * min_cosine * (px * px + py * py);
         std::uint32_t next = kNeighbours[bits].first;
         for (int left = kNeighbours[bits].count; left > 0; --left, next >>= 4) {
-            const std::int32_t q = p + offset[next & 7];
+            const unsigned step = next & 7;
+            const std::int32_t q = p + offset[step];
+            if (open[q] == 0) continue;
             const auto qx = static_cast<float>(gx[q]), qy = static_cast<float>(gy[q]);
             const float dot = px * qx + py * qy;
             if (dot < 0 || dot * dot < least * (qx * qx + qy * qy)) continue;
             open[q] = 0;
-            tree[nodes++] = {q, static_cast<std::int32_t>(i), 0, 0, -1, -1};
+            tree[nodes++] = {q, static_cast<std::int32_t>(i), 0, 0, -1, -1, backFrom(step)};
         }
     }
     nodes_ = nodes;
@@ -157,10 +166,10 @@ std::size_t EdgeOrganizer::appendLongestRoute() {
     return length;
 }
 
-void EdgeOrganizer::searchFrom(const Gradient& gradient, std::int32_t seed, float min_cosine,
-                               std::size_t min_length, std::vector<std::int32_t>& begin) {
+void EdgeOrganizer::searchFrom(const Gradient& gradient, const std::uint8_t* mask, std::int32_t seed,
+                               float min_cosine, std::size_t min_length, std::vector<std::int32_t>& begin) {
     if (open_[static_cast<std::size_t>(seed)] == 0) return;
-    growCluster(gradient, seed, min_cosine);
+    growCluster(gradient, mask, seed, min_cosine);
     if (nodes_ < min_length) return;
     const std::size_t length = appendLongestRoute();
     if (length < min_length) {
@@ -181,15 +190,18 @@ void EdgeOrganizer::organize(const Gradient& gradient, const EdgeMask& edges, do
     for (const std::int32_t p : edges.pixels) open_[static_cast<std::size_t>(p)] = 1;
     const auto min_cosine = static_cast<float>(std::cos(angle_deg * kDegree));
     const auto least = static_cast<std::size_t>(std::max(1, min_length));
+    const auto* mask = edges.mask.ptr<std::uint8_t>();
     again_.clear();
     points_.clear();
     out.begin.assign(1, 0);
-    for (const std::int32_t seed : edges.pixels) searchFrom(gradient, seed, min_cosine, least, out.begin);
+    for (const std::int32_t seed : edges.pixels)
+        searchFrom(gradient, mask, seed, min_cosine, least, out.begin);
     // Branches left out are opened together and searched once; what is left out then is dropped, which keeps
     // the work linear.
     const std::size_t count = again_.size();
     for (std::size_t i = 0; i < count; ++i) open_[static_cast<std::size_t>(again_[i])] = 1;
-    for (std::size_t i = 0; i < count; ++i) searchFrom(gradient, again_[i], min_cosine, least, out.begin);
+    for (std::size_t i = 0; i < count; ++i)
+        searchFrom(gradient, mask, again_[i], min_cosine, least, out.begin);
 
     out.resize(points_.size());
     for (int e = 0; e < out.numEdges(); ++e) {

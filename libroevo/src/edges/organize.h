@@ -27,12 +27,13 @@ class EdgeOrganizer {
         std::int32_t pixel, parent;
         std::int32_t depth1, depth2;  ///< lengths of the two longest routes below this node, in nodes
         std::int32_t child1, child2;  ///< where they begin
+        unsigned parent_bit;          ///< of its neighbourhood
     };
-    void growCluster(const Gradient& gradient, std::int32_t seed, float min_cosine);
+    void growCluster(const Gradient& gradient, const std::uint8_t* mask, std::int32_t seed, float min_cosine);
     /// Appends the pixels of the longest pair of routes, in order. @return how many
     std::size_t appendLongestRoute();
-    void searchFrom(const Gradient& gradient, std::int32_t seed, float min_cosine, std::size_t min_length,
-                    std::vector<std::int32_t>& begin);
+    void searchFrom(const Gradient& gradient, const std::uint8_t* mask, std::int32_t seed, float min_cosine,
+                    std::size_t min_length, std::vector<std::int32_t>& begin);
 
     std::vector<std::uint8_t> open_;  ///< 1 where an edge pixel waits to be visited; all 0 between calls
     std::vector<Node> tree_;          ///< room for all pixels
