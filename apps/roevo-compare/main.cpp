@@ -45,8 +45,9 @@ struct Arguments {
 
 void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--input", a.inputs, "Rawlogs, ROS bags or dataset folders, one or more");
-    app.add_option("--ground-truth", a.ground_truth,
-                   "Trajectory to compare with, TUM or EuRoC, for a single --input (default: what lies beside each)");
+    app.add_option(
+        "--ground-truth", a.ground_truth,
+        "Trajectory to compare with, TUM or EuRoC, for a single --input (default: what lies beside each)");
     app.add_option("--methods", a.methods, "Names, separated by commas (default: all)")->delimiter(',');
     app.add_option(
         "--trajectory", a.trajectories,

@@ -157,8 +157,9 @@ int run(int argc, char** argv) {
     app.add_option("--mode", mode,
                    "Of the odometry, where the experiment does not choose it: ct, tr or ba (default; "
                    "loop, sigmas and distribution: ba and tr)");
-    app.add_option("--ground-truth", settings.ground_truth,
-                   "Trajectory to compare with, TUM or EuRoC, for a single input (default: what is found beside each)");
+    app.add_option(
+        "--ground-truth", settings.ground_truth,
+        "Trajectory to compare with, TUM or EuRoC, for a single input (default: what is found beside each)");
     app.add_flag(
         "--no-ground-truth", settings.ignore_ground_truth,
         "Do without, even where some is beside a recording: repeatability is then judged by the odometry's "

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "roevo/camera/rgbd_frame.h"
 #include "edges/canny.h"
 #include "edges/gradient.h"
 #include "edges/organized_edges.h"
+#include "roevo/camera/rgbd_frame.h"
 #include "roevo/options.h"
 #include "tracking/edge_points.h"
 #include "tracking/photometric.h"

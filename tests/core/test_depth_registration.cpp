@@ -72,7 +72,8 @@ TEST(RegisterDepth, NearestWins) {
 TEST(RegisterDepth, ADifferentCameraSeesTheSamePlane) {
     const PinholeCamera colour{200, 150, 150, 151, 99, 74, {}};
     Pose T_colour_depth = moved(0.05, -0.01, 0.002);
-    T_colour_depth.setRotation(Eigen::AngleAxisd(0.02, Eigen::Vector3d(1, 2, 0.5).normalized()).toRotationMatrix());
+    T_colour_depth.setRotation(
+        Eigen::AngleAxisd(0.02, Eigen::Vector3d(1, 2, 0.5).normalized()).toRotationMatrix());
     const Eigen::Vector3d n(0.1, 0.05, 1);
     const cv::Mat registered = registerDepth(planeImage(kCamera, n, 2), kCamera, colour, T_colour_depth);
     // The plane in the colour camera: n' = R n, d' = d + n' . t

@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "roevo/camera/pinhole_camera.h"
 #include "edges/edge_depth.h"
+#include "roevo/camera/pinhole_camera.h"
 
 namespace roevo {
 namespace {
@@ -30,8 +30,8 @@ TEST(EdgeDepth, OccludingStepGivesTheForegroundOnBothSides) {
 TEST(EdgeDepth, NoneWhereTheLensLeadsOutOfTheImage) {
     const cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(3.0F));
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    for (const float out : {-1000.0F, 1e9F, 1e30F, -1e30F, kInfinity, -kInfinity,
-                            std::numeric_limits<float>::quiet_NaN()}) {
+    for (const float out :
+         {-1000.0F, 1e9F, 1e30F, -1e30F, kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
         EXPECT_EQ(at(depth, out, 40), 0) << out;
         EXPECT_EQ(at(depth, 50, out), 0) << out;
     }

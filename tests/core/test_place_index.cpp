@@ -118,7 +118,8 @@ TEST(PlaceIndex, ExcludedOnesAreNoCandidatesAndNoMoreComeThanWereAskedFor) {
     EXPECT_TRUE(found.empty()) << "nothing was inserted yet";
     const PlacePoints points = randomPlace(50, random);
     for (int id : {7, 3, 100, 42}) index.insert(id, points);
-    index.query(points, 10, [](int id) { return id != 42 && id != 3; }, found);
+    index.query(
+        points, 10, [](int id) { return id != 42 && id != 3; }, found);
     EXPECT_EQ(idsOf(found), (std::vector<int>{7, 100}));
     index.query(points, 1, any, found);
     EXPECT_EQ(idsOf(found), std::vector<int>{3});

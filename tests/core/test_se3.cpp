@@ -86,8 +86,8 @@ double offRigid(const Pose& pose) {
            std::abs(pose.linear().determinant() - 1);
 }
 
-// What a map does to keyframes that hang on each other: a chain of inverses and products, in which an error of
-// rounding that is not taken out doubles with every link.
+// What a map does to keyframes that hang on each other: a chain of inverses and products, in which an error
+// of rounding that is not taken out doubles with every link.
 TEST(Pose, StaysRigidThroughAnyChain) {
     std::mt19937 random(64);
     Pose chained = randomPose(random, 1, 1), link = randomPose(random, 1, 1);

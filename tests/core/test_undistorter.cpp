@@ -4,8 +4,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/support/analytic_image.h"
 #include "camera/undistorter.h"
+#include "core/support/analytic_image.h"
 
 namespace roevo {
 namespace {

@@ -30,7 +30,8 @@ void runCalibrationFile(std::string_view bytes);  ///< of other programs
 std::vector<std::string> calibrationFileSeeds();
 void runArray(std::string_view bytes);  ///< numpy's, after its first word
 std::vector<std::string> arraySeeds();
-void runOtherFolder(std::string_view bytes);  ///< the text files of folders as phones and other programs write them
+void runOtherFolder(
+    std::string_view bytes);  ///< the text files of folders as phones and other programs write them
 std::vector<std::string> otherFolderSeeds();
 void runOptions(std::string_view bytes);  ///< an .ini
 std::vector<std::string> optionsSeeds();

@@ -147,7 +147,8 @@ TEST(ObservationConverter, DifferingCamerasAreRegisteredAsMrptDoes) {
     scan->cameraParamsIntensity = toMrptCamera(colour_camera, "colour");
     Pose T_sensor_colour = sensorFromOptical();
     T_sensor_colour.translation() << 0.01, -0.12, 0.04;  // enough to tell a direction from its inverse
-    T_sensor_colour.setRotation(T_sensor_colour.linear() * Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitY()).toRotationMatrix());
+    T_sensor_colour.setRotation(T_sensor_colour.linear() *
+                                Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitY()).toRotationMatrix());
     scan->relativePoseIntensityWRTDepth = toMrpt(T_sensor_colour);
     expectSameRegistrationAsMrpt(*scan, 0.97);
 }

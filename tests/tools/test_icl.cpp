@@ -46,7 +46,8 @@ class IclFolder {
             StampedPose line{static_cast<double>(i), frame.T_world_camera};
             const Eigen::Vector3d mirror(1, left_handed ? -1 : 1, 1);
             line.T_world_camera.translation() = mirror.asDiagonal() * line.T_world_camera.translation();
-            line.T_world_camera.setRotation(mirror.asDiagonal() * line.T_world_camera.linear() * mirror.asDiagonal());
+            line.T_world_camera.setRotation(mirror.asDiagonal() * line.T_world_camera.linear() *
+                                            mirror.asDiagonal());
             truth += toTumLine(line) + "\n";
         }
         const PinholeCamera& c = simulator.camera();

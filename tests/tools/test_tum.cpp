@@ -196,7 +196,8 @@ TEST(Tum, WrongFoldersAndLists) {
                     "did you mean " + (parent / "child").string());
     EXPECT_CONTAINS(errorOf([&] { openDataset((parent / "child").string()); }), "has no depth.txt");
     EXPECT_CONTAINS(openError(folder, {"oni", 0.02}),
-                    "unknown dataset format 'oni' (known: auto, 7scenes, eth3d, scannet, stray, record3d, icl, tum, plain, bag)");
+                    "unknown dataset format 'oni' (known: auto, 7scenes, eth3d, scannet, stray, record3d, "
+                    "icl, tum, plain, bag)");
     EXPECT_CONTAINS(openError(folder, {"tum", 0.001}), "closest pair 0.004 s apart");
     folder.write("rgb.txt", "# nothing\n");
     EXPECT_CONTAINS(openError(folder), (folder / "rgb.txt") + " lists no images");

@@ -86,8 +86,8 @@ class Relocaliser {
     [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, const Trajectory& trajectory,
                                                    const Whereabouts& whereabouts);
 
-    /// The pose about this one that the edges of keyframe and frame, both ways, and their depths agree on, if
-    /// they do.
+    /// The pose about this one that the edges of keyframe and frame, their depths and their surroundings
+    /// agree on, if they do (see confirms()).
     [[nodiscard]] std::optional<Pose> confirm(const Keyframe& keyframe, const Frame& frame,
                                               const Pose& T_keyframe_camera);
 

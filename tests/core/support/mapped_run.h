@@ -72,8 +72,7 @@ inline MappedRun runOver(const Sequence& sequence, const OdometryOptions& option
 inline bool sameBytes(const std::vector<StampedPose>& a, const std::vector<StampedPose>& b) {
     return a.size() == b.size() &&
            std::equal(a.begin(), a.end(), b.begin(), [](const auto& p, const auto& q) {
-               return p.timestamp == q.timestamp &&
-                      p.T_world_camera.matrix() == q.T_world_camera.matrix();
+               return p.timestamp == q.timestamp && p.T_world_camera.matrix() == q.T_world_camera.matrix();
            });
 }
 
