@@ -1,11 +1,13 @@
 // Radius search among the points of edges against brute force.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "core/support/random_pose.h"
 #include "edges/edge_grid.h"
+#include "pixels/pixel_kernels.h"
 
 namespace roevo {
 namespace {
@@ -66,6 +68,70 @@ TEST(EdgeGrid, NearestIsThatOfBruteForce) {
         }
     }
     EXPECT_GT(found, 1000);
+}
+
+/// The kernel of each instruction set.
+TEST(EdgeGrid, NearestPointsAreThoseOfAllPoints) {
+    constexpr int kColumns = 12, kRows = 5, kPoints = 300;
+    constexpr float kRadius = 5, kMinCosine = 0.5F;
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> column(0, kColumns * pixels::kCellWidth - 0.01F),
+        row(0, kRows * pixels::kCellHeight - 0.01F), angle(0, 6.28F);
+    struct Point {
+        float x, y, angle;
+        int cell() const {
+            return static_cast<int>(y) / pixels::kCellHeight * kColumns +
+                   static_cast<int>(x) / pixels::kCellWidth;
+        }
+    };
+    std::vector<Point> points;
+    for (int i = 0; i < kPoints; ++i) points.push_back({column(random), row(random), angle(random)});
+    points.push_back(points.front());  // as near: the first one counts
+    std::stable_sort(points.begin(), points.end(),
+                     [](const Point& a, const Point& b) { return a.cell() < b.cell(); });
+    std::vector<float> x, y, nx, ny;
+    std::vector<std::int32_t> index, first(kColumns * kRows + 1, 0);
+    for (const Point& point : points) {
+        index.push_back(1000 + static_cast<int>(index.size()));
+        x.push_back(point.x);
+        y.push_back(point.y);
+        nx.push_back(std::cos(point.angle));
+        ny.push_back(std::sin(point.angle));
+        for (std::size_t cell = static_cast<std::size_t>(point.cell()) + 1; cell < first.size(); ++cell)
+            ++first[cell];
+    }
+    for (auto* values : {&x, &y, &nx, &ny}) values->resize(points.size() + pixels::kGridPadding, 1e9F);
+    std::vector<float> u, v, qx, qy;
+    for (int i = 0; i < 500; ++i) {
+        u.push_back(2 * column(random) - 20);  // outside, too
+        v.push_back(2 * row(random) - 20);
+        const float a = angle(random);
+        qx.push_back(std::cos(a));
+        qy.push_back(std::sin(a));
+    }
+    u[0] = -1e6F;
+    v[1] = 1e6F;
+    int with = 0;
+    for (const auto* table : {&pixels::baseline(), pixels::avx2()}) {
+        if (table == nullptr) continue;
+        std::vector<std::int32_t> found(u.size());
+        table->nearestPoints(
+            {x.data(), y.data(), nx.data(), ny.data(), index.data(), first.data(), kColumns, kRows}, u.data(),
+            v.data(), qx.data(), qy.data(), u.size(), kRadius, kMinCosine, found.data());
+        for (std::size_t q = 0; q < u.size(); ++q) {
+            std::int32_t expected = -1;
+            float least = kRadius * kRadius;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const float du = x[i] - u[q], dv = y[i] - v[q], squared = du * du + dv * dv;
+                if (squared >= least || nx[i] * qx[q] + ny[i] * qy[q] < kMinCosine) continue;
+                least = squared;
+                expected = index[i];
+            }
+            ASSERT_EQ(found[q], expected) << table->name << ' ' << q;
+            with += expected >= 0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(with, 100);
 }
 
 TEST(EdgeGrid, RebuildingForgetsTheOldPoints) {

@@ -106,7 +106,7 @@ struct MappingOptions {
     double prior_weight = 0.15;    ///< weight of the tracked motion between keyframes, against all points
     double max_spread = 16;        ///< sigmas; an edge whose observations differ by more is a pseudo-edge
     double min_seen = 0.5;         ///< share of the keyframes that look at an edge's place and must see it
-    int min_looks = 3;             ///< fewer such keyframes cannot judge
+    int min_looks = 3;             ///< fewer of them cannot judge; one that looks from the side counts less
     bool reuse_keyframes = true;   ///< old keyframes that look at the same place take part again
     int max_reused = 4;            ///< at most this many of them
     bool close_loops = true;       ///< places that are recognised correct the whole path since
