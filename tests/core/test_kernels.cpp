@@ -1,6 +1,7 @@
 // The hot loops: baseline and AVX2 give the same bytes, and both what plain double loops give.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "core/support/random_pose.h"
@@ -285,6 +286,37 @@ TEST(KernelTables, Avx2GivesTheSameBytesAsTheBaseline) {
         const Information info = randomInformation(random, 1000);
         const NormalEquations first = info.accumulate(baseline()), second = info.accumulate(*avx2());
         EXPECT_EQ(std::memcmp(&first, &second, sizeof first), 0);
+    }
+}
+
+TEST(KernelTables, EliminatingAPointTakesTheProductsOfAllPairsFromTheirBlocks) {
+    using Coupling = Eigen::Matrix<double, 6, 3>;
+    using Block = Eigen::Matrix<double, 6, 6>;
+    std::mt19937 random(11);
+    constexpr int kSlots = 5;
+    for (int n = 0; n <= kSlots; ++n) {
+        std::vector<std::int32_t> slots{0, 1, 2, 3, 4};
+        std::shuffle(slots.begin(), slots.end(), random);
+        slots.resize(static_cast<std::size_t>(n));
+        std::sort(slots.begin(), slots.end());
+        std::vector<double> coupling(18 * kSlots), through(18 * kSlots), blocks(36 * kSlots * kSlots);
+        for (auto* values : {&coupling, &through, &blocks})
+            for (double& value : *values) value = uniform(random, -2, 2);
+        std::vector<double> expected = blocks, wide = blocks;
+        for (int a = 0; a < n; ++a) {
+            for (int c = a; c < n; ++c) {
+                const auto at = static_cast<std::size_t>(slots[static_cast<std::size_t>(a)] * kSlots +
+                                                         slots[static_cast<std::size_t>(c)]);
+                Eigen::Map<Block>(&expected[36 * at]) -=
+                    Eigen::Map<const Coupling>(&through[18 * static_cast<std::size_t>(a)]) *
+                    Eigen::Map<const Coupling>(&coupling[18 * static_cast<std::size_t>(c)]).transpose();
+            }
+        }
+        baseline().eliminatePoint(coupling.data(), through.data(), slots.data(), n, kSlots, blocks.data());
+        for (std::size_t i = 0; i < blocks.size(); ++i) EXPECT_NEAR(blocks[i], expected[i], 1e-12);
+        if (avx2() == nullptr) continue;
+        avx2()->eliminatePoint(coupling.data(), through.data(), slots.data(), n, kSlots, wide.data());
+        EXPECT_TRUE(sameBytes(wide, blocks));
     }
 }
 

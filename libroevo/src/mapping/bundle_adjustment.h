@@ -31,9 +31,9 @@ struct RefinementResult {
     std::vector<int> inliers;  ///< of each window keyframe
 };
 
-/// Points that make the Hessian of a window; there are more than it needs. All make the gradient, so that
-/// nothing but the step to the optimum is approximate.
-inline constexpr std::size_t kHessianPoints = 1500;
+/// Observations that make the Hessian of a window; there are more than it needs. All make the gradient, so
+/// that nothing but the step to the optimum is approximate.
+inline constexpr std::size_t kHessianObservations = 6000;
 
 class WindowEquations;
 struct WindowPosterior;
@@ -45,7 +45,7 @@ struct WindowPosterior;
 class BundleAdjuster {
   public:
     BundleAdjuster(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera,
-                   std::size_t hessian_points = kHessianPoints);
+                   std::size_t hessian_observations = kHessianObservations);
     ~BundleAdjuster();
     BundleAdjuster(BundleAdjuster&&) noexcept;
     BundleAdjuster& operator=(BundleAdjuster&&) noexcept;

@@ -25,6 +25,11 @@ constexpr float kLookSine = 0.35F;       ///< and turned by no more than this, s
 constexpr std::size_t kTangentSpan = 3;  ///< points to each side that a tangent is taken between
 constexpr double kFrameEvidence = 3;     ///< keyframes that all frames since a keyframe count as
 
+/// Every so many of an edge's points are looked for.
+std::size_t strideOf(std::size_t points) {
+    return 1 + points / kMostLooks;
+}
+
 double tangentResidual(const PinholeCamera& camera, const MapKeyframe& keyframe, std::size_t i,
                        const Eigen::Vector3d& in_camera) {
     const Eigen::Vector2d normal(keyframe.image.normal_x[i], keyframe.image.normal_y[i]),
@@ -53,82 +58,111 @@ double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, cons
     return std::sqrt(sum / static_cast<double>(end - first - 1));
 }
 
-bool PseudoEdgeJudge::isInside(const Eigen::Vector3d& in_camera) const {
+PseudoEdgeJudge::View PseudoEdgeJudge::viewOf(const Pose& T_world_camera) const {
     constexpr double kMargin = 5;  // px
-    const double z = in_camera.z(), x = camera_.fx * in_camera.x(), y = camera_.fy * in_camera.y();
-    return z > sensor_.min_depth && x >= (kMargin - camera_.cx) * z && y >= (kMargin - camera_.cy) * z &&
-           x <= (camera_.width - 1 - kMargin - camera_.cx) * z &&
-           y <= (camera_.height - 1 - kMargin - camera_.cy) * z;
+    View view;
+    view.T_camera_world = T_world_camera.inverse();
+    const double left = kMargin - camera_.cx, top = kMargin - camera_.cy,
+                 right = camera_.width - 1 - kMargin - camera_.cx,
+                 bottom = camera_.height - 1 - kMargin - camera_.cy;
+    Eigen::Matrix<double, 5, 3> in_camera;
+    in_camera << camera_.fx, 0, -left, -camera_.fx, 0, right, 0, camera_.fy, -top, 0, -camera_.fy, bottom, 0,
+        0, 1;
+    in_camera.rowwise().normalize();
+    view.normals = in_camera * view.T_camera_world.linear();
+    view.offsets = in_camera * view.T_camera_world.translation();
+    view.offsets[4] -= sensor_.min_depth;
+    return view;
 }
 
-bool PseudoEdgeJudge::project(std::size_t slot, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const {
-    const Eigen::Vector3d q = T_camera_world_[slot] * point;
-    if (!(q.z() > sensor_.min_depth)) return false;
-    pixel = camera_.project(q).cast<float>();
-    return isInside(q);
+bool PseudoEdgeJudge::isInside(const View& view, const Eigen::Vector3d& point) {
+    return (view.normals * point + view.offsets).minCoeff() > 0;
 }
 
-void PseudoEdgeJudge::countPoints(const FusedEdges& edges, std::size_t edge) {
+void PseudoEdgeJudge::project(const View& view, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const {
+    const Eigen::Vector3d q = view.T_camera_world * point;
+    if (q.z() > sensor_.min_depth) pixel = camera_.project(q).cast<float>();
+}
+
+void PseudoEdgeJudge::findPoints(const FusedEdges& edges, std::size_t edge) {
     const auto [first, end] = edges.pointsOf(edge);
-    const std::size_t slots = T_camera_world_.size(), stride = 1 + (end - first) / kMostLooks;
-    inside_.assign(slots, 0);
-    observed_.assign(slots, 0);
-    for (std::size_t p = first; p < end; p += stride) {
+    const std::size_t stride = strideOf(end - first);
+    inside_.assign(views_.size(), 0);
+    observed_.assign(views_.size(), 0);
+    const Eigen::Vector3d centre = edges.points[first + (end - first) / 2];
+    double squared_radius = 0;
+    std::uint32_t bit = 1;
+    for (std::size_t p = first; p < end; p += stride, bit <<= 1) {
+        squared_radius = std::max(squared_radius, (edges.points[p] - centre).squaredNorm());
         const IndexRange range = edges.observationsOf(p);
         for (std::size_t k = range.first; k < range.end; ++k)
-            observer_of_[static_cast<std::size_t>(edges.observations[k].slot)] = p;
-        for (std::size_t slot = 0; slot < slots; ++slot) {
-            if (!isInside(T_camera_world_[slot] * edges.points[p])) continue;
-            ++inside_[slot];
-            observed_[slot] += observer_of_[slot] == p ? 1 : 0;
+            observed_[static_cast<std::size_t>(edges.observations[k].slot)] |= bit;
+    }
+    const double radius = std::sqrt(squared_radius);
+    for (std::size_t slot = 0; slot < views_.size(); ++slot) {
+        const View& view = views_[slot];
+        const double nearest = (view.normals * centre + view.offsets).minCoeff();
+        if (nearest > radius)
+            inside_[slot] = bit - 1;  // all of them
+        else if (nearest > -radius) {
+            std::uint32_t own = 1;
+            for (std::size_t p = first; p < end; p += stride, own <<= 1)
+                if (isInside(view, edges.points[p])) inside_[slot] |= own;
         }
+        observed_[slot] &= inside_[slot];
     }
 }
 
+double PseudoEdgeJudge::weightOf(std::size_t slot) const {
+    double nearest = -1;  // cosine
+    for (std::size_t other = 0; other < views_.size(); ++other)
+        if (other != slot && observed_[other] != 0)
+            nearest = std::max(nearest, rays_[slot].dot(rays_[other]));
+    return std::exp((nearest - 1) / (kSideways * kSideways));  // 2 - 2 cos(x) is about x^2
+}
+
 PseudoEdgeJudge::Looks PseudoEdgeJudge::looksAt(const std::vector<WindowKeyframe>& window,
-                                                const FusedEdges& edges, std::size_t edge) {
-    countPoints(edges, edge);
+                                                const FusedEdges& edges, std::size_t edge, double found) {
+    findPoints(edges, edge);
     const auto [first, end] = edges.pointsOf(edge);
-    const std::size_t stride = 1 + (end - first) / kMostLooks;
-    const double count = static_cast<double>((end - first + stride - 1) / stride);
+    const std::size_t stride = strideOf(end - first), count = (end - first + stride - 1) / stride;
     rays_.clear();
     for (const WindowKeyframe& view : window)
         rays_.push_back((view.T_world_camera.translation() - edges.points[(first + end) / 2]).normalized());
     Looks looks;
     bool is_first = true;
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
-        if (inside_[slot] < kLookShare * count) continue;
+        const int inside = __builtin_popcount(inside_[slot]), observed = __builtin_popcount(observed_[slot]);
+        if (inside < kLookShare * static_cast<double>(count)) continue;
         // The keyframe in which an edge was found first proves nothing
-        if (observed_[slot] > 0 && std::exchange(is_first, false)) continue;
-        double nearest = -1;  // cosine
-        for (std::size_t other = 0; other < window.size(); ++other)
-            if (other != slot && observed_[other] > 0)
-                nearest = std::max(nearest, rays_[slot].dot(rays_[other]));
-        const double aside = std::acos(std::min(nearest, 1.0)) / kSideways;
-        const double weight = std::exp(-aside * aside / 2);
-        looks.looked += weight;
-        if (observed_[slot] >= kSeeShare * inside_[slot])
-            looks.seen += weight;
+        if (observed > 0 && std::exchange(is_first, false)) continue;
+        if (observed >= kSeeShare * inside)
+            looks.seen += weightOf(slot);
         else
-            looks.missed.emplace_back(slot, weight);
+            looks.missed.emplace_back(slot, 1);
     }
+    looks.looked = looks.seen + static_cast<double>(looks.missed.size());
+    if (!isVanishing(looks, found)) return looks;  // whatever the looks that missed it weigh
+    looks.looked = looks.seen;
+    for (auto& [slot, weight] : looks.missed) looks.looked += weight = weightOf(slot);
     return looks;
 }
 
-bool PseudoEdgeJudge::isInImage(std::size_t slot, const OrganizedEdges& image, const FusedEdges& edges,
+bool PseudoEdgeJudge::isInImage(const View& view, const OrganizedEdges& image, const FusedEdges& edges,
                                 std::size_t edge) const {
     const auto [first, end] = edges.pointsOf(edge);
     int inside = 0, found = 0;
-    const std::size_t stride = 1 + (end - first) / kMostLooks;
+    const std::size_t stride = strideOf(end - first);
     const double enough = kImageShare * static_cast<double>((end - first + stride - 1) / stride);
     const auto radius = std::max(1.0F, static_cast<float>(camera_.pixelScale())) * kLookRadius;
     Eigen::Vector2f pixel, before, after;
     for (std::size_t p = first; p < end && found < enough && inside - found <= enough; p += stride) {
-        if (!project(slot, edges.points[p], pixel)) continue;
+        if (!isInside(view, edges.points[p])) continue;
         ++inside;
+        project(view, edges.points[p], pixel);
         before = after = pixel;  // where a neighbour is behind the camera
-        project(slot, edges.points[std::max(first + kTangentSpan, p) - kTangentSpan], before);
-        project(slot, edges.points[std::min(end - 1, p + kTangentSpan)], after);
+        project(view, edges.points[std::max(first + kTangentSpan, p) - kTangentSpan], before);
+        project(view, edges.points[std::min(end - 1, p + kTangentSpan)], after);
         const Eigen::Vector2f chord = after - before;
         const float limit = kLookSine * chord.norm();
         found += grid_.any(pixel.x(), pixel.y(), radius, [&](std::size_t i) {
@@ -140,9 +174,8 @@ bool PseudoEdgeJudge::isInImage(std::size_t slot, const OrganizedEdges& image, c
 
 void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdges& edges, double scale) {
     suspects_.clear();
-    T_camera_world_.clear();
-    for (const WindowKeyframe& view : window) T_camera_world_.push_back(view.T_world_camera.inverse());
-    observer_of_.assign(window.size(), edges.points.size());
+    views_.clear();
+    for (const WindowKeyframe& view : window) views_.push_back(viewOf(view.T_world_camera));
     std::vector<double> spreads;
     for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
         EdgeVerdict& verdict = edges.verdicts[edge];
@@ -156,12 +189,14 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
             verdict = EdgeVerdict::kSpread;
             continue;
         }
-        Suspect suspect{edge, looksAt(window, edges, edge), foundShare(window, edges, edge), 0};
-        if (isVanishing(suspect)) suspects_.push_back(std::move(suspect));
+        const double found = foundShare(window, edges, edge);
+        Looks looks = looksAt(window, edges, edge, found);
+        const double open = looks.looked - looks.seen;
+        if (isVanishing(looks, found)) suspects_.push_back({edge, std::move(looks), found, open, 0});
     }
     askImages(window, edges);
     for (const Suspect& suspect : suspects_) {
-        if (isVanishing(suspect)) edges.verdicts[suspect.edge] = EdgeVerdict::kVanishing;
+        if (isVanishing(suspect.looks, suspect.found)) edges.verdicts[suspect.edge] = EdgeVerdict::kVanishing;
     }
 }
 
@@ -174,22 +209,21 @@ void PseudoEdgeJudge::askImages(const std::vector<WindowKeyframe>& window, const
             const auto& missed = suspect.looks.missed;
             if (suspect.asked == missed.size() || missed[suspect.asked].first != slot) continue;
             const double weight = missed[suspect.asked++].second;
-            Suspect at_best{suspect.edge, {suspect.looks.looked, suspect.looks.seen, {}}, suspect.found, 0};
-            for (std::size_t k = suspect.asked - 1; k < missed.size(); ++k)
-                at_best.looks.seen += missed[k].second;
-            if (!isVanishing(suspect) || isVanishing(at_best)) continue;
+            const Looks at_best{suspect.looks.looked, suspect.looks.seen + suspect.open, {}};
+            suspect.open -= weight;
+            if (!isVanishing(suspect.looks, suspect.found) || isVanishing(at_best, suspect.found)) continue;
             if (!built) grid_.build(image, camera_.width, camera_.height);
             built = true;
-            if (isInImage(slot, image, edges, suspect.edge)) suspect.looks.seen += weight;
+            if (isInImage(views_[slot], image, edges, suspect.edge)) suspect.looks.seen += weight;
         }
     }
 }
 
-bool PseudoEdgeJudge::isVanishing(const Suspect& suspect) const {
-    const double frames = suspect.found < 0 ? 0 : kFrameEvidence;
-    const double evidence = suspect.looks.looked + frames;
+bool PseudoEdgeJudge::isVanishing(const Looks& looks, double found) const {
+    const double frames = found < 0 ? 0 : kFrameEvidence;
+    const double evidence = looks.looked + frames;
     if (evidence < options_.min_looks - 1) return false;
-    return suspect.looks.seen + frames * suspect.found < options_.min_seen * evidence;
+    return looks.seen + frames * found < options_.min_seen * evidence;
 }
 
 double PseudoEdgeJudge::foundShare(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,

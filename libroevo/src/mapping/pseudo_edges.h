@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -31,21 +32,33 @@ class PseudoEdgeJudge {
         std::size_t edge = 0;
         Looks looks;
         double found = 0;
+        double open = 0;        ///< weight of looks.missed, whose images were not asked
         std::size_t asked = 0;  ///< of looks.missed, whose images were asked
     };
 
-    /// How many points of an edge each keyframe looks at, and how many it observes.
-    void countPoints(const FusedEdges& edges, std::size_t edge);
-    Looks looksAt(const std::vector<WindowKeyframe>& window, const FusedEdges& edges, std::size_t edge);
+    /// Where a window keyframe is, and what bounds its image: a point is in it where all five rows of
+    /// `normals` x + `offsets` (m) are positive.
+    struct View {
+        Pose T_camera_world;
+        Eigen::Matrix<double, 5, 3> normals;
+        Eigen::Matrix<double, 5, 1> offsets;
+    };
+    View viewOf(const Pose& T_world_camera) const;
+    /// Which of an edge's points each keyframe looks at, and which it observes.
+    void findPoints(const FusedEdges& edges, std::size_t edge);
+    /// @param found  foundShare(); where it and the keyframes that see the edge are enough, nobody missed it
+    Looks looksAt(const std::vector<WindowKeyframe>& window, const FusedEdges& edges, std::size_t edge,
+                  double found);
+    /// Of a keyframe's look at the edge: by the angle to the nearest other view that it was observed from.
+    double weightOf(std::size_t slot) const;
     void askImages(const std::vector<WindowKeyframe>& window, const FusedEdges& edges);
     /// Whether a keyframe's image has an edge in the place of a fused one, associated or not.
-    bool isInImage(std::size_t slot, const OrganizedEdges& image, const FusedEdges& edges,
+    bool isInImage(const View& view, const OrganizedEdges& image, const FusedEdges& edges,
                    std::size_t edge) const;
-    bool isVanishing(const Suspect& suspect) const;
-    /// Whether a point of the camera frame is in the image.
-    bool isInside(const Eigen::Vector3d& in_camera) const;
-    /// Whether a point is in a keyframe's image, and where.
-    bool project(std::size_t slot, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const;
+    bool isVanishing(const Looks& looks, double found) const;
+    static bool isInside(const View& view, const Eigen::Vector3d& point);
+    /// Where a point is in a keyframe's image; behind the camera it is nowhere, and `pixel` stays.
+    void project(const View& view, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const;
     /// Share of the frames after a keyframe that found an edge, mean over its keyframes; < 0: not known.
     double foundShare(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
                       std::size_t edge) const;
@@ -53,12 +66,11 @@ class PseudoEdgeJudge {
     MappingOptions options_;
     SensorOptions sensor_;
     PinholeCamera camera_;
-    std::vector<Pose> T_camera_world_;  ///< of the window
+    std::vector<View> views_;  ///< of the window
     std::vector<Suspect> suspects_;
-    std::vector<std::size_t> observer_of_;  ///< of each slot: the last point that it was seen to observe
-    std::vector<int> inside_, observed_;    ///< of each slot: points of the edge
-    std::vector<Eigen::Vector3d> rays_;     ///< of each slot: from the edge to the camera
-    EdgeGrid grid_;                         ///< of the image that is asked
+    std::vector<std::uint32_t> inside_, observed_;  ///< of each slot: points of the edge, a bit of each
+    std::vector<Eigen::Vector3d> rays_;             ///< of each slot: from the edge to the camera
+    EdgeGrid grid_;                                 ///< of the image that is asked
 };
 
 }  // namespace roevo

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tracking/kernels.h"
 #include "tracking/robust.h"
 #include "tracking/se3.h"
 
@@ -81,6 +82,8 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     gradients_.resize(slots);
     edge_gradients_.resize(slots);
     point_blocks_.resize(slots);
+    couplings_.resize(slots);
+    throughs_.resize(slots);
     scales_.resize(slots);
 }
 
@@ -135,7 +138,7 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
     for (auto& entry : edge_gradients_) entry.setZero();
     pulls_.clear();
     inliers.assign(window.size(), 0);
-    const std::size_t stride = 1 + points_.size() / hessian_points_;
+    const std::size_t stride = 1 + observations_.size() / hessian_observations_;
     for (std::size_t p = 0; p < points_.size(); ++p) {
         int count = 0;
         touched_.clear();
@@ -238,26 +241,23 @@ void WindowEquations::addPulls(std::int32_t edge) {
 void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse) {
     std::sort(touched_.begin(), touched_.end());
     const Eigen::Matrix3d P = skew(point - origin_);
+    hessian_slots_.clear();
     for (const std::int32_t slot : touched_) {
         if (!isInHessian(slot)) continue;
-        InformationBlock& own = point_blocks_[static_cast<std::size_t>(slot)];
-        own.coupling.topRows<3>() = own.information;
-        own.coupling.bottomRows<3>().noalias() = P * own.information;
+        const Eigen::Matrix3d& information = point_blocks_[static_cast<std::size_t>(slot)].information;
+        Coupling& coupling = couplings_[hessian_slots_.size()];
+        coupling.topRows<3>() = information;
+        coupling.bottomRows<3>().noalias() = P * information;
+        throughs_[hessian_slots_.size()].noalias() = coupling * inverse;
+        hessian_slots_.push_back(slot);
         Block& diagonal = block(slot, slot);
-        diagonal.leftCols<3>() += own.coupling;
-        diagonal.rightCols<3>().noalias() -= own.coupling * P;
+        diagonal.leftCols<3>() += coupling;
+        diagonal.rightCols<3>().noalias() -= coupling * P;
     }
-    if (!options_.joint_refinement) return;
-    for (std::size_t a = 0; a < touched_.size(); ++a) {
-        if (!isInHessian(touched_[a])) continue;
-        const Eigen::Matrix<double, 6, 3> through =
-            point_blocks_[static_cast<std::size_t>(touched_[a])].coupling * inverse;
-        for (std::size_t c = a; c < touched_.size(); ++c) {
-            if (rows_[static_cast<std::size_t>(touched_[c])] < 0) continue;
-            block(touched_[a], touched_[c]).noalias() -=
-                through * point_blocks_[static_cast<std::size_t>(touched_[c])].coupling.transpose();
-        }
-    }
+    if (!options_.joint_refinement || hessian_slots_.empty()) return;
+    kernels::best().eliminatePoint(couplings_[0].data(), throughs_[0].data(), hessian_slots_.data(),
+                                   static_cast<int>(hessian_slots_.size()), static_cast<int>(rows_.size()),
+                                   blocks_[0].data());
 }
 
 }  // namespace roevo

@@ -16,8 +16,8 @@ namespace roevo {
 class WindowEquations {
   public:
     WindowEquations(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera,
-                    std::size_t hessian_points = kHessianPoints)
-        : options_(mapping), sensor_(sensor), camera_(camera), hessian_points_(hessian_points) {}
+                    std::size_t hessian_observations = kHessianObservations)
+        : options_(mapping), sensor_(sensor), camera_(camera), hessian_observations_(hessian_observations) {}
 
     /// Takes the observations of all points of true edges that have at least two.
     void gather(const std::vector<WindowKeyframe>& window, const FusedEdges& edges);
@@ -75,11 +75,11 @@ class WindowEquations {
     struct InformationBlock {
         Eigen::Matrix3d information;  ///< A
         Eigen::Vector3d gradient;     ///< b
-        Eigen::Matrix<double, 6, 3> coupling;
         bool used = false;
     };
     using Vector6 = Vector6d;
     using Block = Matrix6d;
+    using Coupling = Eigen::Matrix<double, 6, 3>;  ///< of a pose and a point
 
     void spreads(double least_scale);
     double spread(std::int32_t slot, double least_scale);
@@ -98,7 +98,7 @@ class WindowEquations {
     MappingOptions options_;
     SensorOptions sensor_;
     PinholeCamera camera_;
-    std::size_t hessian_points_;                ///< about so many
+    std::size_t hessian_observations_;          ///< about so many
     std::vector<std::int32_t> points_, begin_;  ///< points that take part; first observation of each
     std::vector<std::int32_t> edge_of_;         ///< of each of these points
     std::vector<LineObservation> observations_;
@@ -115,8 +115,10 @@ class WindowEquations {
     std::vector<Vector6, Eigen::aligned_allocator<Vector6>> gradients_, edge_gradients_;
     // Of the point that is being added
     std::vector<InformationBlock, Eigen::aligned_allocator<InformationBlock>>
-        point_blocks_;                                     ///< of each keyframe
-    std::vector<std::int32_t> touched_;                    ///< slots of keyframes that observe it
+        point_blocks_;                   ///< of each keyframe
+    std::vector<std::int32_t> touched_;  ///< slots of keyframes that observe it
+    std::vector<Coupling, Eigen::aligned_allocator<Coupling>> couplings_, throughs_;
+    std::vector<std::int32_t> hessian_slots_;  ///< of those whose poses are looked for, and of the anchor
     Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();  ///< of the edge, not normalised
 };
 

@@ -197,6 +197,13 @@ struct Table {
     void (*liftReadout)(const MatchedPoints& matches, const ImageEdges& edges, const CameraMotion& motion,
                         const ReadoutPoints& readout, const float* weight, const float* residual,
                         std::size_t n, float fx, float fy, const InformationArrays& out, ReadoutSums& sums);
+
+    /// What a point that `n` keyframes see takes from their Hessian: of keyframes a <= c the block
+    /// (slot[a], slot[c]) loses through_a coupling_c^T. Matrices are stored column by column.
+    /// @param coupling, through  6x3, one of each keyframe after the other
+    /// @param blocks             6x6, `num_slots` in a row
+    void (*eliminatePoint)(const double* coupling, const double* through, const std::int32_t* slot, int n,
+                           int num_slots, double* blocks);
 };
 
 const Table& baseline();

@@ -3,12 +3,14 @@
 namespace roevo::kernels {
 namespace {
 #include "residuals_impl.h"
+#include "schur_impl.h"
 }  // namespace
 
 const Table& baseline() {
-    static const Table table{
-        "baseline",  project, exchangeMotion, patches, referencePatch, accumulate, weighPatches, sumPatches,
-        liftPatches, pick,    follow,         blur,    edgeResiduals,  weighEdges, liftEdges,    liftReadout};
+    static const Table table{"baseline",  project,       exchangeMotion, patches,     referencePatch,
+                             accumulate,  weighPatches,  sumPatches,     liftPatches, pick,
+                             follow,      blur,          edgeResiduals,  weighEdges,  liftEdges,
+                             liftReadout, eliminatePoint};
     return table;
 }
 
