@@ -25,21 +25,9 @@ constexpr float kLookSine = 0.35F;       ///< and turned by no more than this, s
 constexpr std::size_t kTangentSpan = 3;  ///< points to each side that a tangent is taken between
 constexpr double kFrameEvidence = 3;     ///< keyframes that all frames since a keyframe count as
 
-/// What the frames that looked for an edge count as.
-double framesOf(double found) {
-    return found < 0 ? 0 : kFrameEvidence;
-}
-
 /// Every so many of an edge's points are looked for.
 std::size_t strideOf(std::size_t points) {
     return 1 + points / kMostLooks;
-}
-
-/// Of bits.
-int numberOf(std::uint32_t points) {
-    int number = 0;
-    for (; points != 0; points &= points - 1) ++number;
-    return number;
 }
 
 double tangentResidual(const PinholeCamera& camera, const MapKeyframe& keyframe, std::size_t i,
@@ -138,31 +126,25 @@ PseudoEdgeJudge::Looks PseudoEdgeJudge::looksAt(const std::vector<WindowKeyframe
     findPoints(edges, edge);
     const auto [first, end] = edges.pointsOf(edge);
     const std::size_t stride = strideOf(end - first), count = (end - first + stride - 1) / stride;
-    seeing_.clear();
-    missing_.clear();
-    bool is_first = true;
-    for (std::size_t slot = 0; slot < window.size(); ++slot) {
-        const double inside = numberOf(inside_[slot]), observed = numberOf(observed_[slot]);
-        if (inside < kLookShare * static_cast<double>(count)) continue;
-        // The keyframe in which an edge was found first proves nothing
-        if (observed > 0 && std::exchange(is_first, false)) continue;
-        (observed >= kSeeShare * inside ? seeing_ : missing_).push_back(slot);
-    }
-    // Weights are worth asking for where the edge would vanish if the looks that missed it counted most
-    Looks looks;
-    looks.looked = static_cast<double>(missing_.size());
-    if (!isMissed(looks, found)) return looks;
     rays_.clear();
     for (const WindowKeyframe& view : window)
         rays_.push_back((view.T_world_camera.translation() - edges.points[(first + end) / 2]).normalized());
-    for (const std::size_t slot : seeing_) looks.seen += weightOf(slot);
-    looks.looked += looks.seen;
-    if (!isMissed(looks, found)) return looks;
-    looks.looked = looks.seen;
-    for (const std::size_t slot : missing_) {
-        looks.missed.emplace_back(slot, weightOf(slot));
-        looks.looked += looks.missed.back().second;
+    Looks looks;
+    bool is_first = true;
+    for (std::size_t slot = 0; slot < window.size(); ++slot) {
+        const int inside = __builtin_popcount(inside_[slot]), observed = __builtin_popcount(observed_[slot]);
+        if (inside < kLookShare * static_cast<double>(count)) continue;
+        // The keyframe in which an edge was found first proves nothing
+        if (observed > 0 && std::exchange(is_first, false)) continue;
+        if (observed >= kSeeShare * inside)
+            looks.seen += weightOf(slot);
+        else
+            looks.missed.emplace_back(slot, 1);
     }
+    looks.looked = looks.seen + static_cast<double>(looks.missed.size());
+    if (!isVanishing(looks, found)) return looks;  // whatever the looks that missed it weigh
+    looks.looked = looks.seen;
+    for (auto& [slot, weight] : looks.missed) looks.looked += weight = weightOf(slot);
     return looks;
 }
 
@@ -237,13 +219,11 @@ void PseudoEdgeJudge::askImages(const std::vector<WindowKeyframe>& window, const
     }
 }
 
-bool PseudoEdgeJudge::isMissed(const Looks& looks, double found) const {
-    const double frames = framesOf(found);
-    return looks.seen + frames * found < options_.min_seen * (looks.looked + frames);
-}
-
 bool PseudoEdgeJudge::isVanishing(const Looks& looks, double found) const {
-    return looks.looked + framesOf(found) >= options_.min_looks - 1 && isMissed(looks, found);
+    const double frames = found < 0 ? 0 : kFrameEvidence;
+    const double evidence = looks.looked + frames;
+    if (evidence < options_.min_looks - 1) return false;
+    return looks.seen + frames * found < options_.min_seen * evidence;
 }
 
 double PseudoEdgeJudge::foundShare(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,

@@ -46,8 +46,7 @@ class PseudoEdgeJudge {
     View viewOf(const Pose& T_world_camera) const;
     /// Which of an edge's points each keyframe looks at, and which it observes.
     void findPoints(const FusedEdges& edges, std::size_t edge);
-    /// @param found  foundShare(); where that is enough to tell that the edge is there, not all looks are
-    /// told
+    /// @param found  foundShare(); where it and the keyframes that see the edge are enough, nobody missed it
     Looks looksAt(const std::vector<WindowKeyframe>& window, const FusedEdges& edges, std::size_t edge,
                   double found);
     /// Of a keyframe's look at the edge: by the angle to the nearest other view that it was observed from.
@@ -56,9 +55,7 @@ class PseudoEdgeJudge {
     /// Whether a keyframe's image has an edge in the place of a fused one, associated or not.
     bool isInImage(const View& view, const OrganizedEdges& image, const FusedEdges& edges,
                    std::size_t edge) const;
-    /// Whether too few of the looks, and of the frames (see foundShare), see an edge.
-    bool isMissed(const Looks& looks, double found) const;
-    bool isVanishing(const Looks& looks, double found) const;  ///< so, by enough of them
+    bool isVanishing(const Looks& looks, double found) const;
     static bool isInside(const View& view, const Eigen::Vector3d& point);
     /// Where a point is in a keyframe's image; behind the camera it is nowhere, and `pixel` stays.
     void project(const View& view, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const;
@@ -72,7 +69,6 @@ class PseudoEdgeJudge {
     std::vector<View> views_;  ///< of the window
     std::vector<Suspect> suspects_;
     std::vector<std::uint32_t> inside_, observed_;  ///< of each slot: points of the edge, a bit of each
-    std::vector<std::size_t> seeing_, missing_;     ///< slots of keyframes that look at the edge
     std::vector<Eigen::Vector3d> rays_;             ///< of each slot: from the edge to the camera
     EdgeGrid grid_;                                 ///< of the image that is asked
 };
