@@ -56,9 +56,9 @@ Matrix6d RelativePrior::toCentre(const std::vector<WindowKeyframe>& window,
 }
 
 BundleAdjuster::BundleAdjuster(const MappingOptions& mapping, const SensorOptions& sensor,
-                               const PinholeCamera& camera, std::size_t hessian_observations)
+                               const PinholeCamera& camera, std::size_t hessian_points)
     : focal_length_(camera.fx),
-      equations_(std::make_unique<WindowEquations>(mapping, sensor, camera, hessian_observations)) {}
+      equations_(std::make_unique<WindowEquations>(mapping, sensor, camera, hessian_points)) {}
 
 BundleAdjuster::~BundleAdjuster() = default;
 BundleAdjuster::BundleAdjuster(BundleAdjuster&&) noexcept = default;

@@ -31,9 +31,9 @@ struct RefinementResult {
     std::vector<int> inliers;  ///< of each window keyframe
 };
 
-/// Observations that make the Hessian of a window; there are more than it needs. All make the gradient, so
-/// that nothing but the step to the optimum is approximate.
-inline constexpr std::size_t kHessianObservations = 6000;
+/// Points that make the Hessian of a window; there are more than it needs. All make the gradient, so that
+/// nothing but the step to the optimum is approximate.
+inline constexpr std::size_t kHessianPoints = 1500;
 
 class WindowEquations;
 struct WindowPosterior;
@@ -45,7 +45,7 @@ struct WindowPosterior;
 class BundleAdjuster {
   public:
     BundleAdjuster(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera,
-                   std::size_t hessian_observations = kHessianObservations);
+                   std::size_t hessian_points = kHessianPoints);
     ~BundleAdjuster();
     BundleAdjuster(BundleAdjuster&&) noexcept;
     BundleAdjuster& operator=(BundleAdjuster&&) noexcept;

@@ -130,6 +130,7 @@ PseudoEdgeJudge::Looks PseudoEdgeJudge::looksAt(const std::vector<WindowKeyframe
     for (const WindowKeyframe& view : window)
         rays_.push_back((view.T_world_camera.translation() - edges.points[(first + end) / 2]).normalized());
     Looks looks;
+    missing_.clear();
     bool is_first = true;
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
         const int inside = __builtin_popcount(inside_[slot]), observed = __builtin_popcount(observed_[slot]);
@@ -139,12 +140,16 @@ PseudoEdgeJudge::Looks PseudoEdgeJudge::looksAt(const std::vector<WindowKeyframe
         if (observed >= kSeeShare * inside)
             looks.seen += weightOf(slot);
         else
-            looks.missed.emplace_back(slot, 1);
+            missing_.push_back(slot);
     }
-    looks.looked = looks.seen + static_cast<double>(looks.missed.size());
+    looks.looked = looks.seen + static_cast<double>(missing_.size());
     if (!isVanishing(looks, found)) return looks;  // whatever the looks that missed it weigh
     looks.looked = looks.seen;
-    for (auto& [slot, weight] : looks.missed) looks.looked += weight = weightOf(slot);
+    weights_.clear();
+    for (const std::size_t slot : missing_) {
+        weights_.push_back(weightOf(slot));
+        looks.looked += weights_.back();
+    }
     return looks;
 }
 
@@ -174,6 +179,7 @@ bool PseudoEdgeJudge::isInImage(const View& view, const OrganizedEdges& image, c
 
 void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdges& edges, double scale) {
     suspects_.clear();
+    questions_.clear();
     views_.clear();
     for (const WindowKeyframe& view : window) views_.push_back(viewOf(view.T_world_camera));
     std::vector<double> spreads;
@@ -190,9 +196,11 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
             continue;
         }
         const double found = foundShare(window, edges, edge);
-        Looks looks = looksAt(window, edges, edge, found);
-        const double open = looks.looked - looks.seen;
-        if (isVanishing(looks, found)) suspects_.push_back({edge, std::move(looks), found, open, 0});
+        const Looks looks = looksAt(window, edges, edge, found);
+        if (!isVanishing(looks, found)) continue;
+        for (std::size_t k = 0; k < missing_.size(); ++k)
+            questions_.push_back({missing_[k], suspects_.size(), weights_[k]});
+        suspects_.push_back({edge, looks, found, looks.looked - looks.seen});
     }
     askImages(window, edges);
     for (const Suspect& suspect : suspects_) {
@@ -202,20 +210,18 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
 
 /// Associations miss edges that are in pieces: before an edge is called vanishing, the images themselves.
 void PseudoEdgeJudge::askImages(const std::vector<WindowKeyframe>& window, const FusedEdges& edges) {
-    for (std::size_t slot = 0; slot < window.size(); ++slot) {
+    std::stable_sort(questions_.begin(), questions_.end(),
+                     [](const Question& a, const Question& b) { return a.slot < b.slot; });
+    std::size_t built = window.size();  // slot of the image in the grid
+    for (const auto& [slot, about, weight] : questions_) {
+        Suspect& suspect = suspects_[about];
+        const Looks at_best{suspect.looks.looked, suspect.looks.seen + suspect.open};
+        suspect.open -= weight;
+        if (!isVanishing(suspect.looks, suspect.found) || isVanishing(at_best, suspect.found)) continue;
         const OrganizedEdges& image = window[slot].keyframe->image;
-        bool built = false;
-        for (Suspect& suspect : suspects_) {
-            const auto& missed = suspect.looks.missed;
-            if (suspect.asked == missed.size() || missed[suspect.asked].first != slot) continue;
-            const double weight = missed[suspect.asked++].second;
-            const Looks at_best{suspect.looks.looked, suspect.looks.seen + suspect.open, {}};
-            suspect.open -= weight;
-            if (!isVanishing(suspect.looks, suspect.found) || isVanishing(at_best, suspect.found)) continue;
-            if (!built) grid_.build(image, camera_.width, camera_.height);
-            built = true;
-            if (isInImage(views_[slot], image, edges, suspect.edge)) suspect.looks.seen += weight;
-        }
+        if (built != slot) grid_.build(image, camera_.width, camera_.height);
+        built = slot;
+        if (isInImage(views_[slot], image, edges, suspect.edge)) suspect.looks.seen += weight;
     }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "edges/edge_grid.h"
@@ -26,14 +25,17 @@ class PseudoEdgeJudge {
     /// Keyframes that look at the place of an edge, but for the first that observes it.
     struct Looks {
         double looked = 0, seen = 0;  ///< their weights, and those of them that observe it
-        std::vector<std::pair<std::size_t, double>> missed;  ///< slot and weight of the others
     };
     struct Suspect {
         std::size_t edge = 0;
         Looks looks;
         double found = 0;
-        double open = 0;        ///< weight of looks.missed, whose images were not asked
-        std::size_t asked = 0;  ///< of looks.missed, whose images were asked
+        double open = 0;  ///< weight of those that did not observe it, whose images were not asked
+    };
+    /// Whether an image that its keyframe looks with has a suspect.
+    struct Question {
+        std::size_t slot = 0, suspect = 0;
+        double weight = 0;  ///< of the look
     };
 
     /// Where a window keyframe is, and what bounds its image: a point is in it where all five rows of
@@ -68,6 +70,9 @@ class PseudoEdgeJudge {
     PinholeCamera camera_;
     std::vector<View> views_;  ///< of the window
     std::vector<Suspect> suspects_;
+    std::vector<Question> questions_;
+    std::vector<std::size_t> missing_;  ///< slots of the keyframes that look at an edge and do not observe it
+    std::vector<double> weights_;       ///< of these looks, where the edge is suspect
     std::vector<std::uint32_t> inside_, observed_;  ///< of each slot: points of the edge, a bit of each
     std::vector<Eigen::Vector3d> rays_;             ///< of each slot: from the edge to the camera
     EdgeGrid grid_;                                 ///< of the image that is asked

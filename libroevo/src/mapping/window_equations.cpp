@@ -138,7 +138,7 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
     for (auto& entry : edge_gradients_) entry.setZero();
     pulls_.clear();
     inliers.assign(window.size(), 0);
-    const std::size_t stride = 1 + observations_.size() / hessian_observations_;
+    const std::size_t stride = 1 + points_.size() / hessian_points_;
     for (std::size_t p = 0; p < points_.size(); ++p) {
         int count = 0;
         touched_.clear();

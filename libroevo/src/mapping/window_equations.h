@@ -16,8 +16,8 @@ namespace roevo {
 class WindowEquations {
   public:
     WindowEquations(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera,
-                    std::size_t hessian_observations = kHessianObservations)
-        : options_(mapping), sensor_(sensor), camera_(camera), hessian_observations_(hessian_observations) {}
+                    std::size_t hessian_points = kHessianPoints)
+        : options_(mapping), sensor_(sensor), camera_(camera), hessian_points_(hessian_points) {}
 
     /// Takes the observations of all points of true edges that have at least two.
     void gather(const std::vector<WindowKeyframe>& window, const FusedEdges& edges);
@@ -98,7 +98,7 @@ class WindowEquations {
     MappingOptions options_;
     SensorOptions sensor_;
     PinholeCamera camera_;
-    std::size_t hessian_observations_;          ///< about so many
+    std::size_t hessian_points_;                ///< about so many
     std::vector<std::int32_t> points_, begin_;  ///< points that take part; first observation of each
     std::vector<std::int32_t> edge_of_;         ///< of each of these points
     std::vector<LineObservation> observations_;
