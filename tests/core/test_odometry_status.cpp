@@ -390,5 +390,20 @@ TEST_F(OdometryStatus, DepthThatContradictsTheKeyframeIsLeftOutAndNamed) {
     }
 }
 
+TEST_F(OdometryStatus, APoseThatFewEdgesHoldAndDepthContradictsIsNotCalledTracked) {
+    feedRoom(0, 10);
+    RgbdFrame frame = frameAt(10);
+    frame.depth = 1.5 * frame.depth;
+    frame.grey = frame.grey.clone();
+    frame.grey.colRange(0, 190).setTo(
+        90);  // what is left may be tracked, but tells too little against the depth
+    const FrameResult doubtful = feed(frame);
+    EXPECT_EQ(doubtful.status, FrameStatus::kPredicted) << doubtful.reason;
+    EXPECT_NE(doubtful.reason.find("depth image contradicts"), std::string::npos) << doubtful.reason;
+    const FrameResult found = feed(frameAt(11));
+    EXPECT_EQ(found.status, FrameStatus::kOk) << found.reason;
+    EXPECT_LT(errorAt(found, 11), 0.005);
+}
+
 }  // namespace
 }  // namespace roevo

@@ -57,7 +57,8 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
     Tracking tracking = tracker->track(world.reference(), *frame, prediction);
     if (tracking.lost())
         tracking = tracker->search(world.reference(), *frame, prediction, std::move(tracking));
-    if (tracking.tracked && (prediction.blind || tracking.searched) && options.loss.recognise)
+    const bool open = prediction.blind || tracking.searched || tracking.doubtful;
+    if (tracking.tracked && open && options.loss.recognise)
         tracking = confirmed(std::move(tracking), prediction);
     return tracking;
 }
@@ -111,20 +112,22 @@ Outcome Odometry::Impl::start() {
     return outcome;
 }
 
-/// After a gap in time, and to a search, any pose may look right: the edges must agree without what is
-/// likely.
+/// After a gap in time, and to a search, any pose may look right, and one whose depths contradict may be
+/// wrong: the edges must agree without what is likely.
 Tracking Odometry::Impl::confirmed(Tracking tracking, const Prediction& prediction) {
     const int gap_ms = static_cast<int>(std::min(1e3 * prediction.since_measured, 2e9));
     const auto pose = world.confirm(*frame, tracking.pose.T_keyframe_camera);
     if (!pose) {
-        tracking.reject({Fault::Kind::kUnconfirmed, {gap_ms}});
+        tracking.reject(tracking.doubtful ? tracking.depth_fault
+                                          : Fault{Fault::Kind::kUnconfirmed, {gap_ms}});
         return tracking;
     }
     Tracking again = tracker->trackFrom(world.reference(), *frame, prediction, *pose);
-    again.searched = true;
+    again.searched = tracking.searched || prediction.blind;
     again.ms_coarse += tracking.ms_coarse;
     again.ms_fine += tracking.ms_fine;
-    if (again.tracked) again.fault = tracking.fault ? tracking.fault : Fault{Fault::Kind::kGap, {gap_ms}};
+    if (again.tracked && again.searched)
+        again.fault = tracking.fault ? tracking.fault : Fault{Fault::Kind::kGap, {gap_ms}};
     return again;
 }
 
