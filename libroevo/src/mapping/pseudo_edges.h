@@ -48,7 +48,9 @@ class PseudoEdgeJudge {
     View viewOf(const Pose& T_world_camera) const;
     /// Which of an edge's points each keyframe looks at, and which it observes.
     void findPoints(const FusedEdges& edges, std::size_t edge);
-    /// @param found  foundShare(); where it and the keyframes that see the edge are enough, nobody missed it
+    /// Those that do not observe the edge are `missing_`, with their `weights_` where it may vanish.
+    /// @param found  foundShare(): where that and those that observe the edge are enough, the others count in
+    ///               full
     Looks looksAt(const std::vector<WindowKeyframe>& window, const FusedEdges& edges, std::size_t edge,
                   double found);
     /// Of a keyframe's look at the edge: by the angle to the nearest other view that it was observed from.
