@@ -57,8 +57,8 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
     Tracking tracking = tracker->track(world.reference(), *frame, prediction);
     if (tracking.lost())
         tracking = tracker->search(world.reference(), *frame, prediction, std::move(tracking));
-    const bool open = prediction.blind || tracking.searched || tracking.doubtful;
-    if (tracking.tracked && open && options.loss.recognise)
+    const bool in_doubt = prediction.blind || tracking.searched || tracking.doubtful;
+    if (tracking.tracked && in_doubt && options.loss.recognise)
         tracking = confirmed(std::move(tracking), prediction);
     return tracking;
 }
