@@ -1,4 +1,5 @@
 // roevo-odometry on rawlogs of robots: where the camera sits, several cameras, images that are gone.
+#include <mrpt/img/CImage.h>
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
@@ -155,6 +156,50 @@ TEST_F(OddRawlogProgram, ARangeImageThatPromisesMoreThanFits) {
             EXPECT_NE(result.err.find("entry 3"), std::string::npos) << result.all();
             EXPECT_EQ(rows().size(), 2u);
         }
+}
+
+/// MRPT decodes images inside a rawlog with libjpeg, which ends the program where they are none.
+TEST_F(OddRawlogProgram, ADamagedJpegInsideCostsItsFrame) {
+    const auto frames = slidingRecording(6);
+    const std::string head = "\xff\xd8\xff";
+    enum Damage { kHead, kMiddle, kTables, kLength };
+    const bool as_it_was = mrpt::img::CImage::DISABLE_JPEG_COMPRESSION();
+    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(false);  // robots may have recorded so
+    for (const Damage damage : {kHead, kMiddle, kTables, kLength}) {
+        SCOPED_TRACE(damage);
+        std::string bytes;
+        for (std::size_t i = 0; i < frames.size(); i++) {
+            mrpt::io::CMemoryStream memory;
+            auto archive = mrpt::serialization::archiveFrom(memory);
+            archive << *scan(frames[i]);
+            std::string object(static_cast<const char*>(memory.getRawBufferData()),
+                               memory.getTotalBytesCount());
+            const std::size_t at = object.find(head);
+            ASSERT_NE(at, std::string::npos) << "MRPT writes another format";
+            std::uint32_t length = 0;
+            std::memcpy(&length, &object[at - sizeof length], sizeof length);
+            ASSERT_LE(at + length, object.size());
+            if (i == 3 && damage == kHead) object[at] = '\x0f';
+            if (i == 3 && damage == kMiddle) std::memset(&object[at + length / 2], 0xff, 200);
+            if (i == 3 && damage == kTables) std::memset(&object[at + 22], 0xee, 100);
+            if (i == 3 && damage == kLength) std::memset(&object[at - sizeof length], 0xff, sizeof length);
+            bytes += object;
+        }
+        test::writeFile(folder_ / "r.rawlog", bytes);
+        const auto result = run(folder_ / "r.rawlog", {"--mode", "tr"});
+        ASSERT_EQ(result.exit_code, 0) << result.all();
+        EXPECT_NE(result.err.find("entry 4"), std::string::npos) << result.err;
+        if (damage == kLength) {  // where the next object begins is not known
+            EXPECT_EQ(rows().size(), 3u);
+            continue;
+        }
+        EXPECT_NE(result.err.find("1 entry with a damaged JPEG"), std::string::npos) << result.err;
+        ASSERT_EQ(rows().size(), 6u);
+        EXPECT_EQ(status(3), "rejected");
+        EXPECT_NE(reason(3).find("colour image is damaged"), std::string::npos) << reason(3);
+        expectOthersTracked(3, 6);
+    }
+    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(as_it_was);
 }
 
 TEST_F(OddRawlogProgram, NamesThatCannotBeShown) {

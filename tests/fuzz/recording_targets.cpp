@@ -1,11 +1,14 @@
 // Files that programs write: rawlogs and bags.
+#include <mrpt/img/CImage.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <exception>
 #include <filesystem>
 #include <fstream>
+#include <new>
 
 #include "fuzz/promises.h"
 #include "mrpt/synthetic_scan.h"
@@ -27,30 +30,40 @@ void requireFrame(const RgbdFrame& frame, const PinholeCamera& camera) {
             "a frame does not fit its camera");
 }
 
+rlimit limit_before;
+
+/// A scan of MRPT's makes room even where it is destroyed, and the program ends where there is none: programs
+/// say so in one line, fuzzing goes on.
+void lastRoom() {
+    if (std::uncaught_exceptions() == 0) throw std::bad_alloc();
+    setrlimit(RLIMIT_AS, &limit_before);
+    std::set_new_handler(nullptr);
+}
+
 /// MRPT makes room for as much as a file claims to have before it reads it: not for any amount while this
 /// lives.
 class MemoryLimit {
   public:
     MemoryLimit() {
-        getrlimit(RLIMIT_AS, &before_);
+        getrlimit(RLIMIT_AS, &limit_before);
+        std::set_new_handler(lastRoom);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
     !defined(__clang__)  // these take a lot
         std::size_t pages = 0;
         std::ifstream("/proc/self/statm") >> pages;
-        rlimit limit = before_;
-        limit.rlim_cur = std::min<rlim_t>(
-            before_.rlim_max, pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + (rlim_t{256} << 20));
+        rlimit limit = limit_before;
+        limit.rlim_cur =
+            std::min<rlim_t>(limit_before.rlim_max,
+                             pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + (rlim_t{256} << 20));
         setrlimit(RLIMIT_AS, &limit);
 #endif
     }
     ~MemoryLimit() {
-        setrlimit(RLIMIT_AS, &before_);
+        std::set_new_handler(nullptr);
+        setrlimit(RLIMIT_AS, &limit_before);
     }
     MemoryLimit(const MemoryLimit&) = delete;
     MemoryLimit& operator=(const MemoryLimit&) = delete;
-
-  private:
-    rlimit before_{};
 };
 
 }  // namespace
@@ -77,12 +90,19 @@ void runRawlog(std::string_view bytes) {
 std::vector<std::string> rawlogSeeds() {
     PinholeCamera camera = test::smallCamera();
     camera.width = 16, camera.height = 12, camera.cx = 7.2, camera.cy = 5.6;
-    mrpt::io::CMemoryStream stream;
-    auto archive = mrpt::serialization::archiveFrom(stream);
-    for (int i = 0; i < 2; i++)
-        archive << test::makeScan(100 + i / 30., camera, test::patternDepth(camera, i),
-                                  test::patternColour(camera, i));
-    return {std::string(static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount())};
+    std::vector<std::string> seeds;
+    const bool as_it_was = mrpt::img::CImage::DISABLE_JPEG_COMPRESSION();
+    for (const bool as_pixels : {true, false}) {
+        mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(as_pixels);
+        mrpt::io::CMemoryStream stream;
+        auto archive = mrpt::serialization::archiveFrom(stream);
+        for (int i = 0; i < 2; i++)
+            archive << test::makeScan(100 + i / 30., camera, test::patternDepth(camera, i),
+                                      test::patternColour(camera, i));
+        seeds.emplace_back(static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount());
+    }
+    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(as_it_was);
+    return seeds;
 }
 
 /// The first byte says what the file's name ends in.

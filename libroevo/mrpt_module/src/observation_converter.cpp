@@ -31,7 +31,10 @@ void checkSize(int width, int height, const PinholeCamera& camera, const std::st
 
 /// The scan's image, shared where it is in memory; grey or BGR.
 cv::Mat imageOf(const CObservation3DRangeScan& scan) {
-    if (!scan.hasIntensityImage) throw std::runtime_error("the observation has no colour or grey image");
+    if (!scan.hasIntensityImage)
+        throw std::runtime_error(scan.intensityImage.isEmpty()
+                                     ? "the observation has no colour or grey image"
+                                     : "the observation's colour image is damaged");  // see RawlogReader
     // Not through CImage: it would keep the pixels in memory, and report a damaged file with a stack trace.
     if (scan.intensityImage.isExternallyStored())
         return readColourFile(scan.intensityImage.getExternalStorageFileAbsolutePath());

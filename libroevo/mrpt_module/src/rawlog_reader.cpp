@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "checked_memory.h"
+#include "embedded_jpegs.h"
 #include "input/excerpt.h"
 #include "input/regular_file.h"
 #include "range_file.h"
@@ -32,18 +33,23 @@ using mrpt::obs::CObservation3DRangeScan;
 constexpr std::size_t kInterleaved = 30;  // sensors that record together take turns at least this often
 constexpr char kNoName[] = "(no name)";
 
-/// Remembers how far it got and whether it ran dry, which tells a proper end from a cut one.
+/// Remembers how far it got and whether it ran dry, which tells a proper end from a cut one; keeps damaged
+/// images from MRPT.
 class WatchedStream {
   public:
     mrpt::io::CFileGZInputStream file;
     std::uint64_t bytes = 0;
     bool ran_dry = false;
+    EmbeddedJpegs jpegs;
 
     size_t Read(void* data, size_t count) {
+        // MRPT adds to a length that it has read, and makes room for the sum
+        if (count > kLargestMrptBlock) throw std::length_error("more than any observation holds");
         size_t got = file.Read(data, count);
         if (got > count) got = 0;  // zlib's -1: damaged data
         if (got < count) ran_dry = true;
         bytes += got;
+        jpegs.examine(static_cast<std::uint8_t*>(data), got, count);
         return got;
     }
     size_t Write(const void*, size_t) { throw std::logic_error("input stream"); }
@@ -108,6 +114,9 @@ std::string RawlogReport::warning() const {
     if (const std::size_t left_out = sumOf(points_only); left_out > 0)
         append(text, std::to_string(left_out) + " scan(s) with 3D points but no range image left out (" +
                          listCounts(points_only) + ")");
+    if (damaged_images > 0)
+        append(text, std::to_string(damaged_images) + (damaged_images == 1 ? " entry" : " entries") +
+                         " with a damaged JPEG image, which is left out (" + first_damaged_image + ")");
     return text;
 }
 
@@ -146,7 +155,17 @@ struct RawlogReader::Impl {
         if (!object) return noteEnd(1), false;
         report.entries++;
         enqueue(object);
+        if (const std::string damage = stream.jpegs.takeDamage(); !damage.empty()) noteDamagedImages(damage);
         return true;
+    }
+
+    /// Leaves the scans of this entry without their image where a single pixel is in its place.
+    void noteDamagedImages(const std::string& damage) {
+        if (report.damaged_images++ == 0)
+            report.first_damaged_image = "entry " + std::to_string(report.entries) + ": " + damage;
+        for (const auto& observation : queue)
+            if (const auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation))
+                if (EmbeddedJpegs::isReplacement(scan->intensityImage)) scan->hasIntensityImage = false;
     }
 
     void noteEnd(std::uint64_t bytes_into_object) {

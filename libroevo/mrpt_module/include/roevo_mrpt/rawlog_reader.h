@@ -19,10 +19,12 @@ struct RawlogReport {
     std::map<std::string, std::size_t> classes;  ///< class name -> how many observations (and other entries)
     std::map<std::string, std::size_t> labels;   ///< sensor label -> how many scans with a range image
     std::map<std::string, std::size_t>
-        points_only;            ///< sensor label -> scans with 3D points, but no range image
-    std::string label;          ///< the sensor that is being read
-    bool label_chosen = false;  ///< the caller named it, so that other sensors are left out on purpose
-    std::string fault;          ///< why reading stopped before a proper end; empty when all is well
+        points_only;                  ///< sensor label -> scans with 3D points, but no range image
+    std::size_t damaged_images = 0;   ///< entries with a JPEG image inside that cannot be decoded
+    std::string first_damaged_image;  ///< the first of them, and what libjpeg says
+    std::string label;                ///< the sensor that is being read
+    bool label_chosen = false;        ///< the caller named it, so that other sensors are left out on purpose
+    std::string fault;                ///< why reading stopped before a proper end; empty when all is well
 
     /// Things the user should hear (damage, other cameras left out), one line, or "".
     std::string warning() const;
@@ -43,8 +45,9 @@ class RawlogReader {
 
     /// The next scan that has a range image, or null at the end. Its depth is in memory (empty when it is in
     /// an external file that cannot be read: toRgbdFrame() names it); an external colour image is not decoded
-    /// yet, but its path is absolute. A file that ends in the middle of an object ends here too: see
-    /// report().fault.
+    /// yet, but its path is absolute. A damaged JPEG inside the rawlog is replaced by one pixel, and
+    /// hasIntensityImage is false: toRgbdFrame() names it. A file that ends in the middle of an object ends
+    /// here too: see report().fault.
     /// @throws std::runtime_error at the end of a file without a single usable scan (naming what it holds),
     /// when the first object cannot be read, or when no sensor was chosen and a second one turns up among the
     /// first scans (listing all with their counts; one that turns up later is left out with a warning).
