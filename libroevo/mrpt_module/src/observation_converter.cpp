@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "embedded_jpegs.h"
 #include "roevo/camera/depth_registration.h"
 #include "roevo_mrpt/camera_conversions.h"
 #include "roevo_mrpt/image_conversions.h"
@@ -32,9 +33,9 @@ void checkSize(int width, int height, const PinholeCamera& camera, const std::st
 /// The scan's image, shared where it is in memory; grey or BGR.
 cv::Mat imageOf(const CObservation3DRangeScan& scan) {
     if (!scan.hasIntensityImage)
-        throw std::runtime_error(scan.intensityImage.isEmpty()
-                                     ? "the observation has no colour or grey image"
-                                     : "the observation's colour image is damaged");  // see RawlogReader
+        throw std::runtime_error(EmbeddedJpegs::isReplacement(scan.intensityImage)
+                                     ? "the observation's colour image is damaged"
+                                     : "the observation has no colour or grey image");
     // Not through CImage: it would keep the pixels in memory, and report a damaged file with a stack trace.
     if (scan.intensityImage.isExternallyStored())
         return readColourFile(scan.intensityImage.getExternalStorageFileAbsolutePath());
