@@ -1,11 +1,14 @@
 // Rawlogs as other programs and robots record them.
 #include <gtest/gtest.h>
 #include <mrpt/io/CFileGZOutputStream.h>
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -173,6 +176,29 @@ TEST_F(OddRawlog, ImagesBesideTheRawlogAreFound) {
     const RgbdFrame frame = toRgbdFrame(*reader.next());
     EXPECT_TRUE(same(frame.colour, patternColour(smallCamera(), 0)));
     EXPECT_EQ(frame.depth.at<float>(9, 9), patternDepth(smallCamera(), 0).at<std::uint16_t>(9, 9) * 0.001f);
+}
+
+TEST_F(OddRawlog, FlagsOfADamagedFileAreTrueOrFalse) {
+    const auto scan = scanAt(0);
+    const auto bytesOf = [&](bool range_is_depth) {
+        scan->range_is_depth = range_is_depth;
+        mrpt::io::CMemoryStream stream;
+        auto archive = mrpt::serialization::archiveFrom(stream);
+        archive << *scan;
+        return std::string(static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount());
+    };
+    std::string bytes = bytesOf(true);
+    const std::string other = bytesOf(false);
+    const auto flag = std::mismatch(bytes.begin(), bytes.end(), other.begin()).first;
+    ASSERT_NE(flag, bytes.end());
+    *flag = 96;
+    test::writeFile(folder_ / "o.rawlog", bytes);
+    RawlogReader reader(folder_ / "o.rawlog");
+    const auto read = reader.next();
+    ASSERT_TRUE(read);
+    unsigned char byte = 0;
+    std::memcpy(&byte, &read->range_is_depth, sizeof byte);
+    EXPECT_EQ(byte, 1) << "C++ knows only true and false";
 }
 
 TEST_F(OddRawlog, OtherObservationsAreShownInTheOrderOfTheFile) {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <deque>
 #include <filesystem>
 #include <fstream>
@@ -55,6 +56,16 @@ class WatchedStream {
     size_t Write(const void*, size_t) { throw std::logic_error("input stream"); }
     std::string getStreamDescription() const { return file.getStreamDescription(); }
 };
+
+/// MRPT puts any byte of a damaged file into these; only 0 and 1 are values that C++ knows.
+void makeFlagsSound(CObservation3DRangeScan& scan) {
+    for (bool* flag : {&scan.hasPoints3D, &scan.hasRangeImage, &scan.hasIntensityImage,
+                       &scan.hasConfidenceImage, &scan.range_is_depth}) {
+        unsigned char byte = 0;
+        std::memcpy(&byte, flag, sizeof byte);
+        *flag = byte != 0;
+    }
+}
 
 /// Whether it can be seen: a file behind a folder that may not be entered costs its frame, not the run.
 bool isThere(const fs::path& file) {
@@ -200,6 +211,7 @@ struct RawlogReader::Impl {
         auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation);
         if (!scan && listener) listener(*observation);
         if (!scan) return nullptr;
+        makeFlagsSound(*scan);
         if (!scan->hasRangeImage) {
             if (scan->hasPoints3D) report.points_only[scan->sensorLabel]++;
             return nullptr;
