@@ -62,32 +62,6 @@ TEST(LiftEdges, SplitsWhereTheDepthJumps) {
     }
 }
 
-/// A panel before a wall, whose outline in the depth image is beside its edge for some rows.
-TEST(LiftEdges, AnOutlineIsInFrontWhereDepthShowsOnlyTheBackground) {
-    cv::Mat depth(120, 160, CV_32FC1, cv::Scalar(4.0F));
-    for (int v = 0; v < 120; ++v) {
-        const int outline = v >= 35 && v < 50 ? 56 : 50;  // 6 px off
-        for (int u = outline; u < 160; ++u) depth.at<float>(v, u) = 1.8F + 0.001F * static_cast<float>(v);
-    }
-    const EdgePoints3D lifted = lift(uprightLine(50, 20, 70), depth);
-    ASSERT_EQ(lifted.size(), 51U);
-    for (std::size_t i = 0; i < lifted.size(); ++i)
-        EXPECT_NEAR(lifted.points.z[i], 1.8F + 0.001F * lifted.image.y[i], 0.01) << lifted.image.y[i];
-}
-
-/// What passes behind things that are not equally far is no outline, nor is what only begins in front.
-TEST(LiftEdges, WhatIsBehindStaysThere) {
-    cv::Mat depth(120, 160, CV_32FC1, cv::Scalar(4.0F));
-    depth.rowRange(0, 35).setTo(1.5F);
-    EdgePoints3D lifted = lift(uprightLine(50, 20, 70), depth);
-    ASSERT_EQ(lifted.image.numEdges(), 2);
-    EXPECT_FLOAT_EQ(lifted.points.z[40], 4.0F);
-    depth.rowRange(55, 120).setTo(2.5F);
-    lifted = lift(uprightLine(50, 20, 70), depth);
-    ASSERT_EQ(lifted.image.numEdges(), 3);
-    EXPECT_FLOAT_EQ(lifted.points.z[25], 4.0F);
-}
-
 TEST(LiftEdges, ALongHoleSplitsAndPointsInItAreGone) {
     cv::Mat depth(120, 160, CV_32FC1, cv::Scalar(1.5F));
     depth.rowRange(35, 47).setTo(0);

@@ -10,10 +10,6 @@
 namespace roevo {
 namespace {
 
-constexpr float kClearly = 3;  ///< jumps; a step that noise does not make
-
-using Piece = std::vector<std::size_t>;  ///< points of an image edge, in their order
-
 /// Points of one image edge: where the lens put them, the depth of the patches there, and that corrected by
 /// the sides.
 struct DepthsOfEdge {
@@ -28,35 +24,10 @@ struct DepthsOfEdge {
     }
 };
 
-/// Where the outline of something is beside that of the depth image, its patches show the background. The
-/// edge is in front before and after: so it is in between.
-/// @param pieces  of one image edge, in their order
-void bringToFront(const std::vector<Piece>& pieces, float jump, DepthsOfEdge& depths) {
-    std::vector<float>& z = depths.z;
-    const auto isBehind = [&](std::size_t point, std::size_t other) {
-        return z[point] > (1 + kClearly * jump) * z[other];
-    };
-    std::size_t behind = pieces.size();  // the first piece that is; none
-    for (std::size_t i = 1; i < pieces.size(); ++i) {
-        const std::size_t last = pieces[i - 1].back(), next = pieces[i].front();
-        if (isBehind(next, last)) behind = i;
-        if (!isBehind(last, next) || behind > i) continue;
-        const std::size_t from = pieces[behind - 1].back();
-        const bool is_one = !isBehind(from, next) && !isBehind(next, from);
-        const float near_before = z[from], near_after = z[next];
-        for (; is_one && behind < i; ++behind)
-            for (const std::size_t k : pieces[behind]) {
-                const float share = static_cast<float>(k - from) / static_cast<float>(next - from);
-                z[k] = depths.patches[k] = 1 / ((1 - share) / near_before + share / near_after);
-            }
-        behind = pieces.size();
-    }
-}
-
 /// Adds those points of the edge that begins at `first` as an edge.
-void addPiece(const OrganizedEdges& edges, std::size_t first, const Piece& piece, const DepthsOfEdge& depths,
-              const PinholeCamera& camera, const RowMotion& rows, const SensorOptions& sensor,
-              EdgePoints3D& out) {
+void addPiece(const OrganizedEdges& edges, std::size_t first, const std::vector<std::size_t>& piece,
+              const DepthsOfEdge& depths, const PinholeCamera& camera, const RowMotion& rows,
+              const SensorOptions& sensor, EdgePoints3D& out) {
     out.image.addEdge(edges, first, piece);
     for (const std::size_t k : piece) {
         const std::size_t i = first + k;
@@ -101,8 +72,7 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
     out.reserve(edges.size());
     DepthsOfEdge depths;
     const auto& [pixels, patches, z] = depths;
-    Piece piece;  // being built
-    std::vector<Piece> pieces;
+    std::vector<std::size_t> piece;  // points of the piece being built
     for (int e = 0; e < edges.numEdges(); ++e) {
         const IndexRange own = edges.pointsOf(e);
         depths.clear();
@@ -116,7 +86,8 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
         if (edge_options.two_sided_depth)
             sides.correct(edges, own.first, pixels, depth, jump, scale, depths.z);
         const auto endPiece = [&] {
-            if (piece.size() >= least_piece) pieces.push_back(piece);
+            if (piece.size() >= least_piece)
+                addPiece(edges, own.first, piece, depths, camera, rows, sensor, out);
             piece.clear();
         };
         for (std::size_t k = 0; k < z.size(); ++k) {
@@ -129,9 +100,6 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
             piece.push_back(k);
         }
         endPiece();
-        bringToFront(pieces, jump, depths);
-        for (const Piece& each : pieces) addPiece(edges, own.first, each, depths, camera, rows, sensor, out);
-        pieces.clear();
     }
     out.points.pad();
     return out;
