@@ -67,7 +67,7 @@ std::string EmbeddedJpegs::takeDamage() {
 }
 
 bool EmbeddedJpegs::isReplacement(const mrpt::img::CImage& image) {
-    return !image.isExternallyStored() && image.getWidth() == kSide && image.getHeight() == kSide;
+    return !image.isEmpty() && image.getWidth() == kSide && image.getHeight() == kSide;  // empty: a file, too
 }
 
 }  // namespace roevo
