@@ -1,7 +1,5 @@
 // roevo-odometry on rawlogs of robots: where the camera sits, several cameras, images that are gone.
-#include <mrpt/img/CImage.h>
 #include <mrpt/io/CFileGZOutputStream.h>
-#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/serialization/CArchive.h>
 
@@ -133,11 +131,7 @@ TEST_F(OddRawlogProgram, ARangeImageThatPromisesMoreThanFits) {
         for (const std::size_t bad : {0u, 2u}) {
             std::string bytes;
             for (std::size_t i = 0; i < frames.size(); i++) {
-                mrpt::io::CMemoryStream memory;
-                auto archive = mrpt::serialization::archiveFrom(memory);
-                archive << *scan(frames[i]);
-                std::string object(static_cast<const char*>(memory.getRawBufferData()),
-                                   memory.getTotalBytesCount());
+                std::string object = test::bytesOf(*scan(frames[i]));
                 const std::uint32_t true_size[] = {240, 320};
                 const std::size_t at =
                     object.find(std::string(reinterpret_cast<const char*>(true_size), sizeof true_size));
@@ -162,18 +156,14 @@ TEST_F(OddRawlogProgram, ARangeImageThatPromisesMoreThanFits) {
 TEST_F(OddRawlogProgram, ADamagedJpegInsideCostsItsFrame) {
     const auto frames = slidingRecording(6);
     const std::string head = "\xff\xd8\xff";
-    enum Damage { kHead, kMiddle, kTables, kLength };
-    const bool as_it_was = mrpt::img::CImage::DISABLE_JPEG_COMPRESSION();
-    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(false);  // robots may have recorded so
-    for (const Damage damage : {kHead, kMiddle, kTables, kLength}) {
+    const std::string size("\xff\xc0\x00\x11\x08\x00\xf0\x01\x40", 9);  // 240 x 320, in the frame header
+    enum Damage { kHead, kMiddle, kTables, kSize, kLength };
+    const test::ColourAsJpeg jpeg;
+    for (const Damage damage : {kHead, kMiddle, kTables, kSize, kLength}) {
         SCOPED_TRACE(damage);
         std::string bytes;
         for (std::size_t i = 0; i < frames.size(); i++) {
-            mrpt::io::CMemoryStream memory;
-            auto archive = mrpt::serialization::archiveFrom(memory);
-            archive << *scan(frames[i]);
-            std::string object(static_cast<const char*>(memory.getRawBufferData()),
-                               memory.getTotalBytesCount());
+            std::string object = test::bytesOf(*scan(frames[i]));
             const std::size_t at = object.find(head);
             ASSERT_NE(at, std::string::npos) << "MRPT writes another format";
             std::uint32_t length = 0;
@@ -182,6 +172,9 @@ TEST_F(OddRawlogProgram, ADamagedJpegInsideCostsItsFrame) {
             if (i == 3 && damage == kHead) object[at] = '\x0f';
             if (i == 3 && damage == kMiddle) std::memset(&object[at + length / 2], 0xff, 200);
             if (i == 3 && damage == kTables) std::memset(&object[at + 22], 0xee, 100);
+            const std::size_t header = object.find(size, at);
+            ASSERT_NE(header, std::string::npos);
+            if (i == 3 && damage == kSize) object.replace(header + 5, 4, "\xea\x60\xea\x60");  // 60,000
             if (i == 3 && damage == kLength) std::memset(&object[at - sizeof length], 0xff, sizeof length);
             bytes += object;
         }
@@ -199,7 +192,6 @@ TEST_F(OddRawlogProgram, ADamagedJpegInsideCostsItsFrame) {
         EXPECT_NE(reason(3).find("colour image is damaged"), std::string::npos) << reason(3);
         expectOthersTracked(3, 6);
     }
-    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(as_it_was);
 }
 
 TEST_F(OddRawlogProgram, NamesThatCannotBeShown) {

@@ -108,8 +108,8 @@ TEST_F(FrameDepth, APoseThatFewEdgesHoldAndDepthContradictsIsNotCalledTracked) {
     RgbdFrame frame = frameAt(10);
     frame.depth = 1.5 * frame.depth;
     frame.grey = frame.grey.clone();
-    frame.grey.colRange(0, 190).setTo(
-        90);  // what is left may be tracked, but tells too little against the depth
+    // What is left may be tracked, but tells too little against the depth
+    frame.grey.colRange(0, 190).setTo(90);
     const FrameResult doubtful = feed(frame);
     EXPECT_EQ(doubtful.status, FrameStatus::kPredicted) << doubtful.reason;
     EXPECT_NE(doubtful.reason.find("depth image contradicts"), std::string::npos) << doubtful.reason;

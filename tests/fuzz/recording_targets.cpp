@@ -1,7 +1,4 @@
 // Files that programs write: rawlogs and bags.
-#include <mrpt/img/CImage.h>
-#include <mrpt/io/CMemoryStream.h>
-#include <mrpt/serialization/CArchive.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -90,19 +87,16 @@ void runRawlog(std::string_view bytes) {
 std::vector<std::string> rawlogSeeds() {
     PinholeCamera camera = test::smallCamera();
     camera.width = 16, camera.height = 12, camera.cx = 7.2, camera.cy = 5.6;
-    std::vector<std::string> seeds;
-    const bool as_it_was = mrpt::img::CImage::DISABLE_JPEG_COMPRESSION();
-    for (const bool as_pixels : {true, false}) {
-        mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(as_pixels);
-        mrpt::io::CMemoryStream stream;
-        auto archive = mrpt::serialization::archiveFrom(stream);
+    const auto recording = [&] {
+        std::string bytes;
         for (int i = 0; i < 2; i++)
-            archive << test::makeScan(100 + i / 30., camera, test::patternDepth(camera, i),
-                                      test::patternColour(camera, i));
-        seeds.emplace_back(static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount());
-    }
-    mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(as_it_was);
-    return seeds;
+            bytes += test::bytesOf(*test::makeScan(100 + i / 30., camera, test::patternDepth(camera, i),
+                                                   test::patternColour(camera, i)));
+        return bytes;
+    };
+    const std::string as_pixels = recording();
+    const test::ColourAsJpeg jpeg;
+    return {as_pixels, recording()};
 }
 
 /// The first byte says what the file's name ends in.

@@ -1,7 +1,11 @@
 #pragma once
+#include <mrpt/img/CImage.h>
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/serialization/CArchive.h>
 
 #include <opencv2/core.hpp>
+#include <string>
 
 #include "roevo_mrpt/camera_conversions.h"
 #include "roevo_mrpt/time_conversions.h"
@@ -54,5 +58,25 @@ inline mrpt::obs::CObservation3DRangeScan::Ptr makeScan(double timestamp, const 
     scan->intensityImage = mrpt::img::CImage(image, mrpt::img::DEEP_COPY);
     return scan;
 }
+
+/// As a rawlog that is not compressed has it.
+inline std::string bytesOf(const mrpt::serialization::CSerializable& object) {
+    mrpt::io::CMemoryStream memory;
+    auto archive = mrpt::serialization::archiveFrom(memory);
+    archive << object;
+    return {static_cast<const char*>(memory.getRawBufferData()), memory.getTotalBytesCount()};
+}
+
+/// While it lives, MRPT stores colour images in rawlogs as JPEG, as some robots do.
+class ColourAsJpeg {
+  public:
+    ColourAsJpeg() { mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(false); }
+    ~ColourAsJpeg() { mrpt::img::CImage::DISABLE_JPEG_COMPRESSION(as_it_was_); }
+    ColourAsJpeg(const ColourAsJpeg&) = delete;
+    ColourAsJpeg& operator=(const ColourAsJpeg&) = delete;
+
+  private:
+    bool as_it_was_ = mrpt::img::CImage::DISABLE_JPEG_COMPRESSION();
+};
 
 }  // namespace roevo::test

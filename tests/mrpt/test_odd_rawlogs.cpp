@@ -1,7 +1,6 @@
 // Rawlogs as other programs and robots record them.
 #include <gtest/gtest.h>
 #include <mrpt/io/CFileGZOutputStream.h>
-#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CSensoryFrame.h>
@@ -180,15 +179,10 @@ TEST_F(OddRawlog, ImagesBesideTheRawlogAreFound) {
 
 TEST_F(OddRawlog, FlagsOfADamagedFileAreTrueOrFalse) {
     const auto scan = scanAt(0);
-    const auto bytesOf = [&](bool range_is_depth) {
-        scan->range_is_depth = range_is_depth;
-        mrpt::io::CMemoryStream stream;
-        auto archive = mrpt::serialization::archiveFrom(stream);
-        archive << *scan;
-        return std::string(static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount());
-    };
-    std::string bytes = bytesOf(true);
-    const std::string other = bytesOf(false);
+    scan->range_is_depth = true;
+    std::string bytes = test::bytesOf(*scan);
+    scan->range_is_depth = false;
+    const std::string other = test::bytesOf(*scan);
     const auto flag = std::mismatch(bytes.begin(), bytes.end(), other.begin()).first;
     ASSERT_NE(flag, bytes.end());
     *flag = 96;

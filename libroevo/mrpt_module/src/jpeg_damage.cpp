@@ -10,7 +10,7 @@
 namespace roevo {
 namespace {
 
-constexpr JDIMENSION kLargest = 8192;  ///< px; larger images are refused by their size
+constexpr JDIMENSION kLargest = 8192;  ///< px; no camera is larger, and what claims to be takes gigabytes
 constexpr int kPadding = 8;            ///< bytes before the end that cameras leave there
 
 /// libjpeg goes on after damage, and tells of it here.
@@ -51,8 +51,12 @@ void readCoefficients(const std::uint8_t* bytes, std::size_t size, Reports& repo
         jpeg_create_decompress(&decoder);
         jpeg_mem_src(&decoder, bytes, size);
         jpeg_read_header(&decoder, TRUE);
-        // Coefficients of the whole image are held in memory; no camera may be larger than this
-        if (decoder.image_width <= kLargest && decoder.image_height <= kLargest) {
+        // Coefficients of the whole image are held in memory
+        if (decoder.image_width > kLargest || decoder.image_height > kLargest) {
+            std::snprintf(reports.text, sizeof reports.text, "%u x %u pixels", decoder.image_width,
+                          decoder.image_height);
+            reports.damaged = true;
+        } else {
             jpeg_read_coefficients(&decoder);
             jpeg_finish_decompress(&decoder);
         }
