@@ -59,7 +59,7 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
         tracking = tracker->search(world.reference(), *frame, prediction, std::move(tracking));
     const bool in_doubt = prediction.blind || tracking.searched || tracking.doubtful;
     if (tracking.tracked && in_doubt && options.loss.recognise)
-        tracking = confirmed(std::move(tracking), prediction);
+        tracking = confirmed(world.reference(), std::move(tracking), prediction);
     return tracking;
 }
 
@@ -114,15 +114,16 @@ Outcome Odometry::Impl::start() {
 
 /// After a gap in time, and to a search, any pose may look right, and one whose depths contradict may be
 /// wrong: the edges must agree without what is likely.
-Tracking Odometry::Impl::confirmed(Tracking tracking, const Prediction& prediction) {
+Tracking Odometry::Impl::confirmed(const Keyframe& keyframe, Tracking tracking,
+                                   const Prediction& prediction) {
     const int gap_ms = static_cast<int>(std::min(1e3 * prediction.since_measured, 2e9));
-    const auto pose = world.confirm(*frame, tracking.pose.T_keyframe_camera);
+    const auto pose = world.confirm(keyframe, *frame, tracking.pose.T_keyframe_camera);
     if (!pose) {
         tracking.reject(tracking.doubtful ? tracking.depth_fault
                                           : Fault{Fault::Kind::kUnconfirmed, {gap_ms}});
         return tracking;
     }
-    Tracking again = tracker->trackFrom(world.reference(), *frame, prediction, *pose);
+    Tracking again = tracker->trackFrom(keyframe, *frame, prediction, *pose);
     again.searched = tracking.searched || prediction.blind;
     again.ms_coarse += tracking.ms_coarse;
     again.ms_fine += tracking.ms_fine;
@@ -150,9 +151,24 @@ std::optional<Outcome> Odometry::Impl::anchorAt(const RelativePose& found, const
     return outcome;
 }
 
+/// The newest keyframe may be the worse one to track from: blurred, covered, or of little that is seen now.
+std::optional<RelativePose> Odometry::Impl::trackFromPrevious() {
+    Pose T_previous_reference;
+    const Keyframe* previous = options.loss.recognise ? world.previous(T_previous_reference) : nullptr;
+    if (previous == nullptr) return std::nullopt;
+    MotionModel from_there = motion;
+    from_there.changeReference(T_previous_reference);
+    const Prediction prediction = from_there.predict(frame->timestamp());
+    Tracking tracking = tracker->track(*previous, *frame, prediction);
+    if (tracking.tracked) tracking = confirmed(*previous, std::move(tracking), prediction);
+    if (tracking.lost() || tracking.doubtful) return std::nullopt;
+    return tracking.pose;
+}
+
 /// Where tracking lost the camera, a keyframe that it has seen before may tell where it is.
 Outcome Odometry::Impl::findAgain(Tracking failed, double since_measured) {
-    const auto pose = world.find(*frame, {world.reference().id, motion.lastPose(), {}}, since_measured);
+    auto pose = world.find(*frame, {world.reference().id, motion.lastPose(), {}}, since_measured);
+    if (!pose) pose = trackFromPrevious();
     if (auto found = pose ? anchorAt(*pose, failed) : std::nullopt) return *found;
     return bridge(std::move(failed), since_measured);
 }

@@ -48,7 +48,8 @@ struct Odometry::Impl {
     Outcome frozen(std::unique_ptr<Frame> fresh);
     Outcome start();
     Tracking track(const Prediction& prediction);
-    Tracking confirmed(Tracking tracking, const Prediction& prediction);
+    Tracking confirmed(const Keyframe& keyframe, Tracking tracking, const Prediction& prediction);
+    std::optional<RelativePose> trackFromPrevious();
     std::optional<Outcome> anchorAt(const RelativePose& found, const Tracking& failed);
     Outcome findAgain(Tracking failed, double since_measured);
     Outcome bridge(Tracking failed, double since_measured);

@@ -192,9 +192,18 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
     mapper_->insert({*fresh, std::move(colours), trajectory_.keyframePose(fresh->id), tracked,
                      reference_.get(), seconds_per_row_},
                     timestamp_);
-    reference_ = std::move(fresh);
+    previous_ = std::exchange(reference_, std::move(fresh));
     weakenPseudoEdges();
     noteTrack();
+}
+
+const Keyframe* World::previous(Pose& T_previous_reference) {
+    if (!previous_ || trajectory_.beginOfTrack(previous_->id) != trajectory_.beginOfTrack(reference_->id))
+        return nullptr;
+    T_previous_reference =
+        trajectory_.keyframePose(previous_->id).inverse() * trajectory_.keyframePose(reference_->id);
+    previous_->setRowMotion(previous_->row_motion.at(seconds_per_row_));
+    return previous_.get();
 }
 
 void World::noteTrack() {

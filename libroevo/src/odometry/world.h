@@ -71,9 +71,13 @@ class World {
     /// @param since_measured  s, since the camera's pose was known
     [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, const RelativePose& last,
                                                    double since_measured);
-    /// The pose against the reference that edges agree on with nothing known of the motion, if they do.
-    [[nodiscard]] std::optional<Pose> confirm(const Frame& frame, const Pose& T_reference_camera) {
-        return relocaliser_.confirm(*reference_, frame, T_reference_camera);
+    /// The reference before this one, of the same track, and where this one is from there. Null where there
+    /// is none.
+    [[nodiscard]] const Keyframe* previous(Pose& T_previous_reference);
+    /// The pose against a keyframe that edges agree on with nothing known of the motion, if they do.
+    [[nodiscard]] std::optional<Pose> confirm(const Keyframe& keyframe, const Frame& frame,
+                                              const Pose& T_keyframe_camera) {
+        return relocaliser_.confirm(keyframe, frame, T_keyframe_camera);
     }
     /// See Odometry::refineAll().
     std::vector<MapRefusal> refineAll();
@@ -121,7 +125,7 @@ class World {
     Relocaliser relocaliser_;
     SemiDenseStore semi_dense_;
     Trajectory trajectory_;
-    std::unique_ptr<Keyframe> reference_;
+    std::unique_ptr<Keyframe> reference_, previous_;
     std::int32_t next_cluster_ = 0;
     PseudoClusters pseudo_clusters_;
     int loaded_ = 0;
