@@ -9,6 +9,8 @@ namespace roevo {
 namespace {
 
 constexpr std::size_t kTrackedBack = 10;  // lost frames that are kept
+/// Where fewer edges are matched, a search may find a pose that matches clearly more: so many times.
+constexpr double kFewMatched = 0.5, kClearlyMore = 1.2;
 
 }  // namespace
 
@@ -57,10 +59,23 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
     Tracking tracking = tracker->track(world.reference(), *frame, prediction);
     if (tracking.lost())
         tracking = tracker->search(world.reference(), *frame, prediction, std::move(tracking));
+    else if (tracking.matchedRatio() < kFewMatched && options.loss.recognise)
+        if (Tracking better = searchBetter(tracking, prediction); better.tracked) return better;
     const bool in_doubt = prediction.blind || tracking.searched || tracking.doubtful;
     if (tracking.tracked && in_doubt && options.loss.recognise)
         tracking = confirmed(world.reference(), std::move(tracking), prediction);
     return tracking;
+}
+
+/// Another pose that matches clearly more edges, if there is one.
+Tracking Odometry::Impl::searchBetter(const Tracking& tracking, const Prediction& prediction) {
+    Tracking found = tracker->search(world.reference(), *frame, prediction, tracking);
+    const Fault few{Fault::Kind::kFewMatched,
+                    {static_cast<int>(100 * tracking.matchedRatio()), static_cast<int>(100 * kFewMatched)}};
+    if (found.matchedRatio() <= kClearlyMore * tracking.matchedRatio()) found.reject(few);
+    if (found.lost()) return found;
+    found.fault = few;
+    return confirmed(world.reference(), std::move(found), prediction);
 }
 
 /// Whether a camera that moves shows the same image once more. One at rest may, where nothing makes noise.

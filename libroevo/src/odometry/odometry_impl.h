@@ -48,6 +48,7 @@ struct Odometry::Impl {
     Outcome frozen(std::unique_ptr<Frame> fresh);
     Outcome start();
     Tracking track(const Prediction& prediction);
+    Tracking searchBetter(const Tracking& tracking, const Prediction& prediction);
     Tracking confirmed(const Keyframe& keyframe, Tracking tracking, const Prediction& prediction);
     std::optional<RelativePose> trackFromPrevious();
     std::optional<Outcome> anchorAt(const RelativePose& found, const Tracking& failed);
