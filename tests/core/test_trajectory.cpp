@@ -142,6 +142,37 @@ TEST(Trajectory, FramesWithoutAMeasuredPoseAreInterpolatedInTime) {
         EXPECT_THROW(trajectory.measureAfterwards(unknown, from(0, at(5))), std::logic_error);
 }
 
+/// On a circle of 1 m, at 1 rad/s, looking ahead.
+Pose onCircle(double seconds) {
+    Pose pose;
+    pose.setRotation(Eigen::AngleAxisd(seconds, Eigen::Vector3d::UnitZ()));
+    pose.translation() << std::cos(seconds), std::sin(seconds), 0;
+    return pose;
+}
+
+TEST(Trajectory, WhatIsBridgedFollowsTheVelocityAtBothEnds) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, Pose::Identity());
+    const auto isMeasured = [](int i) { return i < 10 || i >= 25; };  // 15 frames: a chord is 3.5 cm off
+    for (int i = 0; i < 35; ++i)
+        trajectory.addFrame(i / 30., from(0, isMeasured(i) ? onCircle(i / 30.) : at(-7)), isMeasured(i));
+    const auto frames = trajectory.frames();
+    double worst = 0;
+    for (const StampedPose& pose : frames)
+        worst = std::max(worst,
+                         (onCircle(pose.timestamp).translation() - pose.T_world_camera.translation()).norm());
+    EXPECT_LT(worst, 0.01);
+    EXPECT_GT(worst, 1e-6) << "a part of a velocity is noise, and only as much is believed as tells more";
+}
+
+TEST(Trajectory, ASingleFrameIsNotBentByTheNoiseOfItsNeighbours) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    for (int i = 0; i < 10; ++i)  // 5 mm to and fro; one without a pose
+        trajectory.addFrame(i / 30., from(0, at(i % 2 == 0 ? 0.0025 : -0.0025)), i != 5);
+    EXPECT_LT(std::abs(trajectory.frames()[5].T_world_camera.translation().x()), 0.003);
+}
+
 /// Keyframes 0 and 1 of one track, 2 of another, and 3, which was recognised at keyframe 0.
 Trajectory foundAgain() {
     Trajectory trajectory;

@@ -2,14 +2,18 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "tracking/se3.h"
 
 namespace roevo {
 namespace {
 
+constexpr double kVelocitySpan = 0.1;      // s, before and after frames whose poses were not measured
+constexpr double kCarried = 1;             // s; of how long a velocity tells at most
 constexpr double kMostContradiction = 50;  // squared sigmas, of a loop
 constexpr double kStill = 0.02;            // m; less change of view than this is hardly any
 constexpr double kRecent = 4.25;     // s; of frames since then it is kept which edges their errors come from
@@ -40,6 +44,29 @@ void forgetAll(PoseUncertainty& uncertainty) {
 
 double changeOfView(const Pose& motion) {
     return motion.translation().norm() + kTypicalDepth * rotationAngle(motion);
+}
+
+/// Metres and radians per second; turns along the camera's own axes.
+Vector6d velocityBetween(const StampedPose& from, const StampedPose& to) {
+    const Pose &a = from.T_world_camera, &b = to.T_world_camera;
+    const Eigen::AngleAxisd turn(Eigen::Matrix3d(a.linear().transpose() * b.linear()));
+    Vector6d motion;
+    motion << b.translation() - a.translation(), turn.angle() * turn.axis();
+    return motion / (to.timestamp - from.timestamp);
+}
+
+/// Between two poses, by time: a cubic that leaves and arrives at the camera's velocity there (Hermite). Such
+/// a velocity is of kVelocitySpan: of a shorter time it tells less than its noise.
+/// @param at_from, at_to  velocities less the mean one
+Pose bridged(const StampedPose& from, const StampedPose& to, const Vector6d& at_from, const Vector6d& at_to,
+             double timestamp) {
+    const double duration = to.timestamp - from.timestamp, share = (timestamp - from.timestamp) / duration;
+    const double carried = std::min(duration, kCarried) * duration / (duration + kVelocitySpan);
+    const Vector6d bend = carried * share * (1 - share) * ((1 - share) * at_from - share * at_to);
+    Pose pose = interpolate(from.T_world_camera, to.T_world_camera, share);
+    pose.setRotation(pose.rotation() * poseIncrement(bend).rotation());
+    pose.translation() += bend.head<3>();
+    return pose;
 }
 
 }  // namespace
@@ -287,20 +314,37 @@ Pose Trajectory::finalPose(const Frame& frame) const {
     return interpolate(from_parent, from_next, since / (since + left));
 }
 
+/// Of the camera at a measured frame: over those just before it (step -1) or after it (step 1) that are
+/// measured, too.
+std::optional<Vector6d> Trajectory::velocityAt(const std::vector<StampedPose>& poses, std::size_t end,
+                                               int step) const {
+    std::size_t other = end;
+    for (std::size_t k = end + step; k < frames_.size(); k += step) {  // before the first it wraps around
+        if (!frames_[k].measured || std::abs(poses[k].timestamp - poses[end].timestamp) > kVelocitySpan ||
+            beginOfTrack(frames_[k].pose.keyframe) != beginOfTrack(frames_[end].pose.keyframe))
+            break;
+        other = k;
+    }
+    if (other == end) return std::nullopt;
+    return velocityBetween(poses[std::min(end, other)], poses[std::max(end, other)]);
+}
+
 std::vector<StampedPose> Trajectory::frames() const {
     std::vector<StampedPose> poses;
     for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame)});
     std::size_t last = 0;  // measured frame
     for (std::size_t next = 1; next < frames_.size(); ++next) {
         if (!frames_[next].measured) continue;
-        const StampedPose &from = poses[last], &to = poses[next];
-        const bool known =
-            beginOfTrack(frames_[last].pose.keyframe) == beginOfTrack(frames_[next].pose.keyframe);
-        for (std::size_t i = last + 1; known && i < next; ++i)
-            poses[i].T_world_camera =
-                interpolate(from.T_world_camera, to.T_world_camera,
-                            (poses[i].timestamp - from.timestamp) / (to.timestamp - from.timestamp));
-        last = next;
+        const std::size_t before = std::exchange(last, next);
+        if (next == before + 1 ||
+            beginOfTrack(frames_[before].pose.keyframe) != beginOfTrack(frames_[next].pose.keyframe))
+            continue;
+        const StampedPose &from = poses[before], &to = poses[next];
+        const Vector6d mean = velocityBetween(from, to);
+        const Vector6d at_from = velocityAt(poses, before, -1).value_or(mean) - mean,
+                       at_to = velocityAt(poses, next, 1).value_or(mean) - mean;
+        for (std::size_t i = before + 1; i < next; ++i)
+            poses[i].T_world_camera = bridged(from, to, at_from, at_to, poses[i].timestamp);
     }
     return poses;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "mapping/local_mapper.h"
@@ -31,7 +32,7 @@ class Trajectory {
     /// @param pose  relative to the keyframe that it was tracked from. @return its id
     /// @param clusters  of its edges; what other edges did to its pose is from now on independent
     int addKeyframe(double timestamp, const RelativePose& pose, const std::vector<std::int32_t>& clusters);
-    /// @param measured  else its final pose is interpolated between measured ones, where there are any
+    /// @param measured  else its final pose is bridged between measured ones, where there are any
     void addFrame(double timestamp, const RelativePose& pose, bool measured = true);
     /// The pose of a frame that was added without a measured one, now that there is one.
     void measureAfterwards(double timestamp, const RelativePose& pose);
@@ -89,6 +90,8 @@ class Trajectory {
     RelativePose inWorld(const RelativePose& pose) const;
     void takePosterior(const WindowPosterior& posterior, int keyframe);
     Pose finalPose(const Frame& frame) const;
+    std::optional<Vector6d> velocityAt(const std::vector<StampedPose>& poses, std::size_t end,
+                                       int step) const;
     std::vector<PoseConstraint> constraintsOf(const std::vector<int>& tracks, int track) const;
 
     int held_ = 0;  ///< so many keyframes do not move
