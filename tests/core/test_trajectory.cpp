@@ -173,6 +173,17 @@ TEST(Trajectory, ASingleFrameIsNotBentByTheNoiseOfItsNeighbours) {
     EXPECT_LT(std::abs(trajectory.frames()[5].T_world_camera.translation().x()), 0.003);
 }
 
+TEST(Trajectory, ThatTwoStampsNearlyCoincideMakesNoSpeed) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    trajectory.addFrame(0, from(0, at(0.005)));
+    trajectory.addFrame(1e-6, from(0, at(0)));  // 5 mm of noise: 5 km/s
+    for (const double t : {0.5, 1.0, 1.5}) trajectory.addFrame(t, from(0, at(9)), false);
+    trajectory.addFrame(2, from(0, at(0)));
+    for (const StampedPose& pose : trajectory.frames())
+        EXPECT_LT(std::abs(pose.T_world_camera.translation().x()), 0.03) << pose.timestamp;
+}
+
 /// Keyframes 0 and 1 of one track, 2 of another, and 3, which was recognised at keyframe 0.
 Trajectory foundAgain() {
     Trajectory trajectory;

@@ -12,7 +12,7 @@
 namespace roevo {
 namespace {
 
-constexpr double kVelocitySpan = 0.1;      // s, before and after frames whose poses were not measured
+constexpr double kVelocitySpan = 0.12;     // s, before and after frames whose poses were not measured
 constexpr double kCarried = 1;             // s; of how long a velocity tells at most
 constexpr double kMostContradiction = 50;  // squared sigmas, of a loop
 constexpr double kStill = 0.02;            // m; less change of view than this is hardly any
@@ -55,9 +55,9 @@ Vector6d velocityBetween(const StampedPose& from, const StampedPose& to) {
     return motion / (to.timestamp - from.timestamp);
 }
 
-/// Between two poses, by time: a cubic that leaves and arrives at the camera's velocity there (Hermite). Such
-/// a velocity is of kVelocitySpan: of a shorter time it tells less than its noise.
-/// @param at_from, at_to  velocities less the mean one
+/// Between two poses, by time: a cubic that leaves and arrives at the camera's velocity there (Hermite). In
+/// less time than a velocity is taken over, its noise tells more than it does.
+/// @param at_from, at_to  see fasterAt()
 Pose bridged(const StampedPose& from, const StampedPose& to, const Vector6d& at_from, const Vector6d& at_to,
              double timestamp) {
     const double duration = to.timestamp - from.timestamp, share = (timestamp - from.timestamp) / duration;
@@ -314,10 +314,10 @@ Pose Trajectory::finalPose(const Frame& frame) const {
     return interpolate(from_parent, from_next, since / (since + left));
 }
 
-/// Of the camera at a measured frame: over those just before it (step -1) or after it (step 1) that are
-/// measured, too.
-std::optional<Vector6d> Trajectory::velocityAt(const std::vector<StampedPose>& poses, std::size_t end,
-                                               int step) const {
+/// How much faster than in the mean the camera is at a measured frame, as told by those just before it
+/// (step -1) or after it (step 1) that are measured, too. The shorter their time, the less it tells.
+Vector6d Trajectory::fasterAt(const std::vector<StampedPose>& poses, std::size_t end, int step,
+                              const Vector6d& mean) const {
     std::size_t other = end;
     for (std::size_t k = end + step; k < frames_.size(); k += step) {  // before the first it wraps around
         if (!frames_[k].measured || std::abs(poses[k].timestamp - poses[end].timestamp) > kVelocitySpan ||
@@ -325,8 +325,10 @@ std::optional<Vector6d> Trajectory::velocityAt(const std::vector<StampedPose>& p
             break;
         other = k;
     }
-    if (other == end) return std::nullopt;
-    return velocityBetween(poses[std::min(end, other)], poses[std::max(end, other)]);
+    if (other == end) return Vector6d::Zero();
+    const StampedPose &first = poses[std::min(end, other)], &second = poses[std::max(end, other)];
+    const double span = second.timestamp - first.timestamp;
+    return span / kVelocitySpan * (velocityBetween(first, second) - mean);
 }
 
 std::vector<StampedPose> Trajectory::frames() const {
@@ -341,8 +343,7 @@ std::vector<StampedPose> Trajectory::frames() const {
             continue;
         const StampedPose &from = poses[before], &to = poses[next];
         const Vector6d mean = velocityBetween(from, to);
-        const Vector6d at_from = velocityAt(poses, before, -1).value_or(mean) - mean,
-                       at_to = velocityAt(poses, next, 1).value_or(mean) - mean;
+        const Vector6d at_from = fasterAt(poses, before, -1, mean), at_to = fasterAt(poses, next, 1, mean);
         for (std::size_t i = before + 1; i < next; ++i)
             poses[i].T_world_camera = bridged(from, to, at_from, at_to, poses[i].timestamp);
     }

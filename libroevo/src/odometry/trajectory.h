@@ -1,5 +1,4 @@
 #pragma once
-#include <optional>
 #include <vector>
 
 #include "mapping/local_mapper.h"
@@ -90,8 +89,8 @@ class Trajectory {
     RelativePose inWorld(const RelativePose& pose) const;
     void takePosterior(const WindowPosterior& posterior, int keyframe);
     Pose finalPose(const Frame& frame) const;
-    std::optional<Vector6d> velocityAt(const std::vector<StampedPose>& poses, std::size_t end,
-                                       int step) const;
+    Vector6d fasterAt(const std::vector<StampedPose>& poses, std::size_t end, int step,
+                      const Vector6d& mean) const;
     std::vector<PoseConstraint> constraintsOf(const std::vector<int>& tracks, int track) const;
 
     int held_ = 0;  ///< so many keyframes do not move
