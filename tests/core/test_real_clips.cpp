@@ -125,8 +125,8 @@ INSTANTIATE_TEST_SUITE_P(Starts, WideBaseline,
                                     std::to_string(std::lround(1e5 * info.param.depth_noise));
                          });
 
-// Every tenth frame, backwards: up to 35 degrees between two. One of them was taken for another view, with 36
-// % of the edges and without a word, 50 cm and 35 degrees off; a search matches 64 %.
+// Every tenth frame, backwards: up to 35 degrees between two. One was taken for another view without a word,
+// by 36 % of its edges, 50 cm and 35 degrees off; a search matches 64 %.
 TEST(WideTurns, APoseThatFewEdgesMatchIsNotTheLastWord) {
     const auto clip = testing::realClip("tum_fr1_rpy_100", 100);
     if (!clip) GTEST_SKIP() << "no clip tum_fr1_rpy_100";

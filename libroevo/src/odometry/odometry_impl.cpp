@@ -59,8 +59,10 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
     Tracking tracking = tracker->track(world.reference(), *frame, prediction);
     if (tracking.lost())
         tracking = tracker->search(world.reference(), *frame, prediction, std::move(tracking));
-    else if (tracking.matchedRatio() < kFewMatched && options.loss.recognise)
-        if (Tracking better = searchBetter(tracking, prediction); better.tracked) return better;
+    else if (tracking.matchedRatio() < kFewMatched && options.loss.recognise) {
+        Tracking better = searchBetter(tracking, prediction);
+        if (better.tracked) return better;
+    }
     const bool in_doubt = prediction.blind || tracking.searched || tracking.doubtful;
     if (tracking.tracked && in_doubt && options.loss.recognise)
         tracking = confirmed(world.reference(), std::move(tracking), prediction);

@@ -321,7 +321,7 @@ Vector6d Trajectory::fasterAt(const std::vector<StampedPose>& poses, std::size_t
     std::size_t other = end;
     for (std::size_t k = end + step; k < frames_.size(); k += step) {  // before the first it wraps around
         if (!frames_[k].measured || std::abs(poses[k].timestamp - poses[end].timestamp) > kVelocitySpan ||
-            beginOfTrack(frames_[k].pose.keyframe) != beginOfTrack(frames_[end].pose.keyframe))
+            !areOfOneTrack(frames_[k].pose.keyframe, frames_[end].pose.keyframe))
             break;
         other = k;
     }
@@ -338,8 +338,7 @@ std::vector<StampedPose> Trajectory::frames() const {
     for (std::size_t next = 1; next < frames_.size(); ++next) {
         if (!frames_[next].measured) continue;
         const std::size_t before = std::exchange(last, next);
-        if (next == before + 1 ||
-            beginOfTrack(frames_[before].pose.keyframe) != beginOfTrack(frames_[next].pose.keyframe))
+        if (next == before + 1 || !areOfOneTrack(frames_[before].pose.keyframe, frames_[next].pose.keyframe))
             continue;
         const StampedPose &from = poses[before], &to = poses[next];
         const Vector6d mean = velocityBetween(from, to);

@@ -38,7 +38,10 @@ class Trajectory {
 
     /// First keyframe of a keyframe's track.
     int beginOfTrack(int keyframe) const;
-    /// The same of each keyframe.
+    bool areOfOneTrack(int keyframe, int other) const {
+        return beginOfTrack(keyframe) == beginOfTrack(other);
+    }
+    /// The first keyframe of each one's track.
     std::vector<int> tracks() const;
     /// Moves a keyframe's track to where the keyframe was recognised; where that is in a younger track, moves
     /// that one.

@@ -198,8 +198,7 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
 }
 
 const Keyframe* World::previous(Pose& T_previous_reference) {
-    if (!previous_ || trajectory_.beginOfTrack(previous_->id) != trajectory_.beginOfTrack(reference_->id))
-        return nullptr;
+    if (!previous_ || !trajectory_.areOfOneTrack(previous_->id, reference_->id)) return nullptr;
     T_previous_reference =
         trajectory_.keyframePose(previous_->id).inverse() * trajectory_.keyframePose(reference_->id);
     previous_->setRowMotion(previous_->row_motion.at(seconds_per_row_));
@@ -258,7 +257,7 @@ Whereabouts World::whereabouts(const RelativePose& pose, double lost_for) const 
     const double unseen = kReach + kTopSpeed * lost_for;
     const Reach within_track{unseen + drift.distance, kReachTurn + kTopTurn * lost_for + drift.turn};
     const auto reach = [this, keyframe, within_track, misplaced](int other) {
-        if (trajectory_.beginOfTrack(other) == trajectory_.beginOfTrack(keyframe)) return within_track;
+        if (trajectory_.areOfOneTrack(other, keyframe)) return within_track;
         const Reach there = misplacementOf(other);
         return Reach{within_track.distance + misplaced.distance + there.distance,
                      within_track.turn + misplaced.turn + there.turn};
@@ -318,11 +317,8 @@ void World::join(const Look& look) {
 std::optional<World::Look> World::agreeingLook(const Look& newest, double tolerance) {
     const auto before = std::exchange(look_, newest);
     if (!before || newest.keyframe - before->keyframe > kInARow) return std::nullopt;
-    const auto areOfOneTrack = [&](int a, int b) {
-        return trajectory_.beginOfTrack(a) == trajectory_.beginOfTrack(b);
-    };
-    if (!areOfOneTrack(before->keyframe, newest.keyframe) ||
-        !areOfOneTrack(before->place.pose.keyframe, newest.place.pose.keyframe))
+    if (!trajectory_.areOfOneTrack(before->keyframe, newest.keyframe) ||
+        !trajectory_.areOfOneTrack(before->place.pose.keyframe, newest.place.pose.keyframe))
         return std::nullopt;
     const auto motionOf = [&](const Look& look) {
         return trajectory_.worldPose(look.place.pose) * trajectory_.keyframePose(look.keyframe).inverse();
