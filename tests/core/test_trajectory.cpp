@@ -161,7 +161,8 @@ TEST(Trajectory, ASingleFrameIsNotBentByTheNoiseOfItsNeighbours) {
     Trajectory trajectory;
     beginTrack(trajectory, 0, at(0));
     for (int i = 0; i < 10; ++i)  // 5 mm to and fro; one without a pose
-        trajectory.addFrame(i / 30., from(0, at(i % 2 == 0 ? 0.0025 : -0.0025)), i != 5);
+        trajectory.addFrame(
+            i / 30., {0, at(i % 2 == 0 ? 0.0025 : -0.0025), {6e-6 * Matrix6d::Identity(), {}}}, i != 5);
     EXPECT_LT(std::abs(trajectory.frames()[5].T_world_camera.translation().x()), 0.003);
 }
 

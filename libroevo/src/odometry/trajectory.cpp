@@ -7,13 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "odometry/motion_smoother.h"
 #include "tracking/se3.h"
 
 namespace roevo {
 namespace {
 
-constexpr double kVelocitySpan = 0.12;     // s, before and after frames whose poses were not measured
-constexpr double kCarried = 1;             // s; of how long a velocity tells at most
 constexpr double kMostContradiction = 50;  // squared sigmas, of a loop
 constexpr double kStill = 0.02;            // m; less change of view than this is hardly any
 constexpr double kRecent = 4.25;     // s; of frames since then it is kept which edges their errors come from
@@ -44,29 +43,6 @@ void forgetAll(PoseUncertainty& uncertainty) {
 
 double changeOfView(const Pose& motion) {
     return motion.translation().norm() + kTypicalDepth * rotationAngle(motion);
-}
-
-/// Metres and radians per second; turns along the camera's own axes.
-Vector6d velocityBetween(const StampedPose& from, const StampedPose& to) {
-    const Pose &a = from.T_world_camera, &b = to.T_world_camera;
-    const Eigen::AngleAxisd turn(Eigen::Matrix3d(a.linear().transpose() * b.linear()));
-    Vector6d motion;
-    motion << b.translation() - a.translation(), turn.angle() * turn.axis();
-    return motion / (to.timestamp - from.timestamp);
-}
-
-/// Between two poses, by time: a cubic that leaves and arrives at the camera's velocity there (Hermite). In
-/// less time than a velocity is taken over, its noise tells more than it does.
-/// @param at_from, at_to  see fasterAt()
-Pose bridged(const StampedPose& from, const StampedPose& to, const Vector6d& at_from, const Vector6d& at_to,
-             double timestamp) {
-    const double duration = to.timestamp - from.timestamp, share = (timestamp - from.timestamp) / duration;
-    const double carried = std::min(duration, kCarried) * duration / (duration + kVelocitySpan);
-    const Vector6d bend = carried * share * (1 - share) * ((1 - share) * at_from - share * at_to);
-    Pose pose = interpolate(from.T_world_camera, to.T_world_camera, share);
-    pose.setRotation(pose.rotation() * poseIncrement(bend).rotation());
-    pose.translation() += bend.head<3>();
-    return pose;
 }
 
 }  // namespace
@@ -314,37 +290,25 @@ Pose Trajectory::finalPose(const Frame& frame) const {
     return interpolate(from_parent, from_next, since / (since + left));
 }
 
-/// How much faster than in the mean the camera is at a measured frame, as told by those just before it
-/// (step -1) or after it (step 1) that are measured, too. The shorter their time, the less it tells.
-Vector6d Trajectory::fasterAt(const std::vector<StampedPose>& poses, std::size_t end, int step,
-                              const Vector6d& mean) const {
-    std::size_t other = end;
-    for (std::size_t k = end + step; k < frames_.size(); k += step) {  // before the first it wraps around
-        if (!frames_[k].measured || std::abs(poses[k].timestamp - poses[end].timestamp) > kVelocitySpan ||
-            !areOfOneTrack(frames_[k].pose.keyframe, frames_[end].pose.keyframe))
-            break;
-        other = k;
-    }
-    if (other == end) return Vector6d::Zero();
-    const StampedPose &first = poses[std::min(end, other)], &second = poses[std::max(end, other)];
-    const double span = second.timestamp - first.timestamp;
-    return span / kVelocitySpan * (velocityBetween(first, second) - mean);
-}
-
 std::vector<StampedPose> Trajectory::frames() const {
     std::vector<StampedPose> poses;
     for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame)});
-    std::size_t last = 0;  // measured frame
-    for (std::size_t next = 1; next < frames_.size(); ++next) {
-        if (!frames_[next].measured) continue;
-        const std::size_t before = std::exchange(last, next);
-        if (next == before + 1 || !areOfOneTrack(frames_[before].pose.keyframe, frames_[next].pose.keyframe))
-            continue;
-        const StampedPose &from = poses[before], &to = poses[next];
-        const Vector6d mean = velocityBetween(from, to);
-        const Vector6d at_from = fasterAt(poses, before, -1, mean), at_to = fasterAt(poses, next, 1, mean);
-        for (std::size_t i = before + 1; i < next; ++i)
-            poses[i].T_world_camera = bridged(from, to, at_from, at_to, poses[i].timestamp);
+    std::vector<MotionSample> samples;
+    for (std::size_t begin = 0; begin < frames_.size(); begin += samples.size()) {
+        // From a measured frame to the last measured one of the same track
+        samples.clear();
+        std::size_t count = 1;
+        for (std::size_t k = begin; k < frames_.size(); ++k) {
+            const Frame& frame = frames_[k];
+            if (!areOfOneTrack(frames_[begin].pose.keyframe, frame.pose.keyframe)) break;
+            samples.push_back(
+                {frame.timestamp, poses[k].T_world_camera, frame.pose.covariance(), frame.measured});
+            if (frame.measured) count = samples.size();
+            if (!frames_[begin].measured) break;
+        }
+        samples.resize(count);
+        smoothMotion(samples);
+        for (std::size_t k = 0; k < count; ++k) poses[begin + k].T_world_camera = samples[k].T_world_camera;
     }
     return poses;
 }

@@ -78,7 +78,7 @@ class Trajectory {
     const Pose& keyframePose(int id) const { return keyframes_[static_cast<std::size_t>(id)].T_world_camera; }
     /// Poses of the frames. What the map found to be wrong with the tracked motion to the next keyframe was
     /// wrong with the motions of the frames between in part: tracking errs the more the view differs from the
-    /// keyframe's.
+    /// keyframe's. Smoothed, and bridged where they were not measured (smoothMotion()).
     std::vector<StampedPose> frames() const;
     /// As they were known when they were added.
     const std::vector<StampedPose>& live() const { return live_; }
@@ -92,8 +92,6 @@ class Trajectory {
     RelativePose inWorld(const RelativePose& pose) const;
     void takePosterior(const WindowPosterior& posterior, int keyframe);
     Pose finalPose(const Frame& frame) const;
-    Vector6d fasterAt(const std::vector<StampedPose>& poses, std::size_t end, int step,
-                      const Vector6d& mean) const;
     std::vector<PoseConstraint> constraintsOf(const std::vector<int>& tracks, int track) const;
 
     int held_ = 0;  ///< so many keyframes do not move
