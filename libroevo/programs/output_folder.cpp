@@ -14,7 +14,7 @@ void prepareOutputFolder(const std::string& folder) {
     if (error || !fs::is_directory(folder))
         throw std::runtime_error("cannot create the output folder " + folder + ": " +
                                  (error ? error.message() : "a file of that name is in the way"));
-    AtomicFile probe((fs::path(folder) / "probe").string());
+    AtomicFile probe((fs::path(folder) / ".roevo-probe").string());
     probe.stream();
 }
 

@@ -65,8 +65,7 @@ TEST_F(RoevoOdometryTest, AStillCameraStaysAndTheRobotIsWhereTheSensorPoseSays) 
     const auto path = odometry_.getTrajectory();
     ASSERT_EQ(path.size(), 2u);
     for (const auto& [time, pose] : path) EXPECT_TRUE(toEigen(CPose3D(pose)).isApprox(toEigen(start), 1e-3));
-    EXPECT_TRUE(
-        second.T_world_camera.isApprox(toEigen(start) * toEigen(mounted) * sensorFromOptical(), 1e-3));
+    EXPECT_TRUE(second.T_world_camera.isApprox(toEigen(start) * cameraOnRobot(*scan_), 1e-3));
 
     // Points of the map, seen from the sensor, are ahead of it by the distance of the bookcase.
     const auto map = odometry_.getMap();
@@ -78,6 +77,28 @@ TEST_F(RoevoOdometryTest, AStillCameraStaysAndTheRobotIsWhereTheSensorPoseSays) 
         EXPECT_GT(ahead, 1);
         EXPECT_LT(ahead, 3);
     }
+}
+
+TEST_F(RoevoOdometryTest, WhereTheColourCameraIsOnTheSensorCounts) {
+    scan_->sensorPose = CPose3D(0.3, -0.1, 0.8, 0.4, 0.2, -0.1);
+    scan_->relativePoseIntensityWRTDepth = CPose3D(0.025, 0, 0, 0, 0, 0) + toMrpt(sensorFromOptical());
+    const CPose3D start(1, 2, 0, 0.7, 0, 0);
+    odometry_.initialize(start);
+    const FrameResult first = odometry_.processObservation(*scan_);
+    ASSERT_EQ(first.status, FrameStatus::kInitialised) << first.reason;
+    EXPECT_TRUE(first.T_world_camera.isApprox(toEigen(start) * cameraOnRobot(*scan_), 1e-9));
+    EXPECT_TRUE(toEigen(odometry_.getCurrentPoseEstimation()->getMeanVal()).isApprox(toEigen(start), 1e-9));
+}
+
+TEST_F(RoevoOdometryTest, AFirstObservationWithoutARigidPoseBeginsNothing) {
+    auto bad = laterScan(*scan_, -0.1);
+    auto& rotation = const_cast<mrpt::math::CMatrixDouble33&>(bad->sensorPose.getRotationMatrix());
+    rotation(0, 0) = std::nan("");
+    const FrameResult result = odometry_.processObservation(*bad);
+    EXPECT_EQ(result.status, FrameStatus::kRejected);
+    EXPECT_NE(result.reason.find("sensor pose"), std::string::npos) << result.reason;
+    EXPECT_EQ(odometry_.processObservation(*scan_).status, FrameStatus::kInitialised);
+    EXPECT_TRUE(toEigen(odometry_.getCurrentPoseEstimation()->getMeanVal()).isApprox(Pose::Identity(), 1e-9));
 }
 
 TEST_F(RoevoOdometryTest, TheSimpleMapHoldsTheMapsPoints) {
@@ -156,7 +177,7 @@ TEST_F(RoevoOdometryTest, TheSemiDenseMapIsTheSurfaceInTheRobotsWorld) {
     // Every point is a pixel with its depth and its colour
     const RgbdFrame frame = toRgbdFrame(*scan_);
     const PinholeCamera camera = odometry_.odometry()->camera();
-    const Pose T_optical_world = (toEigen(start) * toEigen(mounted) * sensorFromOptical()).inverse();
+    const Pose T_optical_world = (toEigen(start) * cameraOnRobot(*scan_)).inverse();
     for (std::size_t i = 0; i < map->size(); i += 20) {
         float x, y, z, r, g, b;
         map->getPointRGB(i, x, y, z, r, g, b);

@@ -44,18 +44,19 @@ RgbdFrame CRoevoOdometry::convert(const CObservation3DRangeScan& scan) {
 
 FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
     const double timestamp = fromMrptTime(scan.timestamp);
-    const Pose T_robot_optical = toEigen(scan.sensorPose) * sensorFromOptical();
-    if (!odometry_)
-        odometry_.emplace(colourCameraOf(scan), options.odometry, T_world_robot_start_ * T_robot_optical);
+    const auto camera = [&] { return colourCameraOf(scan); };
+    if (!odometry_) camera();  // without intrinsics nothing can begin
 
     FrameResult rejected;
     rejected.timestamp = timestamp;
     try {
-        if (colourCameraOf(scan) != odometry_->camera())
+        if (odometry_ && camera() != odometry_->camera())
             throw std::runtime_error("the camera's intrinsics changed");
-        const RgbdFrame frame = convert(scan);
-        if (context_.mounts.empty() || !context_.mounts.rbegin()->second.isApprox(T_robot_optical))
-            context_.mounts[timestamp] = T_robot_optical;
+        const RgbdFrame frame = convert(scan);  // refuses poses that are none
+        const Pose T_robot_camera = cameraOnRobot(scan);
+        if (!odometry_) odometry_.emplace(camera(), options.odometry, T_world_robot_start_ * T_robot_camera);
+        if (context_.mounts.empty() || !context_.mounts.rbegin()->second.isApprox(T_robot_camera))
+            context_.mounts[timestamp] = T_robot_camera;
         const mrpt::system::CTimeLoggerEntry entry(profiler_, "track");
         return odometry_->processFrame(frame);
     } catch (const std::runtime_error& error) {
@@ -66,8 +67,11 @@ FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
 
 FrameResult CRoevoOdometry::processObservation(const CObservation3DRangeScan& scan) {
     const FrameResult result = track(scan);
-    if (result.hasPose()) latest_ = result;
-    if (result.new_keyframe) context_.covariances[result.timestamp] = result.covariance;
+    if (result.hasPose()) {
+        latest_ = result;
+        // Of every frame: a later one may make it the keyframe
+        context_.covariances[result.timestamp] = result.covariance;
+    }
     report(result);
     return result;
 }

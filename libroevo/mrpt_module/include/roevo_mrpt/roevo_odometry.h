@@ -96,7 +96,7 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// Time spent per stage.
     const mrpt::system::CTimeLogger& profiler() const { return profiler_; }
 
-    /// The core, null before the first observation.
+    /// The core, null before the first observation that can be used.
     const Odometry* odometry() const { return odometry_ ? &*odometry_ : nullptr; }
 
   private:
@@ -106,7 +106,7 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
 
     Pose T_world_robot_start_ = Pose::Identity();
     std::optional<Odometry> odometry_;
-    RobotContext context_;  // one mount unless the camera moves on the robot; covariances of keyframes
+    RobotContext context_;  // one mount unless the camera moves on the robot; covariances of frames
     std::optional<FrameResult> latest_;
     mrpt::system::CTimeLogger profiler_;
 };
