@@ -103,8 +103,27 @@ TEST(OdometryMapping, WhatTheMapMovesIsReportedToTheLastDigit) {
     }
 }
 
+TEST(OdometryMapping, FinalPosesAreSmoothedAndKeyframesStayWhereTheMapHasThem) {
+    OdometryOptions options = manyKeyframes();
+    options.motion.smooth = false;
+    const MappedRun rough = runOver(path(), options);
+    const MappedRun& smooth = reference();
+    EXPECT_TRUE(sameBytes(smooth.live_poses, rough.live_poses));
+    double moved = 0;
+    for (std::size_t i = 0; i < smooth.final_poses.size(); ++i) {
+        const double by = distance(smooth.final_poses[i].T_world_camera, rough.final_poses[i].T_world_camera);
+        moved = std::max(moved, by);
+        for (const KeyframeInfo& keyframe : smooth.keyframes)
+            if (keyframe.timestamp == smooth.final_poses[i].timestamp) EXPECT_LT(by, 1e-12) << i;
+    }
+    EXPECT_GT(moved, 1e-5);
+    EXPECT_LT(moved, 0.005);
+}
+
 TEST(OdometryMapping, WhatWasWrongWithTheMotionToAKeyframeIsSharedOutOverTheFramesBefore) {
-    const MappedRun& run = reference();
+    OdometryOptions options = manyKeyframes();
+    options.motion.smooth = false;  // that moves frames, too
+    const MappedRun run = runOver(path(), options);
     ASSERT_EQ(run.final_poses.size(), run.results.size());
     ASSERT_EQ(run.live_poses.size(), run.results.size());
     double largest = 0, shared_out = 0;

@@ -48,7 +48,6 @@ class RefineAll : public ::testing::Test {
             mapper_->insert(std::move(keyframe));
         }
         Correction join;
-        join.recognised = 4;
         for (int id = 5; id < 10; ++id) {
             join.keyframes.push_back(id);
             join.motions.push_back(off);

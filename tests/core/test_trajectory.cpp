@@ -257,7 +257,7 @@ TEST(Trajectory, AJoinedTrackMovesAsAWholeAndSoDoesWhatTheMapSaysOfItLater) {
     EXPECT_EQ(trajectory.beginOfTrack(2), 1);
     const Correction join = trajectory.join(2, from(0, at(3)));  // keyframe 2 is at x = 3
     EXPECT_EQ(join.keyframes, (std::vector<int>{1, 2}));
-    EXPECT_EQ(join.recognised, 0);
+    EXPECT_EQ(join.places.front().from, 0);
     EXPECT_NEAR(join.motions.front().translation().x(), -48, 1e-12);
     EXPECT_EQ(trajectory.beginOfTrack(2), 0);
     EXPECT_NEAR(trajectory.frames()[1].T_world_camera.translation().x(), 2, 1e-12);
@@ -285,7 +285,7 @@ TEST(Trajectory, OfTwoTracksThatMeetTheYoungerOneMoves) {
     trajectory.addFrame(3, from(3, at(0)));
     const Correction join = trajectory.join(3, from(2, at(2)));  // and what it shows is seen from keyframe 2
     EXPECT_EQ(join.keyframes, (std::vector<int>{1, 2}));
-    EXPECT_EQ(join.recognised, 3);
+    EXPECT_EQ(join.places.front().from, 3);
     EXPECT_NEAR(trajectory.keyframePose(2).translation().x(), 2, 1e-12);
     EXPECT_NEAR(trajectory.keyframePose(1).translation().x(), 1, 1e-12);
     EXPECT_NEAR(trajectory.keyframePose(3).translation().x(), 4, 1e-12) << "the camera stays";

@@ -44,7 +44,7 @@ class Posterior : public BundleAdjustment {
         adjuster.refine(window_, edges_, priors_, 8);
         std::vector<std::int32_t> clusters(edges_.views.size());
         std::iota(clusters.begin(), clusters.end(), 0);
-        return adjuster.posterior(window_, clusters, priors_);
+        return posteriorOf(window_, adjuster.equations(), clusters, priors_);
     }
     /// Of the newest keyframe, along its axes.
     Vector6d errorTo(const Pose& truth) const {

@@ -87,6 +87,7 @@ struct MotionOptions {
     double angular_acceleration_deg = 500;  ///< deg/s^2, one sigma
     double speed = 1;                       ///< m/s, one sigma where no velocity is known
     double angular_speed_deg = 60;          ///< deg/s, one sigma where no velocity is known
+    bool smooth = true;                     ///< final poses are smoothed; live ones never are
 };
 
 struct LossOptions {

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <variant>
 
 #include "input/excerpt.h"
 #include "input/regular_file.h"
@@ -33,7 +34,10 @@ std::string number(double value) {
 std::string explanation(const OptionField& field) {
     std::string text = field.description;
     if (!field.unit.empty()) text += ", " + field.unit;
-    if (field.max > field.min) text += ", " + number(field.min) + " to " + number(field.max);
+    if (std::holds_alternative<bool*>(field.value))
+        text += ", true or false";
+    else if (field.max > field.min)
+        text += ", " + number(field.min) + " to " + number(field.max);
     return text;
 }
 

@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include "tracking/se3.h"
-#include "window_equations.h"
-#include "window_posterior.h"
 
 namespace roevo {
 namespace {
@@ -57,18 +55,13 @@ Matrix6d RelativePrior::toCentre(const std::vector<WindowKeyframe>& window,
 
 BundleAdjuster::BundleAdjuster(const MappingOptions& mapping, const SensorOptions& sensor,
                                const PinholeCamera& camera, std::size_t hessian_points)
-    : focal_length_(camera.fx),
-      equations_(std::make_unique<WindowEquations>(mapping, sensor, camera, hessian_points)) {}
-
-BundleAdjuster::~BundleAdjuster() = default;
-BundleAdjuster::BundleAdjuster(BundleAdjuster&&) noexcept = default;
-BundleAdjuster& BundleAdjuster::operator=(BundleAdjuster&&) noexcept = default;
+    : focal_length_(camera.fx), equations_(mapping, sensor, camera, hessian_points) {}
 
 RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, FusedEdges& edges,
                                         const std::vector<RelativePrior>& priors, int iterations,
                                         double first_scale) {
     RefinementResult result;
-    WindowEquations& equations = *equations_;
+    WindowEquations& equations = equations_;
     equations.gather(window, edges);
     if (iterations <= 0) equations.evaluate(window, edges.points, first_scale);
     for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -94,23 +87,17 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
     return result;
 }
 
-std::optional<WindowPosterior> BundleAdjuster::posterior(const std::vector<WindowKeyframe>& window,
-                                                         const std::vector<std::int32_t>& clusters,
-                                                         const std::vector<RelativePrior>& priors) const {
-    return posteriorOf(window, *equations_, clusters, priors);
-}
-
 double BundleAdjuster::move(std::vector<WindowKeyframe>& window, const Eigen::VectorXd& step) const {
     double largest = 0;
     for (std::size_t s = 0; s < window.size(); ++s) {
-        const int row = equations_->row(s);
+        const int row = equations_.row(s);
         if (row < 0) continue;
         const Vector6d xi = step.segment<6>(row);
         const Pose before = window[s].T_world_camera;
         Pose T_origin_camera = before;
-        T_origin_camera.translation() -= equations_->origin();
+        T_origin_camera.translation() -= equations_.origin();
         window[s].T_world_camera = poseIncrement(xi) * T_origin_camera;
-        window[s].T_world_camera.translation() += equations_->origin();
+        window[s].T_world_camera.translation() += equations_.origin();
         const double moved = (window[s].T_world_camera.translation() - before.translation()).norm() /
                                  window[s].keyframe->typicalDepth() +
                              xi.tail<3>().norm();

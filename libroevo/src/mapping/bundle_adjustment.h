@@ -1,11 +1,7 @@
 #pragma once
-#include <memory>
-#include <optional>
 #include <vector>
 
-#include "mapping/edge_fusion.h"
-#include "roevo/camera/pinhole_camera.h"
-#include "roevo/options.h"
+#include "mapping/window_equations.h"
 
 namespace roevo {
 
@@ -31,13 +27,6 @@ struct RefinementResult {
     std::vector<int> inliers;  ///< of each window keyframe
 };
 
-/// Points that make the Hessian of a window; there are more than it needs. All make the gradient, so that
-/// nothing but the step to the optimum is approximate.
-inline constexpr std::size_t kHessianPoints = 1500;
-
-class WindowEquations;
-struct WindowPosterior;
-
 /// Bundle adjustment over a window (Eqs. (17)-(19)). Both ways alternate edge fitting and pose optimisation:
 /// - alternating: each pose is registered to the fused edges as they are (the paper's Eq. (19));
 /// - joint: the poses move together, with the fused points eliminated (Schur complement), which converges in
@@ -46,26 +35,21 @@ class BundleAdjuster {
   public:
     BundleAdjuster(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera,
                    std::size_t hessian_points = kHessianPoints);
-    ~BundleAdjuster();
-    BundleAdjuster(BundleAdjuster&&) noexcept;
-    BundleAdjuster& operator=(BundleAdjuster&&) noexcept;
 
     /// Moves the poses of the window (those not fixed) and the points of `edges`, for at most `iterations`.
     /// @param first_scale  least spread (px) that the first iteration allows; halved in each that follows
     RefinementResult refine(std::vector<WindowKeyframe>& window, FusedEdges& edges,
                             const std::vector<RelativePrior>& priors, int iterations, double first_scale = 0);
 
-    /// See posteriorOf(), as the last refine() ended.
-    std::optional<WindowPosterior> posterior(const std::vector<WindowKeyframe>& window,
-                                             const std::vector<std::int32_t>& clusters,
-                                             const std::vector<RelativePrior>& priors) const;
+    /// As the last refine() ended.
+    const WindowEquations& equations() const { return equations_; }
 
   private:
     /// The largest motion, px.
     double move(std::vector<WindowKeyframe>& window, const Eigen::VectorXd& step) const;
 
     double focal_length_;
-    std::unique_ptr<WindowEquations> equations_;
+    WindowEquations equations_;
 };
 
 }  // namespace roevo

@@ -49,10 +49,9 @@ std::vector<const MapKeyframe*> LocalMapper::recentOf(const MapKeyframe& newest)
     return recent;
 }
 
-void LocalMapper::unpack(int id) {
-    MapKeyframe& keyframe = keyframes_.at(id);
+void LocalMapper::unpack(MapKeyframe& keyframe) const {
     if (keyframe.size() > 0) return;
-    if (const auto packed = packed_.find(id); packed != packed_.end())
+    if (const auto packed = packed_.find(keyframe.id); packed != packed_.end())
         packed->second.unpackInto(keyframe, camera_, options_.sensor);
 }
 
@@ -67,9 +66,10 @@ bool LocalMapper::bringToReadout(MapKeyframe& keyframe) const {
 
 void LocalMapper::prepare(const std::vector<const MapKeyframe*>& members) {
     for (const MapKeyframe* member : members) {
-        unpack(member->id);
+        MapKeyframe& keyframe = keyframes_.at(member->id);
+        unpack(keyframe);
         // What was packed is not what it is now
-        if (bringToReadout(keyframes_.at(member->id))) packed_.erase(member->id);
+        if (bringToReadout(keyframe)) packed_.erase(member->id);
     }
 }
 
@@ -88,10 +88,10 @@ void LocalMapper::leaveWindow(MapKeyframe& newest) {
 
 std::map<int, MapKeyframe> LocalMapper::unpacked() const {
     std::map<int, MapKeyframe> all = keyframes_;
-    for (auto& [id, keyframe] : all)
-        if (const auto packed = packed_.find(id); keyframe.size() == 0 && packed != packed_.end())
-            packed->second.unpackInto(keyframe, camera_, options_.sensor);
-    for (auto& [id, keyframe] : all) bringToReadout(keyframe);
+    for (auto& [id, keyframe] : all) {
+        unpack(keyframe);
+        bringToReadout(keyframe);
+    }
     return all;
 }
 
@@ -132,19 +132,19 @@ void LocalMapper::relate(const Neighbourhood& neighbourhood, double radius) {
     graph_.insert(*neighbourhood.of, neighbourhood.nearby, camera_, radius);
 }
 
-void LocalMapper::buildWindow(int newest, const std::vector<const MapKeyframe*>& reused) {
+/// @return its members
+std::vector<const MapKeyframe*> LocalMapper::buildWindow(const Neighbourhood& neighbourhood) {
     window_.clear();
-    // In the order of time: fused points take the colour and the place of their first observation
-    std::vector<const MapKeyframe*> members = reused;
+    // In the order of time: of fused edges as long, the oldest one is the reference
+    std::vector<const MapKeyframe*> members = neighbourhood.nearby;
     std::sort(members.begin(), members.end(),
               [](const MapKeyframe* a, const MapKeyframe* b) { return a->id < b->id; });
     const std::size_t fixed = members.size() + 1;  // and the oldest of the newest
-    const std::vector<const MapKeyframe*> recent = recentOf(keyframes_.at(newest));
-    members.insert(members.end(), recent.rbegin(), recent.rend());
-    members.push_back(&keyframes_.at(newest));
-    for (const MapKeyframe* keyframe : members) {
+    members.insert(members.end(), neighbourhood.recent.rbegin(), neighbourhood.recent.rend());
+    members.push_back(neighbourhood.of);
+    for (const MapKeyframe* keyframe : members)
         window_.push_back({keyframe, keyframe->T_world_camera, window_.size() < fixed});
-    }
+    return members;
 }
 
 std::optional<MapRefusal> LocalMapper::refusalOf(const WindowKeyframe& view, int inliers) const {
@@ -191,7 +191,7 @@ void LocalMapper::correct(const Correction& correction) {
     for (std::size_t i = 0; i < correction.keyframes.size(); ++i) {
         MapKeyframe& keyframe = keyframes_.at(correction.keyframes[i]);
         keyframe.T_world_camera = correction.motions[i] * keyframe.T_world_camera;
-        keyframe.track = keyframes_.at(correction.recognised).track;
+        keyframe.track = keyframes_.at(correction.places.front().from).track;
     }
 }
 
@@ -202,9 +202,9 @@ void LocalMapper::load(const KeyframeInfo& info, KeptKeyframe kept) {
     keyframe.median_depth = kept.median_depth;
     keyframe.row_motion = kept.row_motion;
     keyframe.found = std::move(kept.found);
+    keyframe.verdicts = std::move(kept.verdicts);
     keyframes_.emplace(info.id, std::move(keyframe));
     packed_.emplace(info.id, std::move(kept.points));
-    if (!kept.verdicts.empty()) verdicts_.emplace(info.id, std::move(kept.verdicts));
     graph_.setLinks(info.id, std::move(kept.links));
     loaded_ = info.id + 1;
 }
@@ -213,10 +213,8 @@ std::vector<KeptKeyframe> LocalMapper::kept() const {
     std::vector<KeptKeyframe> all;
     for (const auto& [id, keyframe] : keyframes_) {
         const auto packed = packed_.find(id);
-        const auto verdicts = verdicts_.find(id);
         all.push_back({packed == packed_.end() ? PackedKeyframe(keyframe) : packed->second,
-                       keyframe.median_depth, keyframe.row_motion, keyframe.found,
-                       verdicts == verdicts_.end() ? std::vector<EdgeVerdict>() : verdicts->second,
+                       keyframe.median_depth, keyframe.row_motion, keyframe.found, keyframe.verdicts,
                        graph_.linksOf(id)});
     }
     return all;
@@ -238,37 +236,36 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     MapUpdate update;
     update.keyframe = id;
     update.reused = static_cast<int>(reused.size());
-    buildWindow(id, reused);
+    const std::vector<const MapKeyframe*> members = buildWindow(neighbourhood);
     addPriors();
     if (window_.size() < 2) {
         leaveWindow(keyframe);
         return update;
     }
-    std::vector<const MapKeyframe*> members;
-    for (const WindowKeyframe& view : window_) members.push_back(view.keyframe);
     fuser_.fuse(window_, graph_.clusters(members), fused_);
     const int rough = std::min(kRoughIterations, options_.mapping.max_iterations / 2);
     const RefinementResult first =
         adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kDriftScale);
     judge_.judge(window_, fused_, first.scale);
-    update.refinement = adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
-    takePoses(update);
+    const RefinementResult refined =
+        adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
+    takePoses(refined.inliers, update);
     if (!reused.empty() && options_.mapping.joint_refinement && update.refusals.empty())
-        update.posterior = adjuster_.posterior(window_, trackedClusters(), priors_);
+        update.posterior = posteriorOf(window_, adjuster_.equations(), trackedClusters(), priors_);
     keepVerdicts();
-    update.verdicts = verdicts_.at(id);
+    update.verdicts = keyframe.verdicts;
     update.clusters = keyframe.clusters;
     leaveWindow(keyframe);
     return update;
 }
 
-void LocalMapper::takePoses(MapUpdate& update) {
+/// @param inliers  of each keyframe of the window
+void LocalMapper::takePoses(const std::vector<int>& inliers, MapUpdate& update) {
     // All are judged before any is put back, else those that moved with one that is refused would be, too
     std::vector<bool> refused(window_.size(), false);
     for (std::size_t slot = 0; slot < window_.size(); ++slot) {
-        const int inliers = slot < update.refinement.inliers.size() ? update.refinement.inliers[slot] : 0;
         if (window_[slot].fixed) continue;
-        const auto refusal = refusalOf(window_[slot], inliers);
+        const auto refusal = refusalOf(window_[slot], inliers[slot]);
         if (refusal) update.refusals.push_back(*refusal);
         refused[slot] = refusal.has_value();
     }
@@ -291,17 +288,18 @@ void LocalMapper::takePoses(MapUpdate& update) {
 
 void LocalMapper::keepVerdicts() {
     for (const WindowKeyframe& view : window_) {
-        auto& verdicts = verdicts_[view.keyframe->id];
-        verdicts.resize(static_cast<std::size_t>(view.keyframe->image.numEdges()), EdgeVerdict::kUnconfirmed);
+        MapKeyframe& keyframe = keyframes_.at(view.keyframe->id);
+        keyframe.verdicts.resize(static_cast<std::size_t>(keyframe.image.numEdges()),
+                                 EdgeVerdict::kUnconfirmed);
     }
     for (std::size_t edge = 0; edge < fused_.views.size(); ++edge) {
         const auto [first, end] = fused_.observationsOfEdge(edge);
         for (std::size_t k = first; k < end; ++k) {
-            const MapKeyframe& keyframe =
-                *window_[static_cast<std::size_t>(fused_.observations[k].slot)].keyframe;
+            MapKeyframe& keyframe =
+                keyframes_.at(window_[static_cast<std::size_t>(fused_.observations[k].slot)].keyframe->id);
             const std::int32_t own =
                 keyframe.image.edge_of[static_cast<std::size_t>(fused_.observations[k].point)];
-            verdicts_[keyframe.id][static_cast<std::size_t>(own)] = fused_.verdicts[edge];
+            keyframe.verdicts[static_cast<std::size_t>(own)] = fused_.verdicts[edge];
         }
     }
 }
@@ -325,12 +323,12 @@ std::vector<std::int32_t> LocalMapper::trackedClusters() const {
 
 EdgeMap LocalMapper::fusedMap() const {
     const std::map<int, MapKeyframe> all = unpacked();
-    return fuseEdges({all, graph_.clusters(pointersTo(all)), verdicts_}, camera_, options_);
+    return fuseEdges(all, graph_.clusters(pointersTo(all)), camera_, options_);
 }
 
 EdgeMap LocalMapper::keyframeEdges() const {
     const std::map<int, MapKeyframe> all = unpacked();
-    return edgesAsSeen({all, graph_.clusters(pointersTo(all)), verdicts_}, options_.sensor);
+    return edgesAsSeen(all, graph_.clusters(pointersTo(all)), options_.sensor);
 }
 
 }  // namespace roevo

@@ -23,7 +23,6 @@ struct MapUpdate {
     std::vector<EdgeVerdict> verdicts;   ///< of the inserted keyframe's edges; empty while it is the only one
     std::vector<std::int32_t> clusters;  ///< of these edges, see Keyframe::clusters
     int reused = 0;                      ///< old keyframes that took part
-    RefinementResult refinement;
     std::vector<MapRefusal> refusals;
     std::optional<WindowPosterior> posterior;       ///< where older keyframes took part
     double milliseconds = 0, cpu_milliseconds = 0;  ///< of work on it
@@ -31,10 +30,10 @@ struct MapUpdate {
 
 /// How keyframes move when a place is recognised: a whole track to where it belongs, or each as a loop wants.
 struct Correction {
-    std::vector<int> keyframes;          ///< in order
-    std::vector<Pose> motions;           ///< of each, of the world: T_world_camera <- motion * T_world_camera
-    int recognised = -1;                 ///< keyframe; those that move belong to its track from now on
-    std::vector<PoseConstraint> places;  ///< what was recognised
+    std::vector<int> keyframes;  ///< in order
+    std::vector<Pose> motions;   ///< of each, of the world: T_world_camera <- motion * T_world_camera
+    /// What was recognised. Those that move belong to the track of the first one's `from` from now on.
+    std::vector<PoseConstraint> places;
 
     /// Null where the keyframe stays.
     const Pose* motionOf(int keyframe) const {
@@ -95,7 +94,7 @@ class LocalMapper {
 
   private:
     std::vector<const MapKeyframe*> recentOf(const MapKeyframe& newest) const;
-    void unpack(int id);
+    void unpack(MapKeyframe& keyframe) const;
     bool bringToReadout(MapKeyframe& keyframe) const;
     void prepare(const std::vector<const MapKeyframe*>& members);
     void leaveWindow(MapKeyframe& newest);
@@ -110,8 +109,8 @@ class LocalMapper {
     };
     Neighbourhood neighbourhoodOf(const MapKeyframe& keyframe) const;
     void relate(const Neighbourhood& neighbourhood, double radius);
-    void buildWindow(int newest, const std::vector<const MapKeyframe*>& reused);
-    void takePoses(MapUpdate& update);
+    std::vector<const MapKeyframe*> buildWindow(const Neighbourhood& neighbourhood);
+    void takePoses(const std::vector<int>& inliers, MapUpdate& update);
     void refineTogether(const std::vector<const MapKeyframe*>& part, std::size_t fixed,
                         BundleAdjuster& adjuster, MapUpdate& update);
     std::optional<MapRefusal> refusalOf(const WindowKeyframe& view, int inliers) const;
@@ -129,7 +128,6 @@ class LocalMapper {
     std::map<int, MapKeyframe> keyframes_;
     std::map<int, PackedKeyframe> packed_;  ///< the points of those that have left the window once
     double seconds_per_row_ = 0;            ///< see setReadout()
-    std::map<int, std::vector<EdgeVerdict>> verdicts_;  ///< of each keyframe's edges
     std::vector<WindowKeyframe> window_;
     std::vector<RelativePrior> priors_;
     std::vector<PoseConstraint> places_;  ///< that were recognised

@@ -14,34 +14,32 @@ constexpr int kIterations = 3;  ///< that fit the fused points; the poses stay
 
 }  // namespace
 
-void takeKeptVerdicts(const std::map<int, std::vector<EdgeVerdict>>& verdicts,
-                      const std::vector<WindowKeyframe>& window, FusedEdges& edges) {
+void takeKeptVerdicts(const std::vector<WindowKeyframe>& window, FusedEdges& edges) {
     for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
         std::array<int, 4> votes{};
         const auto [first, end] = edges.observationsOfEdge(edge);
         for (std::size_t k = first; k < end; ++k) {
             const MapKeyframe& keyframe =
                 *window[static_cast<std::size_t>(edges.observations[k].slot)].keyframe;
-            const auto kept = verdicts.find(keyframe.id);
-            if (kept == verdicts.end()) continue;
+            if (keyframe.verdicts.empty()) continue;
             const auto own = static_cast<std::size_t>(
                 keyframe.image.edge_of[static_cast<std::size_t>(edges.observations[k].point)]);
-            ++votes[static_cast<std::size_t>(kept->second[own])];
+            ++votes[static_cast<std::size_t>(keyframe.verdicts[own])];
         }
         const auto most = std::max_element(votes.begin(), votes.end());
         edges.verdicts[edge] = static_cast<EdgeVerdict>(most - votes.begin());
     }
 }
 
-EdgeMap fuseEdges(const MapContents& contents, const PinholeCamera& camera, const OdometryOptions& options) {
+EdgeMap fuseEdges(const std::map<int, MapKeyframe>& keyframes, const std::vector<std::vector<int>>& clusters,
+                  const PinholeCamera& camera, const OdometryOptions& options) {
     std::vector<WindowKeyframe> window;
-    for (const auto& [id, keyframe] : contents.keyframes)
-        window.push_back({&keyframe, keyframe.T_world_camera, true});
+    for (const auto& [id, keyframe] : keyframes) window.push_back({&keyframe, keyframe.T_world_camera, true});
     FusedEdges edges;
     EdgeFuser fuser(options.sensor);
-    fuser.fuse(window, contents.clusters, edges);
+    fuser.fuse(window, clusters, edges);
     BundleAdjuster(options.mapping, options.sensor, camera).refine(window, edges, {}, kIterations);
-    takeKeptVerdicts(contents.verdicts, window, edges);
+    takeKeptVerdicts(window, edges);
     EdgeMap map;
     for (std::size_t number = 0; number < edges.views.size(); ++number) {
         MapEdge edge;
@@ -69,18 +67,18 @@ EdgeMap fuseEdges(const MapContents& contents, const PinholeCamera& camera, cons
     return map;
 }
 
-EdgeMap edgesAsSeen(const MapContents& contents, const SensorOptions& sensor) {
+EdgeMap edgesAsSeen(const std::map<int, MapKeyframe>& keyframes,
+                    const std::vector<std::vector<int>>& clusters, const SensorOptions& sensor) {
     EdgeMap map;
     std::vector<Eigen::Vector3d> points;
-    std::size_t k = 0;
-    for (const auto& [id, keyframe] : contents.keyframes) {
-        const std::vector<int>& clusters = contents.clusters[k++];
-        const auto verdicts = contents.verdicts.find(id);
-        for (std::size_t e = 0; e < clusters.size(); ++e) {
+    auto clusters_of = clusters.begin();
+    for (const auto& [id, keyframe] : keyframes) {
+        const std::vector<int>& own = *clusters_of++;
+        for (std::size_t e = 0; e < own.size(); ++e) {
             MapEdge edge;
             edge.keyframe_id = id;
-            edge.cluster = clusters[e];
-            if (verdicts != contents.verdicts.end()) edge.verdict = verdicts->second[e];
+            edge.cluster = own[e];
+            if (!keyframe.verdicts.empty()) edge.verdict = keyframe.verdicts[e];
             points.clear();
             const auto [first, end] = keyframe.image.pointsOf(e);
             for (std::size_t i = first; i < end; ++i) {

@@ -29,8 +29,9 @@ struct MapKeyframe {
     std::vector<Rgb> colours;   ///< of each point
     std::vector<std::int32_t> clusters;  ///< of each edge, see Keyframe::clusters
     std::vector<float> found;  ///< of each edge: share of the frames after it that found it; < 0: not known
-    double median_depth = 0;   ///< m
-    RowMotion row_motion;      ///< that the points were moved with
+    std::vector<EdgeVerdict> verdicts;  ///< of each edge; empty: none yet
+    double median_depth = 0;            ///< m
+    RowMotion row_motion;               ///< that the points were moved with
 
     std::size_t size() const { return image.size(); }
     /// For what only needs an order of magnitude, m.

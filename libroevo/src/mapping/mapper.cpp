@@ -24,16 +24,8 @@ class CollectingMapper : public Mapper {
     void insert(NewKeyframe fresh, double) override {
         const Eigen::Isometry3f T = fresh.T_world_camera.cast<float>();
         const EdgePoints3D& edges = fresh.keyframe.edges;
-        for (int e = 0; e < edges.image.numEdges(); ++e) {
-            MapEdge edge;
-            edge.keyframe_id = fresh.keyframe.id;
-            edge.cluster = static_cast<int>(map_.size());
-            const auto [first, end] = edges.image.pointsOf(e);
-            for (std::size_t i = first; i < end; ++i)
-                edge.points.push_back(T * edges.points.at(i).cast<float>());
-            edge.colours.assign(fresh.colours.data() + first, fresh.colours.data() + end);
-            map_.push_back(std::move(edge));
-        }
+        add(fresh.keyframe.id, edges.image, fresh.colours,
+            [&](std::size_t i) -> Eigen::Vector3f { return T * edges.points.at(i).cast<float>(); });
     }
     void correct(const Correction& correction) override {
         for (MapEdge& edge : map_)
@@ -47,6 +39,19 @@ class CollectingMapper : public Mapper {
     EdgeMap keyframeEdges() override { return map_; }
 
   private:
+    template <class PointOf>
+    void add(int id, const OrganizedEdges& edges, const std::vector<Rgb>& colours, const PointOf& pointOf) {
+        for (int e = 0; e < edges.numEdges(); ++e) {
+            MapEdge edge;
+            edge.keyframe_id = id;
+            edge.cluster = static_cast<int>(map_.size());
+            const auto [first, end] = edges.pointsOf(e);
+            for (std::size_t i = first; i < end; ++i) edge.points.push_back(pointOf(i));
+            edge.colours.assign(colours.data() + first, colours.data() + end);
+            map_.push_back(std::move(edge));
+        }
+    }
+
     PinholeCamera camera_;
     SensorOptions sensor_;
     EdgeMap map_;
@@ -59,17 +64,9 @@ void CollectingMapper::load(const std::vector<KeyframeInfo>& poses, std::vector<
     for (std::size_t k = 0; k < loaded_.size(); ++k) {
         MapKeyframe keyframe;
         loaded_[k].points.unpackInto(keyframe, camera_, sensor_);
-        for (int e = 0; e < keyframe.image.numEdges(); ++e) {
-            MapEdge edge;
-            edge.keyframe_id = static_cast<int>(k);
-            edge.cluster = static_cast<int>(map_.size());
-            const auto [first, end] = keyframe.image.pointsOf(e);
-            for (std::size_t i = first; i < end; ++i) {
-                edge.points.push_back((poses[k].T_world_camera * keyframe.points.at(i)).cast<float>());
-                edge.colours.push_back(keyframe.colours[i]);
-            }
-            map_.push_back(std::move(edge));
-        }
+        add(static_cast<int>(k), keyframe.image, keyframe.colours, [&](std::size_t i) -> Eigen::Vector3f {
+            return (poses[k].T_world_camera * keyframe.points.at(i)).cast<float>();
+        });
     }
 }
 

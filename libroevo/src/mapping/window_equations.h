@@ -2,10 +2,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "mapping/bundle_adjustment.h"
+#include "mapping/edge_fusion.h"
+#include "roevo/camera/pinhole_camera.h"
+#include "roevo/options.h"
 #include "tracking/motion_blur.h"
 
 namespace roevo {
+
+/// Points that make the Hessian of a window; there are more than it needs. All make the gradient, so that
+/// nothing but the step to the optimum is approximate.
+inline constexpr std::size_t kHessianPoints = 1500;
 
 /// The least-squares problem of a window: what its keyframes observe of the fused points, as residuals and as
 /// normal equations of the poses with the points eliminated.

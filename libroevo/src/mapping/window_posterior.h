@@ -8,8 +8,6 @@
 
 namespace roevo {
 
-class WindowEquations;
-
 /// What is not known of a window's newest keyframe once it is refined: position, then orientation, along its
 /// camera's axes.
 struct WindowPosterior {

@@ -28,14 +28,12 @@ void keepLongest(OrganizedEdges& edges, std::size_t most_points) {
     std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept));
     OrganizedEdges out;
     out.clear();
+    std::vector<std::size_t> all;
     for (std::size_t k = 0; k < kept; ++k) {
         const IndexRange own = edges.pointsOf(order[k]);
-        for (std::size_t i = own.first; i < own.end; ++i) {
-            out.addPoint(edges.x[i], edges.y[i], edges.gradient_x[i], edges.gradient_y[i], edges.strength[i]);
-            out.normal_x.push_back(edges.normal_x[i]);
-            out.normal_y.push_back(edges.normal_y[i]);
-        }
-        out.finishEdge();
+        all.resize(own.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        out.addEdge(edges, own.first, all);
     }
     edges = std::move(out);
 }

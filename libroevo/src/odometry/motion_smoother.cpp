@@ -3,8 +3,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "tracking/robust.h"
 #include "tracking/se3.h"
@@ -15,9 +17,10 @@ namespace {
 constexpr double kExactPosition = 1e-5, kExactTurn = 3e-6;  // m, rad: one sigma of what is exact
 constexpr double kFirstVelocity = 2;                        // m/s, rad/s: one sigma
 constexpr double kUsualNoise = 0.1;                         // m^2/s^3, rad^2/s^3: where to begin
-constexpr double kLeastNoise = 1e-6, kMostNoise = 1e4;      // factors of it
-constexpr double kLongestGap = 1;                           // s; across more, a velocity tells nothing
-constexpr int kRounds = 3;                                  // of learning how heavy the tails are
+constexpr double kFineStep = 1.75;                          // factor to which it is learned
+constexpr double kLeastNoise = 1e-7, kMostNoise = 1e3, kLeastJitter = 1e-3;
+constexpr double kLongestGap = 1;  // s; across more, a velocity tells nothing
+constexpr int kRounds = 3;         // of learning how heavy the tails are
 
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 using Matrix12d = Eigen::Matrix<double, 12, 12>;
@@ -37,7 +40,7 @@ class MotionSmoother {
   private:
     double filter();
     void smooth();
-    void learnNoise(double step);
+    void learnNoise(double factor);
     void learnTails();
     Matrix12d transition(std::size_t k) const;
 
@@ -46,6 +49,7 @@ class MotionSmoother {
     std::vector<Matrix6d> covariances_;  ///< of these
     std::vector<double> tails_;          ///< factor of the noise in the time before each sample
     std::array<double, 2> noise_{kUsualNoise, kUsualNoise};  ///< m^2/s^3, rad^2/s^3
+    double jitter_ = 1;  ///< share of the covariances: the rest is common to neighbours
     std::vector<State> predicted_, updated_;
     std::vector<Vector12d> smoothed_;
 };
@@ -89,21 +93,25 @@ double MotionSmoother::filter() {
     for (std::size_t k = 0; k < samples_.size(); ++k) {
         if (k > 0) {
             const double dt = samples_[k].timestamp - samples_[k - 1].timestamp;
-            const Matrix12d F = transition(k);
-            state.mean = (F * state.mean).eval();
-            state.covariance = (F * state.covariance * F.transpose()).eval();
+            state.mean.head<6>() += dt * state.mean.tail<6>();
+            auto pose = state.covariance.topLeftCorner<6, 6>();
+            auto mixed = state.covariance.topRightCorner<6, 6>();
+            auto velocity = state.covariance.bottomRightCorner<6, 6>();
+            pose += dt * (mixed + mixed.transpose()) + dt * dt * velocity;
+            mixed += dt * velocity;
             for (int i = 0; i < 6; ++i) {
                 const double noise = noise_[i < 3 ? 0 : 1] * tails_[k];
-                state.covariance(i, i) += noise * dt * dt * dt / 3;
-                state.covariance(i, i + 6) += noise * dt * dt / 2;
-                state.covariance(i + 6, i) += noise * dt * dt / 2;
-                state.covariance(i + 6, i + 6) += noise * dt;
+                pose(i, i) += noise * dt * dt * dt / 3;
+                mixed(i, i) += noise * dt * dt / 2;
+                velocity(i, i) += noise * dt;
             }
+            state.covariance.bottomLeftCorner<6, 6>() = mixed.transpose();
         }
         predicted_[k] = state;
         if (samples_[k].measured) {
             const Vector6d error = poses_[k] - state.mean.head<6>();
-            const Eigen::LDLT<Matrix6d> factor(state.covariance.topLeftCorner<6, 6>() + covariances_[k]);
+            const Eigen::LDLT<Matrix6d> factor(state.covariance.topLeftCorner<6, 6>() +
+                                               jitter_ * covariances_[k]);
             likelihood -= (error.dot(factor.solve(error)) + factor.vectorD().array().log().sum()) / 2;
             const Eigen::Matrix<double, 12, 6> gain = factor.solve(state.covariance.topRows<6>()).transpose();
             state.mean += gain * error;
@@ -124,26 +132,25 @@ void MotionSmoother::smooth() {
     }
 }
 
-/// Of linear and of angular accelerations, by steps of such powers of ten as long as poses become likelier.
-void MotionSmoother::learnNoise(double step) {
-    const double factor = std::pow(10, step);
+/// Of accelerations, linear and angular, and the share of jitter, in steps of this factor as long as poses
+/// become likelier.
+void MotionSmoother::learnNoise(double factor) {
     double best = filter();
-    for (bool better = true; better;) {
-        better = false;
-        for (double& noise : noise_) {
-            for (const double by : {factor, 1 / factor}) {
-                const double before = noise;
-                noise *= by;
-                const double likelihood = filter();
-                if (likelihood > best && noise > kLeastNoise * kUsualNoise &&
-                    noise < kMostNoise * kUsualNoise) {
-                    best = likelihood;
-                    better = true;
-                    break;
-                }
-                noise = before;
+    const auto improve = [&](double& value, double least, double most) {
+        for (const double by : {factor, 1 / factor}) {
+            const double before = std::exchange(value, std::clamp(value * by, least, most));
+            const double likelihood = value == before ? best : filter();
+            if (likelihood > best) {
+                best = likelihood;
+                return true;
             }
+            value = before;
         }
+        return false;
+    };
+    for (bool better = true; better;) {
+        better = improve(jitter_, kLeastJitter, 1);
+        for (double& noise : noise_) better = improve(noise, kLeastNoise, kMostNoise) || better;
     }
     filter();
 }
@@ -167,10 +174,10 @@ void MotionSmoother::learnTails() {
 }
 
 std::vector<Vector6d> MotionSmoother::corrections() {
-    for (const double step : {1., 0.5, 0.25}) learnNoise(step);
+    for (const double factor : {10., 3., kFineStep}) learnNoise(factor);
     for (int round = 0; round < kRounds; ++round) {
         learnTails();
-        learnNoise(0.25);
+        learnNoise(kFineStep);
     }
     smooth();
     std::vector<Vector6d> corrections;
@@ -194,15 +201,24 @@ void smoothPiece(std::vector<MotionSample>::iterator first, std::vector<MotionSa
 
 }  // namespace
 
+void bridgeMotion(std::vector<MotionSample>& samples) {
+    auto last = samples.begin();
+    for (auto next = samples.begin(); next != samples.end(); ++next) {
+        if (!next->measured) continue;
+        const double duration = next->timestamp - last->timestamp;
+        for (auto between = last + 1; between < next; ++between)
+            between->T_world_camera = interpolate(last->T_world_camera, next->T_world_camera,
+                                                  (between->timestamp - last->timestamp) / duration);
+        last = next;
+    }
+}
+
 void smoothMotion(std::vector<MotionSample>& samples) {
+    bridgeMotion(samples);  // what follows is to first order
     auto piece = samples.begin(), last = piece;
     for (auto next = samples.begin(); next != samples.end(); ++next) {
         if (!next->measured) continue;
-        const double gap = next->timestamp - last->timestamp;
-        for (auto between = last + 1; between < next; ++between)
-            between->T_world_camera = interpolate(last->T_world_camera, next->T_world_camera,
-                                                  (between->timestamp - last->timestamp) / gap);
-        if (gap > kLongestGap) {
+        if (next->timestamp - last->timestamp > kLongestGap) {
             smoothPiece(piece, last + 1);
             piece = next;
         }

@@ -69,7 +69,7 @@ std::vector<MapRefusal> Odometry::refineAll() {
     return impl_->world.refineAll();
 }
 std::vector<StampedPose> Odometry::trajectory() const {
-    return impl_->world.finalTrajectory().frames();
+    return impl_->world.finalTrajectory().frames(impl_->options.motion.smooth);
 }
 std::vector<StampedPose> Odometry::liveTrajectory() const {
     return impl_->world.trajectory().live();

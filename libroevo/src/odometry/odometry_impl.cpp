@@ -34,7 +34,8 @@ FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // 
     outcome.tracking = std::move(tracking);
     if (keyframeIsDue(world.reference(), outcome.tracking, options.keyframe))
         renewReference(outcome);  // Sec. VI
-    settle(outcome);
+    // A tracked pose is what the next one is predicted from
+    motion.measure(frame->timestamp(), outcome.tracking.pose.T_keyframe_camera, outcome.tracking.measured);
     FrameResult result = report(outcome);
     if (!outcome.is_keyframe) candidate = std::move(outcome.tracking);
     return result;
@@ -62,6 +63,8 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
     else if (tracking.matchedRatio() < kFewMatched && options.loss.recognise) {
         Tracking better = searchBetter(tracking, prediction);
         if (better.tracked) return better;
+        tracking.ms_coarse = better.ms_coarse;
+        tracking.ms_fine = better.ms_fine;
     }
     const bool in_doubt = prediction.blind || tracking.searched || tracking.doubtful;
     if (tracking.tracked && in_doubt && options.loss.recognise)
@@ -284,11 +287,6 @@ void Odometry::Impl::trackBack(const Tracking& tracking) {
         backwards.measure(-before.timestamp(), again.pose.T_keyframe_camera, again.measured);
         world.measureAfterwards(before.timestamp(), again.pose);
     }
-}
-
-/// A tracked pose is what the next one is predicted from.
-void Odometry::Impl::settle(const Outcome& outcome) {
-    motion.measure(frame->timestamp(), outcome.tracking.pose.T_keyframe_camera, outcome.tracking.measured);
 }
 
 Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {

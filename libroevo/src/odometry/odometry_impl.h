@@ -57,7 +57,6 @@ struct Odometry::Impl {
     void renewReference(Outcome& outcome);
     void learn(const Tracking& tracking, const Prediction& prediction);
     void trackBack(const Tracking& tracking);
-    void settle(const Outcome& outcome);
     Fault beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for = 0);
     Fault promote(const Frame& promoted, const Tracking& tracked);
     FrameResult report(const Outcome& outcome);

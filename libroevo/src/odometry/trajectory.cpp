@@ -143,7 +143,6 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
     if (beginOfTrack(pose.keyframe) > begin)
         return join(pose.keyframe, changeReference({pose.keyframe, Pose(), {}}, pose, keyframe));
     Correction join;
-    join.recognised = pose.keyframe;
     join.places.push_back({pose.keyframe, keyframe, pose.T_keyframe_camera, pose.covariance()});
     const Pose motion = worldPose(pose) * keyframePose(keyframe).inverse();
     const std::vector<int> tracks = this->tracks();
@@ -214,7 +213,6 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
         if (tracks[static_cast<std::size_t>(loop.to)] == track &&
             contradiction(poses, loop) > kMostContradiction)
             return {};
-    correction.recognised = recognised.front().second.keyframe;
     for (std::size_t id = 0; id < poses.size(); ++id) {
         if (tracks[id] != track || static_cast<int>(id) < held_) continue;
         Pose& placed = keyframes_[id].T_world_camera;
@@ -290,7 +288,14 @@ Pose Trajectory::finalPose(const Frame& frame) const {
     return interpolate(from_parent, from_next, since / (since + left));
 }
 
-std::vector<StampedPose> Trajectory::frames() const {
+/// Whether it became one, itself or when the next frame had come.
+bool Trajectory::isKeyframe(const Frame& frame) const {
+    const auto next = static_cast<std::size_t>(frame.pose.keyframe) + 1;
+    return keyframes_[next - 1].timestamp == frame.timestamp ||
+           (next < keyframes_.size() && keyframes_[next].timestamp == frame.timestamp);
+}
+
+std::vector<StampedPose> Trajectory::frames(bool smooth) const {
     std::vector<StampedPose> poses;
     for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame)});
     std::vector<MotionSample> samples;
@@ -301,13 +306,14 @@ std::vector<StampedPose> Trajectory::frames() const {
         for (std::size_t k = begin; k < frames_.size(); ++k) {
             const Frame& frame = frames_[k];
             if (!areOfOneTrack(frames_[begin].pose.keyframe, frame.pose.keyframe)) break;
-            samples.push_back(
-                {frame.timestamp, poses[k].T_world_camera, frame.pose.covariance(), frame.measured});
+            // A keyframe is where the map has it
+            const Matrix6d covariance = isKeyframe(frame) ? Matrix6d::Zero() : frame.pose.covariance();
+            samples.push_back({frame.timestamp, poses[k].T_world_camera, covariance, frame.measured});
             if (frame.measured) count = samples.size();
             if (!frames_[begin].measured) break;
         }
         samples.resize(count);
-        smoothMotion(samples);
+        (smooth ? smoothMotion : bridgeMotion)(samples);
         for (std::size_t k = 0; k < count; ++k) poses[begin + k].T_world_camera = samples[k].T_world_camera;
     }
     return poses;

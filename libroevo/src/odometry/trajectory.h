@@ -78,8 +78,9 @@ class Trajectory {
     const Pose& keyframePose(int id) const { return keyframes_[static_cast<std::size_t>(id)].T_world_camera; }
     /// Poses of the frames. What the map found to be wrong with the tracked motion to the next keyframe was
     /// wrong with the motions of the frames between in part: tracking errs the more the view differs from the
-    /// keyframe's. Smoothed, and bridged where they were not measured (smoothMotion()).
-    std::vector<StampedPose> frames() const;
+    /// keyframe's. Where they were not measured, they are between those that were.
+    /// @param smooth  see smoothMotion()
+    std::vector<StampedPose> frames(bool smooth = true) const;
     /// As they were known when they were added.
     const std::vector<StampedPose>& live() const { return live_; }
 
@@ -92,6 +93,7 @@ class Trajectory {
     RelativePose inWorld(const RelativePose& pose) const;
     void takePosterior(const WindowPosterior& posterior, int keyframe);
     Pose finalPose(const Frame& frame) const;
+    bool isKeyframe(const Frame& frame) const;
     std::vector<PoseConstraint> constraintsOf(const std::vector<int>& tracks, int track) const;
 
     int held_ = 0;  ///< so many keyframes do not move
