@@ -31,7 +31,9 @@ void set(OdometryOptions& options, const std::string& name, const py::handle& va
 std::string describe(OdometryOptions& options, const std::string& name) {
     const OptionField field = fieldOf(options, name);
     std::string text = field.description + (field.unit.empty() ? "" : ", " + field.unit);
-    if (field.max > field.min)
+    if (std::holds_alternative<bool*>(field.value))
+        text += ", True or False";
+    else if (field.max > field.min)
         text += ", " + std::string(py::str(py::float_(field.min))) + " to " +
                 std::string(py::str(py::float_(field.max)));
     return text;

@@ -16,6 +16,7 @@
 #include "programs/interrupt.h"
 #include "programs/output_folder.h"
 #include "programs/progress.h"
+#include "programs/text.h"
 #include "report/distributions.h"
 #include "roevo_mrpt/config_file.h"
 #include "rows.h"
@@ -108,8 +109,8 @@ void tell(const SequenceComparison& row, double seconds) {
     const MethodRun& run = row.runs[0];
     char what[96];
     if (run.trajectory_file.empty())
-        std::snprintf(what, sizeof what, "%zu frames, %.1f ms per frame (median), ", run.frames,
-                      run.total.median);
+        std::snprintf(what, sizeof what, "%s, %.1f ms per frame (median), ",
+                      counted(run.frames, "frame").c_str(), run.total.median);
     else
         std::snprintf(what, sizeof what, "%zu of %zu frames have a pose, ", run.tracked, run.frames);
     std::fprintf(stderr, "%s, %s: %s\n", row.name.c_str(), run.method.c_str(),

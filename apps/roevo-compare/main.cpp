@@ -58,10 +58,7 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--config", a.config, "Options of ROEVO (.ini), see config_ini/roevo.ini");
     app.add_option("--set", a.sets, "section.key=value: one option on top of the config; may be repeated")
         ->allow_extra_args(false);
-    app.add_option("--first", a.first, "Process at most this many frames of each recording")
-        ->check(CLI::NonNegativeNumber);
-    app.add_option("--skip", a.skip, "Leave out this many frames at the start of each recording")
-        ->check(CLI::NonNegativeNumber);
+    addFrameOptions(app, a.first, a.skip, " of each recording");
     addInputOptions(app, a.choice);
     app.add_option("--timeout", a.timeout, "Seconds after which a run is ended as a failure")
         ->capture_default_str();
@@ -116,6 +113,12 @@ std::vector<MethodInfo> chosenMethods(const std::vector<std::string>& names) {
     return chosen;
 }
 
+void checkSets(const Arguments& a) {
+    for (const std::string& set : a.sets)
+        if (set.rfind("odometry.mode=", 0) == 0)
+            throw UsageError("--set: the mode is each method's own; choose by --methods");
+}
+
 void checkUsage(const Arguments& a) {
     if (a.inputs.empty() && a.report.empty()) throw UsageError("--input or --report is required");
     if (!a.inputs.empty() && !a.report.empty()) throw UsageError("--input and --report exclude each other");
@@ -133,9 +136,7 @@ void checkUsage(const Arguments& a) {
     if (!isNameOfAFolder(a.variant))
         throw UsageError("--variant " + a.variant + ": it cannot be part of a folder's name");
     if (!(a.timeout > 0)) throw UsageError("--timeout must be more than 0 s");
-    for (const std::string& set : a.sets)
-        if (set.rfind("odometry.mode=", 0) == 0)
-            throw UsageError("--set: the mode is each method's own; choose by --methods");
+    checkSets(a);
 }
 
 std::vector<SequenceInput> inputSequences(const Arguments& a) {
@@ -223,6 +224,8 @@ int run(int argc, char** argv) {
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
     if (!a.run_method.empty()) return runAsChild(a);
     if (a.list_methods) {
+        checkSets(a);
+        collectOptions(a.config, a.sets, "");  // so that roevo-batch knows before its first job
         listMethods();
         return 0;
     }

@@ -48,8 +48,9 @@ const auto& alignmentOf(const Settings& settings) {
 
 void print(const JudgedEstimate& estimate, std::size_t num_reference, const Settings& settings) {
     const Evaluation& e = estimate.evaluation;
-    std::printf("%zu of %zu estimated poses have a reference (%zu poses) within %g s; %s", e.pairs.size(),
-                estimate.poses, num_reference, settings.max_dt, alignmentOf(settings).text);
+    std::printf("%zu of %s have a reference (%s) within %g s; %s", e.pairs.size(),
+                counted(estimate.poses, "estimated pose").c_str(), counted(num_reference, "pose").c_str(),
+                settings.max_dt, alignmentOf(settings).text);
     if (alignmentOf(settings).alignment == Alignment::kSim3) std::printf(" (%.6g)", e.scale);
     std::printf("\n\n");
     std::printf("%-22s %10s %10s %10s %10s %10s\n", "", "rmse", "mean", "median", "std", "max");

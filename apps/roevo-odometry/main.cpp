@@ -53,10 +53,7 @@ int run(int argc, char** argv) {
     app.add_option("--covariances", settings.covariances,
                    "Write the 6x6 covariance of every pose to this file, too")
         ->type_name("FILE");
-    app.add_option("--first", settings.first, "Process at most this many frames")
-        ->check(CLI::NonNegativeNumber);
-    app.add_option("--skip", settings.skip, "Leave out this many frames at the start")
-        ->check(CLI::NonNegativeNumber);
+    addFrameOptions(app, settings.first, settings.skip);
     addInputOptions(app, settings.choice);
     app.add_option(
         "--map-in", settings.map_in,

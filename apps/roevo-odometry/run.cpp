@@ -1,5 +1,6 @@
 #include "run.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -241,10 +242,22 @@ RunReport reportOn(const FrameSource& source, const RunSettings& settings) {
     return report;
 }
 
-void printInput(const RunReport& report, const FrameSource& source) {
+// The source names what lies beside it, which one that was given takes the place of.
+std::vector<std::string> notesOn(const FrameSource& source, const GroundTruth& truth, bool given) {
+    std::vector<std::string> notes = source.notes();
+    if (!given) return notes;
+    const auto found = std::find(notes.begin(), notes.end(), source.groundTruth().toText());
+    if (found == notes.end())
+        notes.push_back(truth.toText());
+    else
+        *found = truth.toText();
+    return notes;
+}
+
+void printInput(const RunReport& report, const std::vector<std::string>& notes) {
     std::printf("input       %s (%s), %d x %d, intrinsics from %s\n", report.input.c_str(),
                 report.kind.c_str(), report.camera.width, report.camera.height, report.camera_source.c_str());
-    for (const std::string& note : source.notes()) std::printf("note        %s\n", note.c_str());
+    for (const std::string& note : notes) std::printf("note        %s\n", note.c_str());
     std::fflush(stdout);
 }
 
@@ -284,7 +297,7 @@ RunReport runOdometry(const RunSettings& settings) {
 
     const GroundTruth ground_truth = groundTruthFor(settings.ground_truth, *source);
     report.ground_truth = ground_truth.file;
-    if (!settings.quiet) printInput(report, *source);
+    if (!settings.quiet) printInput(report, notesOn(*source, ground_truth, !settings.ground_truth.empty()));
 
     skipFrames(*source, settings.skip, settings.input);
     processFrames(*source, odometry, settings, report);

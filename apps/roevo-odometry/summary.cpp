@@ -13,6 +13,7 @@
 #include "evaluation/to_json.h"
 #include "programs/memory_peak.h"
 #include "programs/program.h"
+#include "programs/text.h"
 #include "run_report.h"
 
 namespace roevo {
@@ -190,7 +191,9 @@ Json mapOutJson(const RunReport& report) {
 
 Json groundTruthJson(const RunReport& report) {
     if (report.ground_truth.empty()) return nullptr;
-    Json json = {{"file", report.ground_truth}, {"max_dt_s", kDefaultMaxDt}};
+    // Absolute: who reads the summary may be in another folder
+    Json json = {{"file", std::filesystem::absolute(report.ground_truth).string()},
+                 {"max_dt_s", kDefaultMaxDt}};
     if (report.evaluation) {
         json.update(toJson(*report.evaluation));
         json["warning"] = report.scale_warning;
@@ -203,6 +206,10 @@ Json groundTruthJson(const RunReport& report) {
 std::string times(std::size_t count) {
     if (count == 0) return "never";
     return count == 1 ? "once" : std::to_string(count) + " times";
+}
+
+std::string keyframes(int count) {
+    return counted(static_cast<std::size_t>(count), "keyframe");
 }
 
 void printErrors(const Evaluation& e) {
@@ -261,7 +268,7 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
             std::printf("%s%zu %s", separator, count, toString(status));
             separator = ", ";
         }
-    std::printf("; %zu keyframes\n", report.keyframes.size());
+    std::printf("; %s\n", counted(report.keyframes.size(), "keyframe").c_str());
     const std::string initialised = toString(FrameStatus::kInitialised);
     for (const auto& [reason, count] : alikeReasonsOf(report))
         if (reason.compare(0, initialised.size(), initialised) != 0 || count > 1)
@@ -275,11 +282,12 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
             "            trajectory in %zu pieces, the join is not measured: see 'segment' in frames.csv\n",
             losses.pieces);
     if (const FrameResult* frame = report.localised())
-        std::printf("map in      %s, %d keyframes: recognised at keyframe %d, %.2f s after the first frame\n",
-                    report.map_in->file.c_str(), report.map_in->keyframes, report.mapKeyframeOf(*frame),
-                    frame->timestamp - report.frames.front().result.timestamp);
+        std::printf("map in      %s, %s: recognised at keyframe %d, %.2f s after the first frame\n",
+                    report.map_in->file.c_str(), keyframes(report.map_in->keyframes).c_str(),
+                    report.mapKeyframeOf(*frame), frame->timestamp - report.frames.front().result.timestamp);
     if (!report.map_out.file.empty())
-        std::printf("map out     %s, %d keyframes\n", report.map_out.file.c_str(), report.map_out.keyframes);
+        std::printf("map out     %s, %s\n", report.map_out.file.c_str(),
+                    keyframes(report.map_out.keyframes).c_str());
     if (losses.loops_closed > 0) std::printf("loops       %zu closed\n", losses.loops_closed);
     const auto total = stageTimes(report, kTotal);
     std::printf(
@@ -290,10 +298,12 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
             "mapping     %.1f ms per keyframe (mean), beside tracking; all together at the end %.1f s\n",
             meanOf(times), report.final_seconds);
     if (report.dropped > 0)
-        std::printf("dropped     %zu frames came while tracking was busy\n", report.dropped);
+        std::printf("dropped     %s came while tracking was busy\n",
+                    counted(report.dropped, "frame").c_str());
     std::printf("path        %.2f m\n", pathLength(report.trajectory));
-    std::printf("map         %zu edges, %zu points; %zu points of the surface next to them\n",
-                report.map_edges, report.map_points, report.semi_dense_points);
+    std::printf("map         %s, %s; %s of the surface next to them\n",
+                counted(report.map_edges, "edge").c_str(), counted(report.map_points, "point").c_str(),
+                counted(report.semi_dense_points, "point").c_str());
     if (report.evaluation)
         printErrors(*report.evaluation);
     else

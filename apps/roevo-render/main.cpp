@@ -134,9 +134,9 @@ int writeView(const Settings& settings) {
         printWarning(kName,
                      "there is no " + name + " in " + settings.input + "; what it has is not in the view");
     for (const std::string& note : view.notes) printWarning(kName, note);
-    std::printf("%s: %.1f MB, %zu points of edges, %zu of the surface, %zu keyframes%s\n",
-                settings.output.c_str(), static_cast<double>(view.html.size()) / 1e6, view.edge_points,
-                view.surface_points, result.keyframes.size(),
+    std::printf("%s: %.1f MB, %zu points of edges, %zu of the surface, %s%s\n", settings.output.c_str(),
+                static_cast<double>(view.html.size()) / 1e6, view.edge_points, view.surface_points,
+                counted(result.keyframes.size(), "keyframe").c_str(),
                 view_settings.truth.poses.empty() ? "" : ", with ground truth");
     return 0;
 }

@@ -10,6 +10,7 @@
 #include "offscreen.h"
 #include "overlay.h"
 #include "programs/atomic_file.h"
+#include "programs/text.h"
 #include "roevo_mrpt/image_conversions.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "scene_content.h"
@@ -75,15 +76,15 @@ void drawPicture(const PictureSettings& settings) {
         writeMovie(settings.output, size, count, [&](std::size_t i) {
             return draw(turned(view, kTurn * static_cast<double>(i) / static_cast<double>(count)));
         });
-        length = ", " + std::to_string(count) + " pictures";
+        length = ", " + counted(count, "picture");
     } else {
         const cv::Mat picture = draw(view);
         writeAtomically(settings.output, [&](const std::string& path) { writeImageFile(path, picture); });
     }
-    std::printf("%s: %d x %d pixels%s, view %s, layer %s, %zu points%s\n", settings.output.c_str(),
-                size.width, size.height, length.c_str(),
-                settings.from ? "from a point" : settings.view.c_str(), settings.layer.c_str(),
-                content.cloud.size(), settings.legend && drawn == size ? "; too small for a legend" : "");
+    std::printf("%s: %d x %d pixels%s, view %s, layer %s, %s%s\n", settings.output.c_str(), size.width,
+                size.height, length.c_str(), settings.from ? "from a point" : settings.view.c_str(),
+                settings.layer.c_str(), counted(content.cloud.size(), "point").c_str(),
+                settings.legend && drawn == size ? "; too small for a legend" : "");
 }
 
 }  // namespace roevo

@@ -8,6 +8,7 @@
 #include "bar_chart.h"
 #include "coarse_points.h"
 #include "programs/progress.h"
+#include "programs/text.h"
 #include "roevo-compare/report/results.h"
 #include "roevo/odometry.h"
 #include "study.h"

@@ -6,6 +6,7 @@
 
 #include "programs/gnuplot.h"
 #include "programs/progress.h"
+#include "programs/text.h"
 #include "study.h"
 
 namespace roevo {

@@ -6,6 +6,7 @@
 #include "bar_chart.h"
 #include "programs/gnuplot.h"
 #include "programs/progress.h"
+#include "programs/text.h"
 #include "study.h"
 #include "tracking/edge_points.h"
 

@@ -6,6 +6,7 @@
 
 #include "known_view.h"
 #include "programs/progress.h"
+#include "programs/text.h"
 #include "study.h"
 #include "study_source.h"
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "programs/program.h"
+#include "programs/text.h"
 #include "study_source.h"
 
 namespace roevo {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "programs/progress.h"
+#include "programs/text.h"
 #include "study.h"
 
 namespace roevo {

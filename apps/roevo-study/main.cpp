@@ -173,10 +173,7 @@ int run(int argc, char** argv) {
     app.add_option("--gap", settings.gaps, "gaps: how many frames are cut out, one or more numbers")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    app.add_option("--first", settings.first, "Use at most this many frames of each recording")
-        ->check(CLI::NonNegativeNumber);
-    app.add_option("--skip", settings.skip, "Leave out this many frames at the start of each")
-        ->check(CLI::NonNegativeNumber);
+    addFrameOptions(app, settings.first, settings.skip, " of each recording");
     addInputOptions(app, settings.choice);
     app.footer(kFooter);
     if (auto code = parseCommandLine(app, argc, argv)) return *code;

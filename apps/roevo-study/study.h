@@ -130,9 +130,6 @@ void addTable(StudyReport& report, const std::string& folder, const std::string&
 /// Middle value, the mean of the two in the middle where their number is even; none of an empty list.
 std::optional<double> median(std::vector<double> values);
 
-/// "1 frame", "2 frames". @param noun  in the singular
-std::string counted(std::size_t count, const std::string& noun);
-
 /// As printf.
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "programs/text.h"
 #include "recordings/forwarding_source.h"
 
 namespace roevo {

@@ -1,10 +1,18 @@
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "roevo/options.h"
 
+namespace CLI {
+class App;
+}
+
 namespace roevo {
+
+/// The options --first and --skip. @param of  which frames, for the help: " of each recording"; may be empty
+void addFrameOptions(CLI::App& app, std::size_t& first, std::size_t& skip, const std::string& of = "");
 
 /// The options in force: defaults, then the config file, then each `section.key=value`, then the mode.
 /// @param config_file, mode  may be empty

@@ -11,8 +11,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "input/excerpt.h"
 #include "input/regular_file.h"
 #include "programs/byte_order_mark.h"
+#include "programs/text.h"
 #include "recordings/text_list.h"
 
 namespace roevo {
@@ -46,17 +48,47 @@ Values readKeyValues(const std::string& file) {
     std::string text;
     for (int number = 1; std::getline(in, text); number++) {
         text = text.substr(0, text.find('#'));
+        const std::string where = file + ":" + std::to_string(number);
         const auto colon = text.find(':');
-        if (colon == std::string::npos) continue;
+        if (colon == std::string::npos) {
+            if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
+            throw std::runtime_error(where + ": expected 'key: value', found '" + excerpt(text) + "'");
+        }
         std::istringstream key_words(text.substr(0, colon)), value_words(text.substr(colon + 1));
         std::string key;
         key_words >> key;
         Value value;
-        value.where = file + ":" + std::to_string(number);
+        value.where = where;
         for (std::string word; value_words >> word;) value.words.push_back(word);
         values[key] = value;
     }
     return values;
+}
+
+std::vector<std::string> knownKeys() {
+    std::vector<std::string> keys{"depth_scale", "frame_rate", kDepthPose};
+    for (const char* prefix : {"", "depth_"})
+        for (const char* key :
+             {"width", "height", "fx", "fy", "cx", "cy", kFiveTerms.key, kEightTerms.key, kFisheye.key})
+            keys.push_back(std::string(prefix) + key);
+    return keys;
+}
+
+/// An unknown key that is nearly one of those that are absent; else "". Others are the user's own.
+/// @param share  one in so many characters of a key may differ, and one of a short key
+std::string misspelt(const Values& values, const std::vector<std::string>& absent, std::size_t share) {
+    const std::vector<std::string> known = knownKeys();
+    for (const auto& [key, value] : values) {
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        const auto distance = [&name = key](const std::string& other) { return editDistance(name, other); };
+        const auto closest = std::min_element(
+            absent.begin(), absent.end(),
+            [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
+        if (closest != absent.end() &&
+            distance(*closest) <= std::max<std::size_t>(1, closest->size() / share))
+            return value.where + ": unknown key '" + excerpt(key) + "', the closest is '" + *closest + "'";
+    }
+    return {};
 }
 
 std::vector<double> numbers(const Value& value, const std::string& key, std::size_t count) {
@@ -66,6 +98,21 @@ std::vector<double> numbers(const Value& value, const std::string& key, std::siz
     std::vector<double> result;
     for (const std::string& word : value.words) result.push_back(parseNumber(word, value.where));
     return result;
+}
+
+/// @param missing  of the keys that every camera has
+void requireAll(const Values& values, const std::vector<std::string>& missing, const std::string& file) {
+    if (!missing.empty()) {
+        std::string text;
+        for (const std::string& key : missing) text += (text.empty() ? " lacks " : ", ") + key;
+        const std::string likely = misspelt(values, missing, 2);
+        throw std::runtime_error("no intrinsics: " + file + text + (likely.empty() ? "" : "; " + likely));
+    }
+    std::vector<std::string> absent;
+    for (const std::string& key : knownKeys())
+        if (values.count(key) == 0) absent.push_back(key);
+    if (const std::string likely = misspelt(values, absent, 5); !likely.empty())
+        throw std::runtime_error(likely);
 }
 
 /// @param prefix  of the keys: "" or "depth_"
@@ -135,11 +182,11 @@ void readDepthCamera(const Values& values, CameraDescription& out) {
 
 CameraDescription readCameraFile(const std::string& file) {
     const auto values = readKeyValues(file);
-    std::string missing;
+    std::vector<std::string> missing;
     const auto number = [&](const char* key) {
         const auto found = values.find(key);
         if (found != values.end()) return numbers(found->second, key, 1)[0];
-        missing += std::string(missing.empty() ? "" : ", ") + key;
+        missing.emplace_back(key);
         return 0.0;
     };
     CameraDescription out;
@@ -151,7 +198,7 @@ CameraDescription readCameraFile(const std::string& file) {
     camera.cx = number("cx");
     camera.cy = number("cy");
     out.depth_scale = number("depth_scale");
-    if (!missing.empty()) throw std::runtime_error("no intrinsics: " + file + " lacks " + missing);
+    requireAll(values, missing, file);
 
     readLens(values, "", camera);
     if (const std::string fault = camera.check(); !fault.empty())

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "programs/program.h"
+#include "programs/text.h"
 #include "recordings/bags/bag_dataset.h"
 #include "recordings/depth_scale.h"
 #include "recordings/eth3d.h"
@@ -258,10 +259,7 @@ std::string DatasetReader::summary() const {
 
 std::vector<std::string> DatasetReader::notes() const {
     std::vector<std::string> notes = description_.notes;
-    const GroundTruth& truth = groundTruth();
-    if (!truth.file.empty())
-        notes.push_back("ground truth: " + std::to_string(truth.poses.size()) + " poses from " + truth.file +
-                        (truth.note.empty() ? "" : ", " + truth.note));
+    if (const std::string truth = groundTruth().toText(); !truth.empty()) notes.push_back(truth);
     if (!description_.imu_source.empty()) notes.push_back("inertial sensor: " + description_.imu_source);
     return notes;
 }
@@ -288,9 +286,18 @@ bool requireInput(const std::string& input, const DatasetOptions& options) {
     return is_folder;
 }
 
+void checkFrameRate(double chosen, const DatasetDescription& found) {
+    if (!(chosen > 0) || chosen == found.frame_rate) return;
+    throw UsageError("--frame-rate is for images that are numbered, and those of " + found.folder +
+                     (found.frame_rate > 0
+                          ? " have " + plainNumber(found.frame_rate) + " Hz by their layout, " + found.format
+                          : " have times"));
+}
+
 DatasetDescription load(const Format& format, const std::string& folder, const DatasetOptions& options) {
     DatasetDescription out = format.load(folder, options);
     if (const double scale = options.folder.depth_scale; scale > 0) out.depth_scale = scale;
+    checkFrameRate(options.folder.frame_rate, out);
     settleClock(out);
     return out;
 }

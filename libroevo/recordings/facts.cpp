@@ -2,13 +2,14 @@
 
 #include <cstdio>
 
+#include "programs/text.h"
 #include "recordings/lens.h"
 
 namespace roevo {
 
 std::string factsText(std::size_t pairs, const PinholeCamera& camera, const cv::Size& depth, double step,
                       double median_depth) {
-    std::string text = pairs > 0 ? std::to_string(pairs) + " pairs of " : "pairs of ";
+    std::string text = pairs > 0 ? counted(pairs, "pair") + " of " : "pairs of ";
     text += std::to_string(camera.width) + "x" + std::to_string(camera.height);
     if (depth != cv::Size(camera.width, camera.height))
         text += " (depth " + std::to_string(depth.width) + "x" + std::to_string(depth.height) + ")";

@@ -10,6 +10,7 @@
 #include "evaluation/trajectory_io.h"
 #include "input/excerpt.h"
 #include "programs/program.h"
+#include "programs/text.h"
 #include "recordings/bags/message_store.h"
 #include "recordings/dataset_reader.h"
 #include "recordings/depth_scale.h"
@@ -180,7 +181,7 @@ void skipFrames(FrameSource& source, std::size_t count, const std::string& input
     for (std::size_t i = 0; i < count; ++i)
         if (!source.skip())
             throw std::runtime_error("--skip " + std::to_string(count) + ": " + input + " has only " +
-                                     std::to_string(i) + " frames");
+                                     counted(i, "frame"));
 }
 
 GroundTruth groundTruthFor(const std::string& path, const FrameSource& source) {

@@ -162,6 +162,7 @@ DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions&
     } else {
         throw std::runtime_error(folder_name + " has no associations.txt, nor rgb/ and depth/");
     }
+    out.frame_rate = kRate;
     finishFrames(out);
     out.notes.push_back("times are frame numbers at 30 Hz");
     setCamera(findCamera(folder_name, options), out);

@@ -135,6 +135,7 @@ std::string pairByName(const NamedImages& colour_files, const NamedImages& depth
     colours.toSeconds(rate);
     depths.toSeconds(rate);
     matchEntries(colours.images, depths.images, colours.stamps ? max_difference : 0, out);
+    out.frame_rate = colours.stamps ? 0 : rate;
     char text[100];
     std::snprintf(text, sizeof text, "times are frame numbers at %g Hz", rate);
     return colours.stamps ? "times are in the file names" : text;

@@ -28,7 +28,7 @@ void requireImages(const NamedImages& images, const std::string& place);
 /// where neighbours are more than 1000 apart, in the unit that unitOfStamps() tells; such are paired by
 /// nearest time. Smaller ones ("frame_0012", "12.color") are frames at `rate`, and paired where they are the
 /// same.
-/// @param rate  Hz
+/// @param rate  Hz; becomes `out.frame_rate` where names are numbers
 /// @return in words: what the names were taken for
 /// @throws std::runtime_error when nothing pairs, or names hold no numbers or both kinds
 std::string pairByName(const NamedImages& colours, const NamedImages& depths, double rate,

@@ -130,6 +130,7 @@ DatasetDescription loadStray(const std::string& folder_name, const DatasetOption
             folder_name + " has no rgb/: take the images out of rgb.mp4 first: mkdir rgb && ffmpeg -i " +
             "rgb.mp4 -start_number 0 -vsync 0 rgb/%06d.png");
     readPairs(options, out);
+    out.frame_rate = 0;
     const std::string file = (folder / "odometry.csv").string();
     const auto odometry = readOdometry(file);
     std::vector<DatasetEntry> timed;
@@ -190,6 +191,7 @@ DatasetDescription loadRecord3d(const std::string& folder_name, const DatasetOpt
     } catch (const nlohmann::json::exception& error) {
         throw std::runtime_error(where + ": " + error.what());
     }
+    out.frame_rate = rate;
     for (DatasetEntry& entry : out.frames) entry.timestamp = entry.depth_timestamp = entry.timestamp / rate;
     finishFrames(out);
     out.notes.push_back("times are frame numbers at " + std::to_string(rate).substr(0, 5) + " Hz");

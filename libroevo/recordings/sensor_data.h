@@ -24,6 +24,8 @@ struct GroundTruth {
     std::string file;                ///< where it comes from: a file, or the folder of pose files
     std::string note;                ///< in words: what was converted, or why it cannot be used; may be empty
     bool copyable = false;  ///< `file` is a TUM trajectory with exactly these poses: copy, not rewrite
+
+    std::string toText() const;  ///< one line; empty when there is none
 };
 
 }  // namespace roevo

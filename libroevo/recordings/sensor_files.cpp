@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "evaluation/trajectory_io.h"
+#include "programs/text.h"
 #include "recordings/text_list.h"
 
 namespace fs = std::filesystem;
@@ -50,8 +51,7 @@ Columns readColumns(const std::string& file, std::size_t count) {
 }
 
 std::string describe(const std::string& file, const Columns& columns) {
-    std::string text =
-        std::to_string(columns.rows.size()) + " samples of " + fs::path(file).filename().string();
+    std::string text = counted(columns.rows.size(), "sample") + " of " + fs::path(file).filename().string();
     if (columns.left_out > 0)
         text += ", " + std::to_string(columns.left_out) + " line(s) left out, first: " + columns.fault;
     else if (!columns.fault.empty())
@@ -73,6 +73,12 @@ double medianNorm(const std::vector<std::vector<double>>& rows, std::size_t colu
 }
 
 }  // namespace
+
+std::string GroundTruth::toText() const {
+    if (file.empty()) return {};
+    return "ground truth: " + counted(poses.size(), "pose") + " from " + file +
+           (note.empty() ? "" : ", " + note);
+}
 
 GroundTruth readGroundTruth(const std::string& file) {
     GroundTruth truth;

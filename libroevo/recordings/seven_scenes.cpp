@@ -112,6 +112,7 @@ DatasetDescription loadSevenScenes(const std::string& folder, const DatasetOptio
     }
     if (out.frames.empty())
         throw std::runtime_error(folder + " has no frame-000000.color.png with its frame-000000.depth.png");
+    out.frame_rate = kRate;
     finishFrames(out);
     out.notes.push_back("times are frame numbers at 30 Hz");
     out.invalid_depth = kInvalidDepth;

@@ -10,6 +10,7 @@
 #include "programs/interrupt.h"
 #include "programs/program.h"
 #include "programs/progress.h"
+#include "programs/text.h"
 #include "recording.h"
 
 namespace roevo {
@@ -134,7 +135,8 @@ int run(int argc, char** argv) {
     }
     progress.finish();
     recording->finish();
-    std::printf("%s: %d frames of %s, path %.2f m\n", arguments.output.c_str(), simulator.numFrames(),
+    std::printf("%s: %s of %s, path %.2f m\n", arguments.output.c_str(),
+                counted(static_cast<std::size_t>(simulator.numFrames()), "frame").c_str(),
                 options.scene.c_str(), length);
     return 0;
 }

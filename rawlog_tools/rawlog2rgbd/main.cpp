@@ -4,6 +4,7 @@
 
 #include "programs/memory_peak.h"
 #include "programs/program.h"
+#include "programs/text.h"
 #include "rawlog2rgbd/export.h"
 
 namespace roevo {
@@ -17,12 +18,12 @@ void print(const ExportResult& result, const std::string& output) {
         std::printf("left out: %s\n", result.left_out[i].c_str());
     if (result.left_out.size() > kFaultsShown)
         std::printf("left out: %zu more\n", result.left_out.size() - kFaultsShown);
-    std::printf("%s: %zu frames written, %zu left out, depth_scale %.9g\n", output.c_str(), result.frames,
-                result.left_out.size(), result.depth_scale);
-    std::printf("colour: %zu files as they are, %zu written as PNG\n", result.linked_images,
-                result.frames - result.linked_images);
+    std::printf("%s: %s written, %zu left out, depth_scale %.9g\n", output.c_str(),
+                counted(result.frames, "frame").c_str(), result.left_out.size(), result.depth_scale);
+    std::printf("colour: %s as %s, %zu written as PNG\n", counted(result.linked_images, "file").c_str(),
+                result.linked_images == 1 ? "it is" : "they are", result.frames - result.linked_images);
     if (result.resampled > 0)
-        std::printf("depth: %zu frames not as in the rawlog: %s\n", result.resampled,
+        std::printf("depth: %s not as in the rawlog: %s\n", counted(result.resampled, "frame").c_str(),
                     result.depth_note.c_str());
     if (result.imu_samples > 0) std::printf("inertial samples: %zu\n", result.imu_samples);
     if (!result.ground_truth.empty()) std::printf("ground truth: from %s\n", result.ground_truth.c_str());

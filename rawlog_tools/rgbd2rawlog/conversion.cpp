@@ -8,6 +8,7 @@
 #include "output_check.h"
 #include "programs/atomic_file.h"
 #include "programs/memory_peak.h"
+#include "programs/text.h"
 #include "recordings/depth_times.h"
 #include "rgbd2rawlog/verify.h"
 #include "roevo_mrpt/file_copy.h"
@@ -39,10 +40,10 @@ std::unique_ptr<AtomicFile> prepareGroundTruth(const GroundTruth& truth, const s
 }
 
 void printVerified(const VerifyResult& checked) {
-    std::printf(
-        "verified: %zu frames, %zu depth values, %zu inertial samples, stamps, grey images and intrinsics: 0 "
-        "differences\n",
-        checked.frames, checked.depth_values, checked.imu_samples);
+    std::printf("verified: %s, %s, %s, stamps, grey images and intrinsics: 0 differences\n",
+                counted(checked.frames, "frame").c_str(),
+                counted(checked.depth_values, "depth value").c_str(),
+                counted(checked.imu_samples, "inertial sample").c_str());
     if (checked.lowest_psnr > 0)
         std::printf("verified: JPEG images as encoded, %.1f dB or better against the originals\n",
                     checked.lowest_psnr);
@@ -51,9 +52,9 @@ void printVerified(const VerifyResult& checked) {
 void printConverted(const ConversionSettings& settings, const ConvertResult& result,
                     const std::string& label) {
     for (const std::string& line : result.left_out) std::printf("left out: %s\n", line.c_str());
-    std::printf("%s: %zu frames written, %zu left out", settings.output.c_str(), result.written.size(),
-                result.left_out.size());
-    if (!result.imu.empty()) std::printf(", %zu inertial samples", result.imu.size());
+    std::printf("%s: %s written, %zu left out", settings.output.c_str(),
+                counted(result.written.size(), "frame").c_str(), result.left_out.size());
+    if (!result.imu.empty()) std::printf(", %s", counted(result.imu.size(), "inertial sample").c_str());
     if (!label.empty()) std::printf(", sensor label %s", excerpt(label).c_str());
     std::printf("\n");
     if (settings.convert.jpeg_quality > 0)

@@ -69,6 +69,7 @@ TEST_F(Batch, MakesARowOfEachAndOnlyWhatIsMissingWhenItGoesOn) {
     fs::create_directories(data() + "/broken");
     const auto result = run({"--methods", "roevo-ct", "distance-field"});
     ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_NE(result.out.find("\nfiles       " + out() + "/\n"), std::string::npos) << result.out;
     for (const char* method : {"roevo-ct", "distance-field"}) {
         EXPECT_EQ(row("a", method).frames, 4u);
         EXPECT_EQ(row("b__odd___name_", method).frames, 5u);
@@ -224,6 +225,12 @@ TEST_F(Batch, WrongUsage) {
     expectError(run({"--methods", "roevo-xy"}), 2, kName, {"roevo-xy", "roevo-ba"});
     expectError(run({"--data", data()}), 2, kName, {"--data"});
     expectError(run({"--config", folder / "none.ini"}), 1, kName, {"none.ini"});
+    writeFile(folder / "odd.ini", "[edges]\nmin_lenght = 17\n");
+    expectError(run({"--config", folder / "odd.ini"}), 1, kName, {"odd.ini:2", "edges.min_length"});
+    expectError(run({"--set", "foo=1"}), 2, kName, {"--set: unknown option 'foo'", "roevo-batch --help"});
+    expectError(run({"--set", "odometry.mode=ct"}), 2, kName, {"--set", "--methods"});
+    expectError(run({"--baseline", folder / "none"}), 1, kName, {"--baseline", folder / "none"});
+    expectError(run({"--baseline", data()}), 1, kName, {"--baseline", "run.json", data()});
     expectError(run(), 1, kName, {"no recording", data()});
     expectError(run({"--input", folder / "none"}), 1, kName, {folder / "none"});
     EXPECT_FALSE(fs::exists(out()));

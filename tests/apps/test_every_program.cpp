@@ -30,6 +30,16 @@ TEST_P(EveryProgram, WrongUsageIsExitCode2) {
     expectError(test::runProgram(GetParam(), {}), 2, GetParam(), {"required"});
 }
 
+TEST(ProgramsThatTakeFrames, SayWhatANumberOfFramesIs) {
+    for (const char* name : {"roevo-odometry", "roevo-compare", "roevo-study", "roevo-batch"})
+        for (const std::string word : {"abc", "0", "1.5", "99999999999999999999999x"})
+            expectError(test::runProgram(name, {"--first", word}), 2, name,
+                        {"--first: '" + word + "' is not a whole number of 1 or more"});
+    for (const char* name : {"roevo-odometry", "roevo-compare", "roevo-study"})
+        expectError(test::runProgram(name, {"--skip", "abc"}), 2, name,
+                    {"--skip: 'abc' is not a whole number of 0 or more"});
+}
+
 INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram,
                          testing::Values("roevo-odometry", "roevo-eval", "roevo-render", "rgbd2rawlog",
                                          "rawlog2rgbd", "rawlog-simulate", "roevo-compare", "roevo-batch",

@@ -64,6 +64,27 @@ TEST_F(OdometryProgram, GroundTruthMayBeOfEuroc) {
     ASSERT_EQ(result.exit_code, 0) << result.all();
     EXPECT_NEAR(summary()["ground_truth"]["ate_m"]["rmse"], expected["rmse"], 1e-7);
     EXPECT_EQ(summary()["ground_truth"]["pairs"], 10);
+    EXPECT_NE(result.out.find("ground truth: 10 poses from " + (folder_ / "truth.csv") + "\n"),
+              std::string::npos)
+        << result.out;
+    EXPECT_EQ(result.out.find("groundtruth.txt"), std::string::npos) << "it is not used:\n" << result.out;
+}
+
+TEST_F(OdometryProgram, TheSummaryNamesTheGroundTruthForReadersInAnyFolder) {
+    test::writeTumFolder(folder_ / "recording", slidingRecording(5));
+    const fs::path truth = folder_ / "recording/groundtruth.txt";
+    const auto result = run(folder_ / "recording", {"--ground-truth", fs::relative(truth).string()});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    const fs::path named = summary()["ground_truth"]["file"].get<std::string>();
+    EXPECT_TRUE(named.is_absolute()) << named;
+    EXPECT_TRUE(fs::equivalent(named, truth)) << named;
+}
+
+TEST_F(OdometryProgram, OneIsNotSaidAsSeveral) {
+    const auto result = runFrames(slidingRecording(1));
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    for (const char* words : {"1 frame matched", "1 pair of 320x240", "; 1 keyframe\n", "1 pose from"})
+        EXPECT_NE(result.out.find(words), std::string::npos) << words << " in\n" << result.out;
 }
 
 TEST_F(OdometryProgram, BothModesRunAndSayWhichTheyAre) {

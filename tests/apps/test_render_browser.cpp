@@ -35,5 +35,19 @@ TEST_F(RenderPage, WorksInABrowser) {
     EXPECT_LE(number("overflow"), 0) << found;
 }
 
+TEST_F(RenderPage, OffersNoColoursByErrorWithoutErrors) {
+    if (findProgram("chromium").empty())
+        GTEST_SKIP() << "no chromium here (apt-get install chromium): the page is not tried in a browser";
+    ASSERT_EQ(render().exit_code, 0);
+    std::string html = test::readFile(page());
+    const std::string user =
+        "tell({display: getComputedStyle(document.getElementById('colouring')).display});";
+    html.replace(html.rfind("</body>"), 7, "<script>" + test::kTell + user + "</script></body>");
+    test::writeFile(page(), html);
+    const json found = test::foundInBrowser(page(), folder_ / "profile", "800,600");
+    if (found.is_null()) return;
+    EXPECT_EQ(found["display"], "none");
+}
+
 }  // namespace
 }  // namespace roevo

@@ -72,6 +72,15 @@ TEST_F(RenderPage, NeedsNothingFromOutside) {
     EXPECT_LT(html.size(), 1.2e6) << "three.js is 0.88 MB of it";
 }
 
+TEST_F(RenderPage, WhatItsScriptHidesIsNotShownByItsStyle) {
+    ASSERT_EQ(render().exit_code, 0);
+    const std::string html = test::readFile(page());
+    for (const std::string id : {"colouring", "scale"}) {  // those with a display of their own
+        EXPECT_NE(html.find("byId('" + id + "').hidden"), std::string::npos) << id;
+        EXPECT_NE(html.find("#" + id + "[hidden]"), std::string::npos) << id;
+    }
+}
+
 TEST_F(RenderPage, AlignsAllWithTheGroundTruth) {
     // A circle within a larger one: no motion brings them nearer, and every pose errs by the difference
     writeTumTrajectory(folder_ / "truth.txt", test::moved(test::kElsewhere, test::circle(1.1)));

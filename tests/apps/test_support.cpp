@@ -25,6 +25,19 @@ std::size_t filesIn(const TemporaryFolder& folder) {
         std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
 }
 
+TEST(Text, OneIsCountedInTheSingular) {
+    EXPECT_EQ(counted(0, "frame"), "0 frames");
+    EXPECT_EQ(counted(1, "frame"), "1 frame");
+    EXPECT_EQ(counted(2, "frame"), "2 frames");
+}
+
+TEST(Text, EditDistanceIsThatOfLevenshtein) {
+    EXPECT_EQ(editDistance("", ""), 0u);
+    EXPECT_EQ(editDistance("", "abc"), 3u);
+    EXPECT_EQ(editDistance("kitten", "sitting"), 3u);
+    EXPECT_EQ(editDistance("width", "widht"), 2u);
+}
+
 TEST(AtomicFile, AppearsWholeAtCommit) {
     const TemporaryFolder folder;
     AtomicFile file(folder / "a.txt");

@@ -99,6 +99,21 @@ class SameAsTheProgram(unittest.TestCase):
             self.assertTrue((np.linalg.eigvalsh(result.covariance) >= -1e-15).all())
 
 
+class Example(unittest.TestCase):
+    def test_a_folder_with_a_lens_and_depth_that_is_missing_has_the_programs_bytes(self):
+        room, out = folder / "lens", folder / "lens_out"
+        run("rawlog-simulate", "--scene", "livingroom", "--frames", 6, "--size", "320x240", "--layout", "tum",
+            "--distortion", 0.1, 0.02, 0.001, 0.001, 0, "--output", room)
+        depths = read_list(room / "depth.txt")[1:]
+        (room / "depth.txt").write_text("".join(f"{stamp + 0.004:.6f} {name}\n" for stamp, name in depths))
+        run("roevo-odometry", "--input", room, "--output", out, "--quiet")
+        script = pathlib.Path(__file__).resolve().parents[2] / "examples" / "recording.py"
+        made = subprocess.run([sys.executable, "-B", str(script), str(room)], check=True, text=True,
+                              stdout=subprocess.PIPE)
+        self.assertEqual(made.stdout, (out / "trajectory.txt").read_text())
+        self.assertEqual(len(made.stdout.splitlines()), 1 + 5)
+
+
 class Arrays(unittest.TestCase):
     def test_strides_order_of_colours_and_floats_change_nothing(self):
         expected = track()[0].trajectory()
@@ -245,6 +260,7 @@ class OptionsAndCamera(unittest.TestCase):
         self.assertIs(options["loss.recognise"], False)
         self.assertEqual(options["edges.min_length"], 12)
         self.assertIn("px", options.describe("edges.min_length"))
+        self.assertRegex(options.describe("loss.recognise"), ", True or False$")
         self.assertIn("edges.min_length", options)
         self.assertNotIn("edges.min", options)
         for name, value, words in (("edges.min_lenght", 12, "edges.min_length"), ("edges.min_length", 12.5, "12.5"),

@@ -139,6 +139,19 @@ TEST(BadInputs, CommandLinesThatContradictThemselves) {
           "one lens at a time");
     usage({"--intrinsics", "60", "61"}, "--intrinsics");
     usage({"--depth-scale", "0"}, "--depth-scale");
+    usage({"--frame-rate", "10"}, "--frame-rate is for images that are numbered, and those of ");
+}
+
+TEST(BadInputs, AFrameRateThatIsNotUsed) {
+    FolderChoice choice;
+    choice.frame_rate = 10;
+    for (const char* layout : {"tum", "eth3d", "plain"})
+        EXPECT_CONTAINS(openError(SmallDataset(layout).path(), choice), " have times");
+    const SmallDataset icl("icl"), scenes("7scenes");
+    EXPECT_CONTAINS(openError(icl.path(), choice), " have 30 Hz by their layout, icl");
+    EXPECT_CONTAINS(openError(scenes.path(), choice), " have 30 Hz by their layout, 7scenes");
+    choice.frame_rate = 30;
+    EXPECT_EQ(openError(icl.path(), choice), "") << "as it is anyway";
 }
 
 TEST(BadInputs, IntrinsicsThatAreNone) {

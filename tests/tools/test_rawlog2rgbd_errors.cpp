@@ -72,7 +72,7 @@ TEST_F(Rawlog2rgbdErrors, SeveralSensors) {
     expectNothingWritten();
     const ProgramResult outcome = run("o.rawlog", {"--sensor-label", "right"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.all();
-    EXPECT_CONTAINS(outcome.out, "1 frames written");
+    EXPECT_CONTAINS(outcome.out, "1 frame written");
 }
 
 TEST_F(Rawlog2rgbdErrors, Outputs) {

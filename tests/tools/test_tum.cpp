@@ -124,6 +124,29 @@ TEST(Tum, CameraFileErrorsNameTheKey) {
     EXPECT_CONTAINS(openError(folder), "needs 5 number(s), found 3");
 }
 
+TEST(Tum, CameraFileLinesThatAreNotReadAreSaid) {
+    const SmallTumFolder folder;
+    const std::string good = "width: 64\nheight: 48\nfx: 60\nfy: 60\ncx: 31.5\ncy: 23.5\ndepth_scale: 5000\n";
+    const auto errorWith = [&](const std::string& text) {
+        folder.write("camera.txt", text);
+        return openError(folder);
+    };
+    EXPECT_CONTAINS(errorWith("# a camera\n\nfx 517 # px\n" + good),
+                    "camera.txt:3: expected 'key: value', found 'fx 517 '");
+    EXPECT_CONTAINS(
+        errorWith("widht: 64\n" + good.substr(good.find("height"))),
+        "lacks width; " + (folder / "camera.txt") + ":1: unknown key 'widht', the closest is 'width'");
+    EXPECT_CONTAINS(errorWith(good + "depth_to_color: 0 0 0 0 0 0 1\n"),
+                    "camera.txt:8: unknown key 'depth_to_color', the closest is 'depth_to_colour'");
+    EXPECT_CONTAINS(errorWith(good + "distortion_k1_k2_p1_p2: 0.1 0 0 0\n"),
+                    "the closest is 'distortion_k1_k2_p1_p2_k3'");
+    EXPECT_EQ(errorWith("  \r\n# note\n" + good +
+                        "note: of a desk\nframe: 3\ninvalid_depth: 0\ndepth_max: 4\ndistortion_model: none\n"
+                        "sensor_on_robot_x_y_z_yaw_pitch_roll_deg: 0 0 1 0 0 0\n"),
+              "")
+        << "keys of the user's own";
+}
+
 TEST(Tum, PairsThatSomebodyElseMatchedMustBeCloseToo) {
     SmallTumFolder folder(3);
     folder.remove("rgb.txt");

@@ -19,10 +19,6 @@ std::string pageHead(const std::string& title) {
            htmlText(title) + "</title>\n<style>" + pageStyle() + "</style>\n</head>\n<body>\n";
 }
 
-std::string counted(std::size_t n, const std::string& what) {
-    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
-}
-
 std::string remark(const std::string& text) {
     return "<p class=\"remark\">" + htmlText(text) + "</p>\n";
 }

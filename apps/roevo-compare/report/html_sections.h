@@ -10,9 +10,6 @@ namespace roevo {
 /// All up to and with <body>.
 std::string pageHead(const std::string& title = "Comparison of RGB-D odometries");
 
-/// "1 method", "2 methods".
-std::string counted(std::size_t n, const std::string& what);
-
 /// A sentence that must not be missed.
 std::string remark(const std::string& text);
 

@@ -25,7 +25,7 @@ std::string facts(const SequenceComparison& sequence) {
         rejected = std::max(rejected, run.rejected);
     }
     if (frames > 0)
-        parts.push_back(std::to_string(frames) + " frames" +
+        parts.push_back(counted(frames, "frame") +
                         (rejected > 0 ? ", " + std::to_string(rejected) + " of them unusable" : ""));
     if (!sequence.part.empty()) parts.push_back("only " + sequence.part + " of the recording");
     double duration = 0;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "programs/gnuplot.h"
+#include "programs/text.h"
 #include "repeatability/bins.h"
 #include "repeatability/judge.h"
 #include "repeatability/measure.h"
