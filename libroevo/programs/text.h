@@ -36,9 +36,6 @@ std::string stampText(double timestamp);
 /// "1 frame", "2 frames". @param noun  in the singular
 std::string counted(std::size_t count, const std::string& noun);
 
-/// Characters to change, add or leave out until one text is the other.
-std::size_t editDistance(const std::string& a, const std::string& b);
-
 /// Number of characters of a text in UTF-8.
 std::size_t countCharacters(const std::string& text);
 

@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "input/edit_distance.h"
 #include "input/excerpt.h"
 #include "input/regular_file.h"
 #include "programs/byte_order_mark.h"
-#include "programs/text.h"
 #include "recordings/text_list.h"
 
 namespace roevo {

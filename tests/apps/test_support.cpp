@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "input/edit_distance.h"
 #include "programs/atomic_file.h"
 #include "programs/program.h"
 #include "programs/text.h"
