@@ -56,7 +56,7 @@ TEST_F(MapProgram, AMapIsWrittenUsedAndExtended) {
         ASSERT_EQ(used.exit_code, 0) << used.all();
         EXPECT_EQ(used.err.find("warning"), std::string::npos) << used.err;
         EXPECT_NE(used.out.find("map in      " + map() + ", " + std::to_string(keyframes) +
-                                " keyframes: recognised at keyframe "),
+                                (keyframes == 1 ? " keyframe" : " keyframes") + ": recognised at keyframe "),
                   std::string::npos)
             << used.out;
         const auto json = summary();

@@ -19,7 +19,7 @@ namespace {
 using test::readFile;
 using test::runProgram;
 
-constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "859a10d297756f7f";
+constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "955baa2b9b62608a";
 
 /// FNV-1a, as 16 digits.
 std::string checksum(const std::string& bytes) {

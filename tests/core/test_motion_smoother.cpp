@@ -61,8 +61,8 @@ TEST(MotionSmoother, TakesMostOfWhiteNoiseFromASmoothMotion) {
         const auto [position, turn] = errorOf(samples);
         smoothMotion(samples);
         const auto [smooth_position, smooth_turn] = errorOf(samples);
-        EXPECT_LT(smooth_position, 0.65 * position) << seed;
-        EXPECT_LT(smooth_turn, 0.65 * turn) << seed;
+        EXPECT_LT(smooth_position, 0.7 * position) << seed;
+        EXPECT_LT(smooth_turn, 0.7 * turn) << seed;
     }
 }
 

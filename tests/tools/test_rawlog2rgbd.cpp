@@ -126,7 +126,7 @@ TEST(Rawlog2rgbd, RangesAlongTheRayBecomeDepthAndItSaysSo) {
     ASSERT_EQ(outcome.exit_code, 0) << outcome.all();
     EXPECT_CONTAINS(
         outcome.out,
-        "1 frames not as in the rawlog: ranges along the ray turned into depth, rounded to 1/1000 m");
+        "1 frame not as in the rawlog: ranges along the ray turned into depth, rounded to 1/1000 m");
     const cv::Mat depth = openDataset(folder / "back").readDepth(0);
     const PinholeCamera camera = smallCamera();
     for (const auto& [u, v] : {std::pair{0, 0}, {63, 47}, {31, 24}})

@@ -49,7 +49,8 @@ class MotionSmoother {
     std::vector<Matrix6d> covariances_;  ///< of these
     std::vector<double> tails_;          ///< factor of the noise in the time before each sample
     std::array<double, 2> noise_{kUsualNoise, kUsualNoise};  ///< m^2/s^3, rad^2/s^3
-    double jitter_ = 1;  ///< share of the covariances: the rest is common to neighbours
+    /// Share of the covariances of positions and of orientations: the rest is common to neighbours.
+    std::array<double, 2> jitter_{1, 1};
     std::vector<State> predicted_, updated_;
     std::vector<Vector12d> smoothed_;
 };
@@ -89,6 +90,9 @@ double MotionSmoother::filter() {
     State state;
     state.covariance.diagonal().head<6>().setOnes();
     state.covariance.diagonal().tail<6>().setConstant(kFirstVelocity * kFirstVelocity);
+    Vector6d jitter;
+    jitter << Eigen::Vector3d::Constant(std::sqrt(jitter_[0])),
+        Eigen::Vector3d::Constant(std::sqrt(jitter_[1]));
     double likelihood = 0;
     for (std::size_t k = 0; k < samples_.size(); ++k) {
         if (k > 0) {
@@ -111,7 +115,7 @@ double MotionSmoother::filter() {
         if (samples_[k].measured) {
             const Vector6d error = poses_[k] - state.mean.head<6>();
             const Eigen::LDLT<Matrix6d> factor(state.covariance.topLeftCorner<6, 6>() +
-                                               jitter_ * covariances_[k]);
+                                               jitter.asDiagonal() * covariances_[k] * jitter.asDiagonal());
             likelihood -= (error.dot(factor.solve(error)) + factor.vectorD().array().log().sum()) / 2;
             const Eigen::Matrix<double, 12, 6> gain = factor.solve(state.covariance.topRows<6>()).transpose();
             state.mean += gain * error;
@@ -149,7 +153,8 @@ void MotionSmoother::learnNoise(double factor) {
         return false;
     };
     for (bool better = true; better;) {
-        better = improve(jitter_, kLeastJitter, 1);
+        better = false;
+        for (double& share : jitter_) better = improve(share, kLeastJitter, 1) || better;
         for (double& noise : noise_) better = improve(noise, kLeastNoise, kMostNoise) || better;
     }
     filter();

@@ -21,8 +21,7 @@ struct PlacePoint {
 /// What a keyframe is recognised by.
 using PlacePoints = std::vector<PlacePoint>;
 
-/// 400 found no more, with twice the memory and time.
-inline constexpr std::size_t kMaxPlacePoints = 200;
+inline constexpr std::size_t kMaxPlacePoints = 400;
 static_assert(kMaxPlacePoints * sizeof(PlacePoint) <= 40'000, "maps keep these for every keyframe");
 
 }  // namespace roevo
