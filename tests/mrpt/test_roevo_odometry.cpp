@@ -162,6 +162,25 @@ TEST_F(RoevoOdometryTest, TheMapLeavesOutPseudoEdgesTheSimpleMapDoesNot) {
     EXPECT_GT(of_keyframes, kept + pseudo);
 }
 
+TEST_F(RoevoOdometryTest, HowWellAKeyframeIsKnownIsInTheSimpleMapAlsoWhereTheFrameBeforeBecameIt) {
+    odometry_.options.odometry.keyframe.min_overlap = 1;
+    for (int i = 0; i < 3; i++) odometry_.processObservation(*laterScan(*scan_, 0.033 * i));
+    cv::Mat image = scan_->intensityImage.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
+    image.colRange(0, image.cols / 3).setTo(128);
+    scan_->intensityImage = mrpt::img::CImage(image, mrpt::img::DEEP_COPY);
+    const auto sees_less = laterScan(*scan_, 0.1);
+    ASSERT_TRUE(odometry_.processObservation(*sees_less).new_keyframe);
+    ASSERT_LT(odometry_.odometry()->keyframes().back().timestamp, fromMrptTime(sees_less->timestamp));
+    mrpt::maps::CSimpleMap map;
+    odometry_.getCurrentlyBuiltMap(map);
+    ASSERT_EQ(map.size(), 2u);
+    int known = 0;
+    for (const auto& keyframe : map)
+        if (std::dynamic_pointer_cast<mrpt::poses::CPose3DPDFGaussian>(keyframe.pose)->cov.trace() > 0)
+            ++known;
+    EXPECT_EQ(known, 1) << "the first one is the world";
+}
+
 TEST_F(RoevoOdometryTest, TheSemiDenseMapIsTheSurfaceInTheRobotsWorld) {
     EXPECT_TRUE(odometry_.getSemiDenseMap()->empty());
     const CPose3D mounted(0.3, -0.1, 0.8, 0.4, 0.2, -0.1), start(1, 2, 0, 0.7, 0, 0);

@@ -11,6 +11,7 @@
 #include "gz_file.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/time_conversions.h"
+#include "tracking/relative_pose.h"
 
 namespace roevo {
 namespace {
@@ -18,9 +19,7 @@ namespace {
 constexpr int kGzLevel = 1;  // as the rawlogs'; more makes it much slower and hardly smaller
 
 Matrix6d turned(const Matrix6d& covariance, const Eigen::Matrix3d& R) {
-    Matrix6d both = Matrix6d::Zero();
-    both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
-    return both * covariance * both.transpose();
+    return turnedBy(R) * covariance * turnedBy(R).transpose();
 }
 
 }  // namespace

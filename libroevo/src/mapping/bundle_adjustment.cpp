@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tracking/relative_pose.h"
 #include "tracking/se3.h"
 
 namespace roevo {
@@ -39,9 +40,7 @@ void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& win
 
 RelativePrior RelativePrior::between(const std::vector<WindowKeyframe>& window, int from, int to,
                                      const Pose& T_from_to, const Matrix6d& information, double weight) {
-    Matrix6d to_world = Matrix6d::Zero();
-    to_world.topLeftCorner<3, 3>() = to_world.bottomRightCorner<3, 3>() =
-        window[static_cast<std::size_t>(to)].T_world_camera.linear();
+    const Matrix6d to_world = turnedBy(window[static_cast<std::size_t>(to)].T_world_camera.linear());
     return {from, to, T_from_to, weight * to_world * information * to_world.transpose(), weight};
 }
 

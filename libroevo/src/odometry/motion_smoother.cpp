@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tracking/relative_pose.h"
 #include "tracking/robust.h"
 #include "tracking/se3.h"
 
@@ -68,8 +69,7 @@ MotionSmoother::MotionSmoother(std::vector<MotionSample> samples)
             sum.head<3>() += T.translation() - before.translation();
             sum.tail<3>() += turn.angle() * turn.axis();
         }
-        Matrix6d to_world = Matrix6d::Zero();
-        to_world.topLeftCorner<3, 3>() = to_world.bottomRightCorner<3, 3>() = T.linear();
+        const Matrix6d to_world = turnedBy(T.linear());
         poses_.push_back(sum);
         covariances_.push_back(to_world * samples_[k].covariance * to_world.transpose());
         covariances_.back().diagonal() += exact;

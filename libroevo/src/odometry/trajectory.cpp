@@ -18,13 +18,6 @@ constexpr double kStill = 0.02;            // m; less change of view than this i
 constexpr double kRecent = 4.25;     // s; of frames since then it is kept which edges their errors come from
 constexpr double kTypicalDepth = 2;  // m; at this depth a turn by 1 rad changes a view like so many metres
 
-/// Turns a covariance of position and orientation.
-Matrix6d rotated(const Eigen::Matrix3d& R) {
-    Matrix6d both = Matrix6d::Zero();
-    both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
-    return both;
-}
-
 /// Puts what these clusters do to what is independent.
 template <class Chosen>
 void forget(PoseUncertainty& uncertainty, Chosen&& chosen) {
@@ -64,7 +57,7 @@ KeyframeGraph Trajectory::graph() const {
 }
 
 int Trajectory::beginTrack(double timestamp, const Pose& T_world_camera, const Matrix6d& covariance) {
-    const Matrix6d to_camera = rotated(T_world_camera.linear().transpose());
+    const Matrix6d to_camera = turnedBy(T_world_camera.linear().transpose());
     links_.push_back({-1, T_world_camera, {to_camera * covariance * to_camera.transpose(), {}}});
     in_world_.push_back(links_.back().uncertainty);
     const int id = static_cast<int>(keyframes_.size());
@@ -113,7 +106,7 @@ Pose Trajectory::worldPose(const RelativePose& pose) const {
 
 Matrix6d Trajectory::worldCovariance(const RelativePose& pose) const {
     const RelativePose in_world = inWorld(pose);
-    const Matrix6d to_world = rotated(in_world.T_keyframe_camera.linear());
+    const Matrix6d to_world = turnedBy(in_world.T_keyframe_camera.linear());
     return to_world * in_world.covariance() * to_world.transpose();
 }
 

@@ -4,10 +4,15 @@
 
 namespace roevo {
 
+Matrix6d turnedBy(const Eigen::Matrix3d& R) {
+    Matrix6d both = Matrix6d::Zero();
+    both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
+    return both;
+}
+
 Matrix6d carriedTo(const Pose& T_reference_camera) {
     const Eigen::Matrix3d R = T_reference_camera.linear().transpose();
-    Matrix6d carried = Matrix6d::Zero();
-    carried.topLeftCorner<3, 3>() = carried.bottomRightCorner<3, 3>() = R;
+    Matrix6d carried = turnedBy(R);
     carried.topRightCorner<3, 3>() = -R * skew(T_reference_camera.translation());
     return carried;
 }

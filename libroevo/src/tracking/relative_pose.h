@@ -13,6 +13,9 @@ struct RelativePose {
     Matrix6d covariance() const { return uncertainty.covariance(); }
 };
 
+/// What turns errors of position and of orientation to other axes.
+Matrix6d turnedBy(const Eigen::Matrix3d& R);
+
 /// How an error of the frame that a pose is relative to, along that frame's axes, moves the camera, along its
 /// own: an error of the orientation the more the further off.
 Matrix6d carriedTo(const Pose& T_reference_camera);
