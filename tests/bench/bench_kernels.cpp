@@ -70,13 +70,12 @@ BENCHMARK(kernelPatches)->ArgName("avx2")->Arg(0)->Arg(1)->Unit(benchmark::kMicr
 void kernelAccumulate(benchmark::State& state) {
     const kernels::Table* table = chosenTable(state);
     if (table == nullptr) return;
-    const EdgePoints3D& points = room().points;
-    const std::size_t n = points.points.x.size();
+    Points3 points = room().points.points;
+    const std::size_t n = points.size();
     // The time does not depend on the values, as long as none is denormal
     std::vector<std::vector<float>> values;
     for (int i = 0; i < 9; ++i) values.emplace_back(n, 1.0F + 0.1F * static_cast<float>(i));
-    kernels::PointInformation rows{
-        points.points.x.data(), points.points.y.data(), points.points.z.data(), {}, {}};
+    kernels::InformationArrays rows{points.x.data(), points.y.data(), points.z.data(), {}, {}};
     for (std::size_t i = 0; i < 6; ++i) rows.matrix[i] = values[i].data();
     for (std::size_t i = 0; i < 3; ++i) rows.vector[i] = values[6 + i].data();
     kernels::NormalEquations out{};

@@ -24,8 +24,8 @@ class OnePoint {
         for (int k = 0; k < 6; ++k) matrix_[k][0] = matrix[k];
         for (int k = 0; k < 3; ++k) vector_[k][0] = vector[k];
     }
-    PoseSystem system() const {
-        kernels::PointInformation rows{x_, y_, z_, {}, {}};
+    PoseSystem system() {
+        kernels::InformationArrays rows{x_, y_, z_, {}, {}};
         for (int k = 0; k < 6; ++k) rows.matrix[k] = matrix_[k];
         for (int k = 0; k < 3; ++k) rows.vector[k] = vector_[k];
         kernels::NormalEquations equations;

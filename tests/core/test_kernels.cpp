@@ -32,14 +32,14 @@ Projection randomProjection(std::mt19937& random, bool rolling) {
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) m.rotation[3 * r + c] = static_cast<float>(pose.linear()(r, c));
         m.translation[r] = static_cast<float>(pose.translation()[r]);
-        m.velocity[r] = rolling ? static_cast<float>(uniform(random, -5e-5, 5e-5)) : 0;
-        m.turn[r] = rolling ? static_cast<float>(uniform(random, -1e-4, 1e-4)) : 0;
+        m.rows.velocity[r] = rolling ? static_cast<float>(uniform(random, -5e-5, 5e-5)) : 0;
+        m.rows.turn[r] = rolling ? static_cast<float>(uniform(random, -1e-4, 1e-4)) : 0;
     }
     m.fx = 517.3F;
     m.fy = 516.5F;
     m.cx = 318.6F;
     m.cy = 255.3F;
-    m.reference_row = 240;
+    m.rows.reference_row = 240;
     m.last_row = 479;
     return m;
 }
@@ -102,8 +102,8 @@ std::vector<PatchResidual> residuals(const Table& table, const PatchScene& s, fl
 struct Information {
     Points points;
     std::vector<float> matrix[6], vector[3];
-    NormalEquations accumulate(const Table& table) const {
-        PointInformation rows{points.x.data(), points.y.data(), points.z.data(), {}, {}};
+    NormalEquations accumulate(const Table& table) {
+        InformationArrays rows{points.x.data(), points.y.data(), points.z.data(), {}, {}};
         for (int k = 0; k < 6; ++k) rows.matrix[k] = matrix[k].data();
         for (int k = 0; k < 3; ++k) rows.vector[k] = vector[k].data();
         NormalEquations out;
@@ -141,8 +141,8 @@ TEST_P(Kernels, ProjectIsThePlainFormula) {
             const Projection m = randomProjection(random, rolling);
             const Points p = randomPoints(random, 200);
             const Projected out = project(table(), m, p);
-            const Eigen::Vector3d w(m.turn[0], m.turn[1], m.turn[2]),
-                velocity(m.velocity[0], m.velocity[1], m.velocity[2]);
+            const Eigen::Vector3d w(m.rows.turn[0], m.rows.turn[1], m.rows.turn[2]),
+                velocity(m.rows.velocity[0], m.rows.velocity[1], m.rows.velocity[2]);
             Eigen::Matrix3d R;
             for (int k = 0; k < 9; ++k) R(k / 3, k % 3) = m.rotation[k];
             for (std::size_t i = 0; i < 200; ++i) {
@@ -153,7 +153,7 @@ TEST_P(Kernels, ProjectIsThePlainFormula) {
                 if (c.z() > 1e-3) {
                     const double row = m.fy * c.y() / c.z() + m.cy;  // no row lies outside the image
                     const double rows =
-                        std::clamp(row, 0.0, static_cast<double>(m.last_row)) - m.reference_row;
+                        std::clamp(row, 0.0, static_cast<double>(m.last_row)) - m.rows.reference_row;
                     c -= rows * (velocity + w.cross(c));
                 }
                 if (c.z() <= 1e-3) {
@@ -219,7 +219,7 @@ TEST_P(Kernels, PatchesAreBilinearSamplesInTheTurnedFrame) {
 TEST_P(Kernels, AccumulateIsTheSumOfTheJacobians) {
     std::mt19937 random(83);
     for (const std::size_t n : {std::size_t{8}, std::size_t{256}, std::size_t{264}, std::size_t{2000}}) {
-        const Information info = randomInformation(random, n);
+        Information info = randomInformation(random, n);
         const NormalEquations out = info.accumulate(table());
         Matrix6d hessian = Matrix6d::Zero(), size = Matrix6d::Zero();
         Vector6d gradient = Vector6d::Zero(), gradient_size = Vector6d::Zero();
@@ -283,7 +283,7 @@ TEST(KernelTables, Avx2GivesTheSameBytesAsTheBaseline) {
         EXPECT_FALSE(sameBytes(moved[0].x, p.x));
         const PatchScene s = randomPatches(random, 500);
         EXPECT_TRUE(sameBytes(residuals(baseline(), s, 0.9F, 12), residuals(*avx2(), s, 0.9F, 12)));
-        const Information info = randomInformation(random, 1000);
+        Information info = randomInformation(random, 1000);
         const NormalEquations first = info.accumulate(baseline()), second = info.accumulate(*avx2());
         EXPECT_EQ(std::memcmp(&first, &second, sizeof first), 0);
     }

@@ -134,7 +134,6 @@ inline int cellOf(float at, float per_pixel, int count) {
 
 void nearestPoints(const EdgeCells& cells, const float* u, const float* v, const float* nx, const float* ny,
                    std::size_t count, float radius, float min_cosine, std::int32_t* found) {
-    constexpr IntLanes kLane = {0, 1, 2, 3, 4, 5, 6, 7};
     constexpr float kColumns = 1.0F / kCellWidth, kRows = 1.0F / kCellHeight;
     for (std::size_t i = 0; i < count; ++i) {
         const int left = cellOf(u[i] - radius, kColumns, cells.columns),
@@ -199,7 +198,6 @@ inline int countWithin(const Lanes* rows, int count, float least, float most) {
 }
 
 void depthPatch(const DepthSquare& square, const DepthLimits& limits, float u, float v, DepthPatch& out) {
-    constexpr IntLanes kLane = {0, 1, 2, 3, 4, 5, 6, 7};
     const int size = square.size;
     const IntLanes inside = kLane < size;
     Lanes nearest = splat(__FLT_MAX__), farthest{}, rows[kMostPatch];

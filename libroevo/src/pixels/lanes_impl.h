@@ -5,6 +5,7 @@
 constexpr int kLanes = 8;
 typedef float Lanes __attribute__((vector_size(4 * kLanes)));
 typedef std::int32_t IntLanes __attribute__((vector_size(4 * kLanes)));
+constexpr IntLanes kLane = {0, 1, 2, 3, 4, 5, 6, 7};
 
 template <class Vector = Lanes, class Scalar>
 inline Vector load(const Scalar* p) {
@@ -40,6 +41,21 @@ inline IntLanes pickLanes(const std::int32_t* values, IntLanes index) {
     IntLanes out;
     for (int l = 0; l < kLanes; ++l) out[l] = values[index[l]];
     return out;
+#endif
+}
+
+/// The words of four bytes at these places.
+inline IntLanes gather(const std::uint8_t* data, IntLanes index) {
+#ifdef __AVX2__
+    return (IntLanes)_mm256_i32gather_epi32(reinterpret_cast<const int*>(data), (__m256i)index, 1);
+#else
+    IntLanes words;
+    for (int l = 0; l < kLanes; ++l) {
+        std::int32_t word;
+        __builtin_memcpy(&word, data + index[l], sizeof word);
+        words[l] = word;
+    }
+    return words;
 #endif
 }
 

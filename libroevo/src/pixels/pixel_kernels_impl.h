@@ -115,21 +115,6 @@ Ridges ridges(const float* magnitude, std::ptrdiff_t stride, const std::int16_t*
     return {found.all & inside, found.strong & inside};
 }
 
-/// The words of four bytes at these places.
-inline IntLanes gather(const std::uint8_t* data, IntLanes index) {
-#ifdef __AVX2__
-    return (IntLanes)_mm256_i32gather_epi32(reinterpret_cast<const int*>(data), (__m256i)index, 1);
-#else
-    IntLanes words;
-    for (int l = 0; l < kLanes; ++l) {
-        std::int32_t word;
-        __builtin_memcpy(&word, data + index[l], sizeof word);
-        words[l] = word;
-    }
-    return words;
-#endif
-}
-
 /// The lowest bytes of the first `count` lanes, which are 0 to 255.
 inline void storeBytes(IntLanes values, int count, std::uint8_t* out) {
 #ifdef __AVX2__

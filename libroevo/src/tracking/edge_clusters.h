@@ -35,7 +35,7 @@ class EdgeClusters {
   public:
     /// @param cluster_of  of each edge (see Keyframe::clusters)
     void start(const std::vector<std::int32_t>& cluster_of);
-    /// @param matrix,vector  as in kernels::PointInformation, of a point (m)
+    /// @param matrix,vector  as in kernels::InformationArrays, of a point (m)
     void add(std::size_t edge, const float (&matrix)[6], const float (&vector)[3],
              const Eigen::Vector3d& point);
 

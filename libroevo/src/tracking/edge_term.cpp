@@ -252,10 +252,9 @@ void EdgeTerm::depthResiduals() {
 void EdgeTerm::weigh() {
     weight_.resize(matched_.current.size());
     kernels::Fit fit;
-    kernels::best().weighEdges(residual_.data(), sharpness_.data(), matched_.weight.data(), weight_.size(),
-                               static_cast<float>(1 / (scale_ * scale_)), static_cast<float>(options_.chi2),
-                               weight_.data(), fit);
-    inliers_ = fit.inliers;
+    inliers_ = kernels::best().weighEdges(residual_.data(), sharpness_.data(), matched_.weight.data(),
+                                          weight_.size(), static_cast<float>(1 / (scale_ * scale_)),
+                                          static_cast<float>(options_.chi2), weight_.data(), fit);
     slope_ = fit.weights > 0 ? std::max(fit.slopes / fit.weights, kLeastSlope) : 1;
 }
 

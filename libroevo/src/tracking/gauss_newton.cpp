@@ -36,12 +36,9 @@ void InformationRows::scale(const std::vector<float>& factors) {
     for (auto& array : vector_) by(array);
 }
 
-kernels::NormalEquations InformationRows::sum() const {
-    kernels::PointInformation points{points_.x.data(), points_.y.data(), points_.z.data(), {}, {}};
-    for (int a = 0; a < 6; ++a) points.matrix[a] = matrix_[a].data();
-    for (int a = 0; a < 3; ++a) points.vector[a] = vector_[a].data();
+kernels::NormalEquations InformationRows::sum() {
     kernels::NormalEquations equations;
-    kernels::best().accumulate(points, points_.size(), equations);
+    kernels::best().accumulate(arrays(points_.size()), points_.size(), equations);
     return equations;
 }
 

@@ -24,7 +24,7 @@ class InformationRows {
   public:
     /// Room for `count` points, each of which is to be set or left out.
     void reset(std::size_t count);
-    /// @param matrix,vector  as in kernels::PointInformation, of a point at (x, y, z), m
+    /// @param matrix,vector  as in kernels::InformationArrays, of a point at (x, y, z), m
     void set(std::size_t point, const float (&matrix)[6], const float (&vector)[3], float x, float y,
              float z) {
         for (int a = 0; a < 6; ++a) matrix_[a][point] = matrix[a];
@@ -35,7 +35,7 @@ class InformationRows {
     kernels::InformationArrays arrays(std::size_t count);
     /// It contributes nothing.
     void leaveOut(std::size_t point) { set(point, {}, {}, 0, 0, 0); }
-    kernels::NormalEquations sum() const;
+    kernels::NormalEquations sum();
     /// Multiplies what each point contributes by a factor of its own (padded).
     void scale(const std::vector<float>& factors);
     /// Adds each of them to its edge; none before anything was set.

@@ -15,20 +15,18 @@ constexpr std::size_t paddedSize(std::size_t n) {
     return (n + kLanes - 1) / kLanes * kLanes;
 }
 
+/// How a camera moves while one row is read (m, rad; in its own frame), and the row that points refer to.
+struct RowSpeed {
+    float velocity[3], turn[3], reference_row;
+};
+
 /// Rigid motion and ideal pinhole camera, single precision.
 struct Projection {
     float rotation[9];     ///< row-major
     float translation[3];  ///< m
     float fx, fy, cx, cy;  ///< px
-    /// Rolling shutter: how the camera moves while one row is read (m, rad; in its own frame), and the row
-    /// that the motion refers to.
-    float velocity[3], turn[3], reference_row;
-    float last_row;  ///< height - 1, px: no row is later
-};
-
-/// How a camera moves while one row is read (m, rad; in its own frame), and the row that points refer to.
-struct RowSpeed {
-    float velocity[3], turn[3], reference_row;
+    RowSpeed rows;         ///< of a rolling shutter
+    float last_row;        ///< height - 1, px: no row is later
 };
 
 /// Points moved into the camera and projected; u = v = -1e6 where z <= 1e-3 m.
@@ -72,16 +70,10 @@ struct NormalEquations {
     double gradient[6];
 };
 
-struct PointInformation {
-    const float *x, *y, *z;  ///< m
-    const float* matrix[6];  ///< xx xy xz yy yz zz
-    const float* vector[3];
-};
-
-/// The same, to be written.
 struct InformationArrays {
-    float *x, *y, *z;
-    float *matrix[6], *vector[3];
+    float *x, *y, *z;  ///< m
+    float* matrix[6];  ///< xx xy xz yy yz zz
+    float* vector[3];
 };
 
 /// Photometric points at a pose.
@@ -119,10 +111,9 @@ struct CameraMotion {
     float to_sigmas_x, to_sigmas_y;
 };
 
-/// How well residuals fit.
+/// Sums of weights, and of these times studentSlope().
 struct Fit {
-    int inliers;
-    double weights, slopes;  ///< sums of weights, and of these times studentSlope()
+    double weights, slopes;
 };
 
 /// What the read-out time does to matched points: where they are in the keyframe, and how they move there
@@ -156,7 +147,7 @@ struct Table {
     /// The patch of a reference image at (u, v), at least 5 px from its border, in the frame whose first axis
     /// is (axis_x, axis_y).
     void (*referencePatch)(const ImageView& image, float u, float v, float axis_x, float axis_y, Patch& out);
-    void (*accumulate)(const PointInformation& points, std::size_t n, NormalEquations& out);
+    void (*accumulate)(const InformationArrays& points, std::size_t n, NormalEquations& out);
 
     // What follows takes n in whole blocks, too.
 
@@ -187,8 +178,9 @@ struct Table {
     /// Weights of the t-distribution, 0 beyond `chi2`.
     /// @param inverse  one over the squared spread of residuals at rest
     /// @param prior    weight of each point before; 0 in the padding
-    void (*weighEdges)(const float* residual, const float* sharpness, const float* prior, std::size_t n,
-                       float inverse, float chi2, float* weight, Fit& fit);
+    /// @return points within it
+    int (*weighEdges)(const float* residual, const float* sharpness, const float* prior, std::size_t n,
+                      float inverse, float chi2, float* weight, Fit& fit);
     /// Information of tangent residuals and of depths.
     void (*liftEdges)(const MatchedPoints& matches, const ImageEdges& edges, const float* weight,
                       const float* residual, const float* depth_weight, const float* depth_residual,

@@ -100,14 +100,12 @@ kernels::Projection makeProjection(const Pose& T, const PinholeCamera& camera, c
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) projection.rotation[3 * r + c] = static_cast<float>(T.linear()(r, c));
         projection.translation[r] = static_cast<float>(T.translation()[r]);
-        projection.velocity[r] = static_cast<float>(rows.seconds_per_row * rows.velocity[r]);
-        projection.turn[r] = static_cast<float>(rows.seconds_per_row * rows.turn[r]);
     }
     projection.fx = static_cast<float>(camera.fx);
     projection.fy = static_cast<float>(camera.fy);
     projection.cx = static_cast<float>(camera.cx);
     projection.cy = static_cast<float>(camera.cy);
-    projection.reference_row = static_cast<float>(rows.reference_row);
+    projection.rows = speedOf(rows);
     projection.last_row = static_cast<float>(camera.height - 1);
     return projection;
 }

@@ -15,10 +15,10 @@ void project(const Projection& m, const float* px, const float* py, const float*
         Lanes row = m.fy * cy / (ahead ? cz : one) + m.cy;
         row = row > splat(0) ? row : splat(0);
         row = row < splat(m.last_row) ? row : splat(m.last_row);
-        const Lanes rows = row - m.reference_row;
-        const Lanes dx = m.velocity[0] + m.turn[1] * cz - m.turn[2] * cy;
-        const Lanes dy = m.velocity[1] + m.turn[2] * cx - m.turn[0] * cz;
-        const Lanes dz = m.velocity[2] + m.turn[0] * cy - m.turn[1] * cx;
+        const Lanes rows = row - m.rows.reference_row;
+        const Lanes dx = m.rows.velocity[0] + m.rows.turn[1] * cz - m.rows.turn[2] * cy;
+        const Lanes dy = m.rows.velocity[1] + m.rows.turn[2] * cx - m.rows.turn[0] * cz;
+        const Lanes dz = m.rows.velocity[2] + m.rows.turn[0] * cy - m.rows.turn[1] * cx;
         cx -= rows * dx;
         cy -= rows * dy;
         cz -= rows * dz;
@@ -61,19 +61,6 @@ void exchangeMotion(const RowSpeed& from, const RowSpeed& to, const float* row, 
     __builtin_memcpy(px + i, x, rest);
     __builtin_memcpy(py + i, y, rest);
     __builtin_memcpy(pz + i, z, rest);
-}
-
-inline IntLanes gather(const std::uint8_t* data, IntLanes index) {
-#ifdef __AVX2__
-    return (IntLanes)_mm256_i32gather_epi32(reinterpret_cast<const int*>(data), (__m256i)index, 1);
-#else
-    IntLanes out;
-    for (int l = 0; l < kLanes; ++l) {
-        // two neighbours are all that is looked at
-        out[l] = data[index[l]] | (data[index[l] + 1] << 8);
-    }
-    return out;
-#endif
 }
 
 /// Bilinear samples.
@@ -159,7 +146,7 @@ void patches(const ImageView& image, const Patch* patch, const float* u, const f
     }
 }
 
-void accumulate(const PointInformation& p, std::size_t n, NormalEquations& out) {
+void accumulate(const InformationArrays& p, std::size_t n, NormalEquations& out) {
     for (double& value : out.hessian) value = 0;
     for (double& value : out.gradient) value = 0;
     constexpr std::size_t kChunk = 256;  // summed in single precision, chunks in double

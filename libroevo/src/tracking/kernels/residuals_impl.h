@@ -15,9 +15,7 @@ inline double total(Lanes v) {
 /// A member of eight neighbouring structures of floats, the first of which is at `first`.
 template <int kFloats>
 inline Lanes member(const float* first) {
-    const IntLanes index = {0,           kFloats,     2 * kFloats, 3 * kFloats,
-                            4 * kFloats, 5 * kFloats, 6 * kFloats, 7 * kFloats};
-    return pickLanes(first, index);
+    return pickLanes(first, kFloats * kLane);
 }
 
 constexpr int kResidualFloats = sizeof(PatchResidual) / sizeof(float);
@@ -26,18 +24,14 @@ constexpr int kPatchFloats = sizeof(Patch) / sizeof(float);
 void weighPatches(const PatchResidual* residuals, const float* prior, std::size_t n, float inverse,
                   float* weight, Fit& fit) {
     Lanes weights{}, slopes{};
-    IntLanes visible{};
     for (std::size_t i = 0; i < n; i += kLanes) {
         const Lanes value = member<kResidualFloats>(&residuals[i].squared), squared = value * inverse;
-        const IntLanes seen = value >= 0;
-        const Lanes w = seen ? load(prior + i) * (kNu + 1) / (kNu + squared) : Lanes{};
+        const Lanes w = value >= 0 ? load(prior + i) * (kNu + 1) / (kNu + squared) : Lanes{};
         store(weight + i, w);
         weights += w;
         slopes += w * ((kNu - squared) / (kNu + squared));
-        visible -= seen;
     }
-    fit = {0, total(weights), total(slopes)};
-    for (int l = 0; l < kLanes; ++l) fit.inliers += visible[l];
+    fit = {total(weights), total(slopes)};
 }
 
 /// Members of the patches of eight points; past the last one those of the last one.
@@ -47,7 +41,7 @@ struct PatchBlock {
     PatchBlock(const PatchPoints& points, std::size_t i)
         : first(reinterpret_cast<const float*>(points.patches)) {
         const auto last = static_cast<std::int32_t>(points.count) - 1;
-        index = IntLanes{0, 1, 2, 3, 4, 5, 6, 7} + static_cast<std::int32_t>(i);
+        index = kLane + static_cast<std::int32_t>(i);
         index = (index < last ? index : IntLanes{} + last) * kPatchFloats;
     }
     Lanes operator()(std::size_t offset_of_member) const {
@@ -167,8 +161,8 @@ void edgeResiduals(const MatchedPoints& m, const ImageEdges& edges, const Camera
     }
 }
 
-void weighEdges(const float* residual, const float* sharpness, const float* prior, std::size_t n,
-                float inverse, float chi2, float* weight, Fit& fit) {
+int weighEdges(const float* residual, const float* sharpness, const float* prior, std::size_t n,
+               float inverse, float chi2, float* weight, Fit& fit) {
     Lanes weights{}, slopes{};
     IntLanes inliers{};
     for (std::size_t i = 0; i < n; i += kLanes) {
@@ -181,23 +175,10 @@ void weighEdges(const float* residual, const float* sharpness, const float* prio
         slopes += fits ? robust * ((kNu - squared) / (kNu + squared)) : Lanes{};
         inliers -= fits;
     }
-    fit = {0, total(weights), total(slopes)};
-    for (int l = 0; l < kLanes; ++l) fit.inliers += inliers[l];
-}
-
-/// Writes the information w j j^T of a residual with derivative j by the point, and the vector w r j.
-inline void storeRank1(const InformationArrays& out, std::size_t i, Lanes w, Lanes r, Lanes j0, Lanes j1,
-                       Lanes j2) {
-    const Lanes w0 = w * j0, w1 = w * j1, w2 = w * j2;
-    store(out.matrix[0] + i, w0 * j0);
-    store(out.matrix[1] + i, w0 * j1);
-    store(out.matrix[2] + i, w0 * j2);
-    store(out.matrix[3] + i, w1 * j1);
-    store(out.matrix[4] + i, w1 * j2);
-    store(out.matrix[5] + i, w2 * j2);
-    store(out.vector[0] + i, w0 * r);
-    store(out.vector[1] + i, w1 * r);
-    store(out.vector[2] + i, w2 * r);
+    fit = {total(weights), total(slopes)};
+    int sum = 0;
+    for (int l = 0; l < kLanes; ++l) sum += inliers[l];
+    return sum;
 }
 
 /// Derivative of a tangent residual by the point, Eq. (24).
@@ -214,16 +195,30 @@ struct ByPoint {
     }
 };
 
+/// Writes the point, the information w j j^T of a residual with derivative j by it, and the vector w r j.
+inline void storeRank1(const InformationArrays& out, std::size_t i, Lanes w, Lanes r, const ByPoint& by) {
+    const Lanes w0 = w * by.j0, w1 = w * by.j1, w2 = w * by.j2;
+    store(out.x + i, by.x);
+    store(out.y + i, by.y);
+    store(out.z + i, by.z);
+    store(out.matrix[0] + i, w0 * by.j0);
+    store(out.matrix[1] + i, w0 * by.j1);
+    store(out.matrix[2] + i, w0 * by.j2);
+    store(out.matrix[3] + i, w1 * by.j1);
+    store(out.matrix[4] + i, w1 * by.j2);
+    store(out.matrix[5] + i, w2 * by.j2);
+    store(out.vector[0] + i, w0 * r);
+    store(out.vector[1] + i, w1 * r);
+    store(out.vector[2] + i, w2 * r);
+}
+
 void liftEdges(const MatchedPoints& m, const ImageEdges& edges, const float* weight, const float* residual,
                const float* depth_weight, const float* depth_residual, std::size_t n, float fx, float fy,
                const InformationArrays& out) {
     for (std::size_t i = 0; i < n; i += kLanes) {
         const ByPoint by(m, edges, i, fx, fy);
         const Lanes w = load(weight + i), r = load(residual + i);
-        store(out.x + i, by.x);
-        store(out.y + i, by.y);
-        store(out.z + i, by.z);
-        storeRank1(out, i, w, r, by.j0, by.j1, by.j2);
+        storeRank1(out, i, w, r, by);
         // Depths of outliers do not count either
         const Lanes depth = w > 0 ? load(depth_weight + i) : Lanes{};
         store(out.matrix[5] + i, w * by.j2 * by.j2 + depth);
@@ -238,10 +233,7 @@ void liftReadout(const MatchedPoints& m, const ImageEdges& edges, const CameraMo
     for (std::size_t i = 0; i < n; i += kLanes) {
         const ByPoint by(m, edges, i, fx, fy);
         const Lanes w = load(weight + i), r = load(residual + i);
-        store(out.x + i, by.x);
-        store(out.y + i, by.y);
-        store(out.z + i, by.z);
-        storeRank1(out, i, w, r, by.j0, by.j1, by.j2);
+        storeRank1(out, i, w, r, by);
         // Later rows see the point where it has moved to since, in both images
         const Lanes now0 = motion.velocity[0] + motion.turn[1] * by.z - motion.turn[2] * by.y;
         const Lanes now1 = motion.velocity[1] + motion.turn[2] * by.x - motion.turn[0] * by.z;
