@@ -119,12 +119,9 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
         system.hessian.diagonal().array() += kCaution * 1e-6;
         return edges_.linearise({pose, rows.motion(pose), 0}, system);
     };
-    const auto share = [](const auto& value) { return (value / kCaution).eval(); };
     PoseSystem first;
     if (!linearisedAt(T_current_keyframe, shutter, first)) return;
-    if (estimator.worth(share(first.hessian), share(first.readout_mixed), first.readout_hessian / kCaution) <
-        kLeastWorth)
-        return;
+    if (estimator.worth(first / kCaution) < kLeastWorth) return;
     // Those that followed the pose lack more of it (fr1_rpy backwards in tr: 0.59 cm with them, 0.53)
     edges_.renewMatches(T_current_keyframe, shutter.motion(T_current_keyframe));
     GaussNewtonOptions loop;
@@ -139,10 +136,9 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
     PoseSystem last;
     if (!found.complete || !linearisedAt(found.T_current_keyframe, learned, last)) return;
     // As they would be with no read-out time
-    const Vector6d gradient = last.gradient - last.readout_mixed * learned.seconds_per_row;
-    const double own_gradient = last.readout_gradient - last.readout_hessian * learned.seconds_per_row;
-    estimator.add(share(last.hessian), share(last.readout_mixed), last.readout_hessian / kCaution,
-                  share(gradient), own_gradient / kCaution, kFrameRate * shutter.since_previous);
+    last.gradient -= last.readout_mixed * learned.seconds_per_row;
+    last.readout_gradient -= last.readout_hessian * learned.seconds_per_row;
+    estimator.add(last / kCaution, kFrameRate * shutter.since_previous);
 }
 
 }  // namespace roevo

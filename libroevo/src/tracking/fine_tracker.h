@@ -3,6 +3,7 @@
 
 #include "tracking/coarse_tracker.h"
 #include "tracking/edge_term.h"
+#include "tracking/readout_estimator.h"
 
 namespace roevo {
 

@@ -7,6 +7,20 @@
 #include "tracking/se3.h"
 
 namespace roevo {
+namespace {
+
+/// -H^-1 g; zero when that is not usable.
+template <int kSize>
+Eigen::Matrix<double, kSize, 1> stepOf(const Eigen::Matrix<double, kSize, kSize>& H,
+                                       const Eigen::Matrix<double, kSize, 1>& g) {
+    using Step = Eigen::Matrix<double, kSize, 1>;
+    const Eigen::LDLT<Eigen::Matrix<double, kSize, kSize>> factor(H);
+    if (factor.info() != Eigen::Success || !factor.isPositive()) return Step::Zero();
+    const Step step = -factor.solve(g);
+    return step.allFinite() ? step : Step::Zero();
+}
+
+}  // namespace
 
 void InformationRows::reset(std::size_t count) {
     arrays(count);
@@ -53,11 +67,13 @@ void PoseSystem::add(const kernels::NormalEquations& part) {
     }
 }
 
+PoseSystem PoseSystem::operator/(double times) const {
+    return {hessian / times, gradient / times, readout_mixed / times, readout_hessian / times,
+            readout_gradient / times};
+}
+
 Vector6d PoseSystem::solve() const {
-    const Eigen::LDLT<Matrix6d> factor(hessian);
-    if (factor.info() != Eigen::Success || !factor.isPositive()) return Vector6d::Zero();
-    const Vector6d step = -factor.solve(gradient);
-    return step.allFinite() ? step : Vector6d::Zero();
+    return stepOf(hessian, gradient);
 }
 
 Eigen::Matrix<double, 7, 1> PoseSystem::solveWithReadout() const {
@@ -65,10 +81,7 @@ Eigen::Matrix<double, 7, 1> PoseSystem::solveWithReadout() const {
     H << hessian, readout_mixed, readout_mixed.transpose(), readout_hessian;
     Eigen::Matrix<double, 7, 1> g;
     g << gradient, readout_gradient;
-    const Eigen::LDLT<Eigen::Matrix<double, 7, 7>> factor(H);
-    if (factor.info() != Eigen::Success || !factor.isPositive()) return Eigen::Matrix<double, 7, 1>::Zero();
-    const Eigen::Matrix<double, 7, 1> step = -factor.solve(g);
-    return step.allFinite() ? step : Eigen::Matrix<double, 7, 1>::Zero();
+    return stepOf(H, g);
 }
 
 bool PriorTerm::linearise(const Linearisation& at, PoseSystem& system) {

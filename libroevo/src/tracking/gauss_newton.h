@@ -65,6 +65,8 @@ struct PoseSystem {
     double readout_hessian = 0, readout_gradient = 0;
 
     void add(const kernels::NormalEquations& part);
+    /// The same solution, known so many times less well.
+    PoseSystem operator/(double times) const;
     /// The Gauss-Newton step (t, phi); zero when the system is not usable.
     Vector6d solve() const;
     /// The step (t, phi, seconds per row).

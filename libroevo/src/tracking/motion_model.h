@@ -2,9 +2,8 @@
 #include <optional>
 
 #include "roevo/options.h"
-#include "tracking/gauss_newton.h"
 #include "tracking/photometric.h"
-#include "tracking/rolling_shutter.h"
+#include "tracking/readout_estimator.h"
 
 namespace roevo {
 

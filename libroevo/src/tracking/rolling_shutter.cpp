@@ -1,8 +1,6 @@
 #include "tracking/rolling_shutter.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <cmath>
 
 namespace roevo {
 
@@ -70,29 +68,6 @@ RollingShutter RollingShutter::of(const RowMotion& rows) {
     shutter.earlier_velocity = rows.velocity;
     shutter.earlier_turn = rows.turn;
     return shutter;
-}
-
-void ReadoutEstimator::add(const Matrix6d& pose_information, const Vector6d& mixed, double own,
-                           const Vector6d& pose_gradient, double own_gradient, double frames) {
-    const Eigen::LDLT<Matrix6d> factor(pose_information);
-    if (factor.info() != Eigen::Success || !factor.isPositive()) return;
-    const Vector6d eliminated = factor.solve(mixed);
-    const double information = own - mixed.dot(eliminated);
-    const double gradient = own_gradient - eliminated.dot(pose_gradient);
-    if (!(information > 0) || !std::isfinite(gradient)) return;
-    const double kept = std::pow(memory_, frames);
-    information_ = kept * information_ + information;
-    vector_ = kept * vector_ - gradient;
-}
-
-double ReadoutEstimator::worth(const Matrix6d& pose_information, const Vector6d& mixed, double own) const {
-    const Eigen::LDLT<Matrix6d> factor(pose_information);
-    if (factor.info() != Eigen::Success || !factor.isPositive()) return 0;
-    return (own - mixed.dot(factor.solve(mixed))) / (prior_ + information_);
-}
-
-double ReadoutEstimator::sigma() const {
-    return 1 / std::sqrt(prior_ + information_);
 }
 
 kernels::Projection makeProjection(const Pose& T, const PinholeCamera& camera, const RowMotion& rows) {

@@ -40,10 +40,6 @@ struct RowMotion {
     Eigen::Vector3d toReference(const Eigen::Vector3d& point, double row) const {
         return point - (row - reference_row) * seconds_per_row * pointVelocity(point);
     }
-    /// What another motion's toReference() would give, of a point that this one's gave (to first order).
-    Eigen::Vector3d exchange(const Eigen::Vector3d& point, double row, const RowMotion& other) const {
-        return other.toReference(point, row) + (row - reference_row) * seconds_per_row * pointVelocity(point);
-    }
     /// The same motion with another read-out time.
     RowMotion at(double other_seconds_per_row) const {
         return {velocity, turn, other_seconds_per_row, reference_row};
@@ -54,6 +50,7 @@ struct RowMotion {
 /// `to` would have brought them. A motion that would bring a point to the camera is none: such a point stays.
 void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vector<float>& rows,
                     std::size_t count, Points3& points);
+
 /// Images whose rows are read one after the other while the camera moves. The motion follows from the pose
 /// itself and the previous frame's.
 struct RollingShutter {
@@ -83,28 +80,5 @@ kernels::Projection makeProjection(const Pose& T_current_keyframe, const Pinhole
 /// Moves padded points of a keyframe into a camera and projects them.
 void project(const Points3& points, const Pose& T_current_keyframe, const PinholeCamera& camera,
              const RowMotion& rows, ProjectedPoints3& out);
-
-/// Least squares for the one number that all frames share: seconds per row. Linear, because a small read-out
-/// time moves points in proportion; each frame adds what its pose leaves undetermined (Schur complement).
-class ReadoutEstimator {
-  public:
-    /// @param sigma  of the prior about zero, seconds per row
-    /// @param memory  share of the evidence that is kept from frame to frame of 30 Hz: frames tracked from
-    /// one
-    ///                keyframe share its errors, so that many of them teach hardly more than one
-    ReadoutEstimator(double sigma, double memory) : prior_(1 / (sigma * sigma)), memory_(memory) {}
-
-    /// One frame's normal equations in the pose and the read-out time, both taken from zero read-out time.
-    /// @param frames  of 30 Hz since the last one
-    void add(const Matrix6d& pose_information, const Vector6d& mixed, double own,
-             const Vector6d& pose_gradient, double own_gradient, double frames = 1);
-    double secondsPerRow() const { return vector_ / (prior_ + information_); }
-    double sigma() const;
-    /// What a frame would add to what is known, in proportion to it.
-    double worth(const Matrix6d& pose_information, const Vector6d& mixed, double own) const;
-
-  private:
-    double prior_, memory_, information_ = 0, vector_ = 0;
-};
 
 }  // namespace roevo
