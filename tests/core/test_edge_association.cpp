@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 240, kSpan = 4;
 constexpr double kRadius = 6;
-const Eigen::Vector2f kNoTurn(1, 0);
+const PinholeCamera kCamera{kWidth, kHeight, 260, 260, 160, 120, {}};
 
 OrganizedEdges none() {
     OrganizedEdges edges;
@@ -41,21 +41,21 @@ OrganizedEdges line(double u, double v, int count, double degrees = 0, int side 
     return edges;
 }
 
-/// Associates `reference`, shifted by `shift`, with `current`.
+/// Associates `reference`, shifted by `shift` and with its normals turned, with `current`.
 EdgeMatches match(OrganizedEdges reference, OrganizedEdges current,
                   const FineOptions& options = FineOptions(), const Eigen::Vector2f& shift = {0, 0},
-                  const Eigen::Vector2f& turn = kNoTurn) {
+                  double turn_deg = 0) {
     computeNormals(reference, kSpan);
     computeNormals(current, kSpan);
     EdgeGrid grid;
     grid.build(current, kWidth, kHeight);
-    std::vector<float> u = reference.x, v = reference.y;
-    for (auto& value : u) value += shift.x();
-    for (auto& value : v) value += shift.y();
-    EdgeAssociator associator(options);
+    ProjectedPoints3 projected;
+    for (const float x : reference.x) projected.u.push_back(x + shift.x());
+    for (const float y : reference.y) projected.v.push_back(y + shift.y());
+    const Pose turn(Eigen::AngleAxisd(turn_deg * kDegree, Eigen::Vector3d::UnitZ()));
+    EdgeAssociator associator(kCamera, options, kSpan);
     EdgeMatches matches;
-    associator.associate(reference, u.data(), v.data(), turn, kSpan, current, grid, kWidth, kHeight, kRadius,
-                         matches);
+    associator.associate(reference, projected, turn, current, grid, kRadius, matches);
     EXPECT_EQ(matches.reference.size(), matches.current.size());
     return matches;
 }
@@ -107,7 +107,7 @@ TEST(EdgeAssociation, TheTurnCarriesTheReferencesNormals) {
     OrganizedEdges turned = line(100, 60, 80);
     std::reverse(turned.x.begin(), turned.x.end());
     const OrganizedEdges current = line(100, 61, 80, 0, -1);
-    EXPECT_EQ(match(turned, current, FineOptions(), {0, 0}, {-1, 0}).size(), 80U);
+    EXPECT_EQ(match(turned, current, FineOptions(), {0, 0}, 180).size(), 80U);
     EXPECT_EQ(match(turned, current).size(), 0U);
 }
 

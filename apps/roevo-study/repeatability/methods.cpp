@@ -7,7 +7,6 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "edges/edge_depth.h"
-#include "tracking/photometric.h"
 
 namespace roevo {
 namespace {
@@ -73,11 +72,10 @@ EdgeLinks associateEdges(const FeatureFrame& from, const FeatureFrame& current, 
         fine.vote_ratio = 0;
         fine.min_votes = 1;
     }
-    EdgeAssociator associator(fine);
+    EdgeAssociator associator(camera, fine, options.edges.tangent_span);
     EdgeMatches matches;
-    associator.associate(edges.image, projected.u.data(), projected.v.data(), imageRotation(T_current_from),
-                         options.edges.tangent_span, current.lifted.image, current.lifted_grid, camera.width,
-                         camera.height, fine.final_radius, matches);
+    associator.associate(edges.image, projected, T_current_from, current.lifted.image, current.lifted_grid,
+                         fine.final_radius, matches);
     EdgeLinks links(static_cast<std::size_t>(edges.image.numEdges()));
     for (std::size_t k = 0; k < matches.size(); ++k)
         links[static_cast<std::size_t>(edges.image.edge_of[static_cast<std::size_t>(matches.reference[k])])]
@@ -99,11 +97,11 @@ EdgeLinks chain(const EdgeLinks& first, const EdgeLinks& second) {
 }
 
 DisjointSets::DisjointSets(const PinholeCamera& camera, const OdometryOptions& options)
-    : camera_(camera.undistorted()), options_(options), graph_(options.fine, 3) {}
+    : camera_(camera.undistorted()), options_(options), graph_(camera_, options.fine) {}
 
 void DisjointSets::insert(const FeatureFrame& frame, bool keyframe) {
     if (!last_stays_) {
-        graph_.remove(keyframes_.back().id);
+        graph_.setLinks(keyframes_.back().id, {});
         keyframes_.pop_back();
     }
     last_stays_ = keyframe;
@@ -119,7 +117,7 @@ void DisjointSets::insert(const FeatureFrame& frame, bool keyframe) {
     const auto window = static_cast<std::size_t>(options_.mapping.window);
     for (std::size_t i = keyframes_.size() - 1; i > 0 && others.size() + 1 < window; --i)
         others.push_back(&keyframes_[i - 1]);
-    graph_.insert(keyframes_.back(), others, camera_, options_.fine.final_radius);
+    graph_.insert(keyframes_.back(), others, options_.fine.final_radius);
     std::vector<const MapKeyframe*> all;
     for (const MapKeyframe& member : keyframes_) all.push_back(&member);
     clusters_ = graph_.clusters(all);
@@ -145,7 +143,7 @@ void DisjointSets::forgetBefore(std::size_t number) {
     // The window is needed to relate new keyframes
     const auto window = static_cast<std::size_t>(options_.mapping.window);
     while (keyframes_.size() > window && keyframes_.front().id < static_cast<int>(number)) {
-        graph_.remove(keyframes_.front().id);
+        graph_.setLinks(keyframes_.front().id, {});
         keyframes_.erase(keyframes_.begin());
     }
 }

@@ -1,13 +1,11 @@
 #include "mapping/covisibility.h"
 
-#include <algorithm>
 #include <limits>
 
-#include "tracking/photometric.h"
-
 namespace roevo {
-
 namespace {
+
+constexpr int kTangentSpan = 3;  ///< points of thinned edges to each side
 
 FineOptions withAllPoints(FineOptions options) {
     options.max_points = std::numeric_limits<int>::max();
@@ -16,25 +14,24 @@ FineOptions withAllPoints(FineOptions options) {
 
 }  // namespace
 
-CovisibilityGraph::CovisibilityGraph(const FineOptions& fine, int span)
-    : options_(withAllPoints(forThinned(fine))), associator_(options_), span_(span) {}
+CovisibilityGraph::CovisibilityGraph(const PinholeCamera& camera, const FineOptions& fine)
+    : camera_(camera), associator_(camera, withAllPoints(forThinned(fine)), kTangentSpan) {}
 
 void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<const MapKeyframe*>& others,
-                               const PinholeCamera& camera, double radius) {
+                               double radius) {
     auto& of_current = links_[current.id];
     std::vector<char> associated(static_cast<std::size_t>(current.image.numEdges()), 0);
     constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
     for (const MapKeyframe* other : others) {
         const Pose T_other_current = other->T_world_camera.inverse() * current.T_world_camera;
-        project(current.points, T_other_current, camera, RowMotion(), projected_);
+        project(current.points, T_other_current, camera_, RowMotion(), projected_);
         for (std::size_t i = 0; i < current.size(); ++i) {
             if (associated[static_cast<std::size_t>(current.image.edge_of[i])] != 0)
                 projected_.u[i] = kNowhere;
         }
-        grid_.build(other->image, camera.width, camera.height);
-        associator_.associate(current.image, projected_.u.data(), projected_.v.data(),
-                              imageRotation(T_other_current), span_, other->image, grid_, camera.width,
-                              camera.height, radius, matches_);
+        grid_.build(other->image, camera_.width, camera_.height);
+        associator_.associate(current.image, projected_, T_other_current, other->image, grid_, radius,
+                              matches_);
         Links found{other->id, {}};
         std::vector<Link>& links = found.links;
         // Pairs come in the order of the current edges
@@ -58,29 +55,9 @@ void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<con
     }
 }
 
-void CovisibilityGraph::remove(int keyframe) {
-    links_.erase(keyframe);
-    for (auto& [id, groups] : links_) {
-        groups.erase(std::remove_if(groups.begin(), groups.end(),
-                                    [&](const Links& group) { return group.other == keyframe; }),
-                     groups.end());
-    }
-}
-
 std::vector<CovisibilityGraph::Links> CovisibilityGraph::linksOf(int keyframe) const {
     const auto found = links_.find(keyframe);
     return found == links_.end() ? std::vector<Links>() : found->second;
-}
-
-int CovisibilityGraph::sharedPoints(int a, int b) const {
-    const auto found = links_.find(a);
-    if (found == links_.end()) return 0;
-    int points = 0;
-    for (const Links& group : found->second) {
-        if (group.other != b) continue;
-        for (const Link& link : group.links) points += link.points;
-    }
-    return points;
 }
 
 std::vector<std::vector<int>> CovisibilityGraph::clusters(

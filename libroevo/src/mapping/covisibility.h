@@ -10,22 +10,15 @@
 namespace roevo {
 
 /// Which edges of keyframes show the same edge of the world (Sec. VI-A, Algorithms 1 and 2). The graph keeps
-/// the associations; clusters of any set of keyframes are the disjoint sets of the associations among them,
-/// so that a keyframe that leaves takes all that refers to it along.
+/// the associations; clusters of any set of keyframes are the disjoint sets of the associations among them.
 class CovisibilityGraph {
   public:
-    /// @param span  points before and after that tangents are taken between
-    CovisibilityGraph(const FineOptions& fine, int span);
+    CovisibilityGraph(const PinholeCamera& camera, const FineOptions& fine);
 
     /// Inserts a keyframe: associates its edges with those of `others`, in that order (the newest first); an
     /// edge once associated is not associated again, and one that finds several fragments joins them. May be
     /// called again with keyframes of another time: they are related on their own.
-    void insert(const MapKeyframe& current, const std::vector<const MapKeyframe*>& others,
-                const PinholeCamera& camera, double radius);
-    void remove(int keyframe);
-
-    /// Points of `a`'s edges that were associated with `b`, where a is the newer; 0 when unknown.
-    int sharedPoints(int a, int b) const;
+    void insert(const MapKeyframe& current, const std::vector<const MapKeyframe*>& others, double radius);
 
     /// For every edge of `keyframes`, the index of its cluster, counted from 0 in the order of first
     /// appearance.
@@ -46,9 +39,8 @@ class CovisibilityGraph {
     void setLinks(int keyframe, std::vector<Links> links) { links_[keyframe] = std::move(links); }
 
   private:
-    FineOptions options_;
+    PinholeCamera camera_;
     EdgeAssociator associator_;
-    int span_;
     std::map<int, std::vector<Links>> links_;  // by the newer keyframe
     EdgeGrid grid_;
     EdgeMatches matches_;

@@ -33,7 +33,7 @@ std::vector<const MapKeyframe*> pointersTo(const std::map<int, MapKeyframe>& key
 LocalMapper::LocalMapper(const PinholeCamera& camera, const OdometryOptions& options)
     : camera_(camera),
       options_(options),
-      graph_(options.fine, 3),
+      graph_(camera, options.fine),
       fuser_(options.sensor),
       adjuster_(options.mapping, options.sensor, camera),
       judge_(options.mapping, options.sensor, camera) {}
@@ -128,8 +128,8 @@ LocalMapper::Neighbourhood LocalMapper::neighbourhoodOf(const MapKeyframe& keyfr
 /// As they are now; what was related before is forgotten.
 void LocalMapper::relate(const Neighbourhood& neighbourhood, double radius) {
     graph_.setLinks(neighbourhood.of->id, {});
-    graph_.insert(*neighbourhood.of, neighbourhood.recent, camera_, radius);
-    graph_.insert(*neighbourhood.of, neighbourhood.nearby, camera_, radius);
+    graph_.insert(*neighbourhood.of, neighbourhood.recent, radius);
+    graph_.insert(*neighbourhood.of, neighbourhood.nearby, radius);
 }
 
 /// @return its members

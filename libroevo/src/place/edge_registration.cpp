@@ -43,7 +43,7 @@ EdgeRegistrar::EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions&
     : ideal_(camera.undistorted()),
       options_(widened(scaledTo(camera, options), camera.pixelScale(), thinned)),
       term_(camera, options_),
-      associator_(options_.fine) {}
+      associator_(ideal_, options_.fine, options_.edges.tangent_span) {}
 
 EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Frame& frame,
                                               const EdgePoints3D& frame_edges, const Pose& T_start,
@@ -82,9 +82,8 @@ void EdgeRegistrar::lookBack(const Keyframe& keyframe, const EdgePoints3D& frame
     const Pose T_keyframe_frame = out.T_frame_keyframe.inverse();
     project(frame_edges.points, T_keyframe_frame, ideal_, RowMotion(), projected_);
     grid_.build(keyframe.edges.image, ideal_.width, ideal_.height);
-    associator_.associate(frame_edges.image, projected_.u.data(), projected_.v.data(),
-                          imageRotation(T_keyframe_frame), options_.edges.tangent_span, keyframe.edges.image,
-                          grid_, ideal_.width, ideal_.height, options_.fine.final_radius, matches_);
+    associator_.associate(frame_edges.image, projected_, T_keyframe_frame, keyframe.edges.image, grid_,
+                          options_.fine.final_radius, matches_);
     out.frame_matched = matches_.matchedRatio();
     out.visible = std::min(term_.matches().visibleShare(), matches_.visibleShare());
     int agreed = 0;

@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edges/canny.h"
-#include "roevo/types.h"
+#include "tracking/se3.h"
 
 namespace roevo {
-void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, const float* v,
-                               const Eigen::Vector2f& turn, int span, const OrganizedEdges& current,
-                               const EdgeGrid& grid, int width, int height, double radius, EdgeMatches& out) {
+
+void EdgeAssociator::associate(const OrganizedEdges& reference, const ProjectedPoints3& projected,
+                               const Pose& T_current_reference, const OrganizedEdges& current,
+                               const EdgeGrid& grid, double radius, EdgeMatches& out) {
     const float margin = EdgeMask::kBorder;
-    const float max_u = static_cast<float>(width) - 1 - margin,
-                max_v = static_cast<float>(height) - 1 - margin;
+    const std::vector<float>&u = projected.u, &v = projected.v;
+    const Eigen::Vector2f turn = imageRotation(T_current_reference);
     stride_ = strideFor(reference.size(), options_.max_points);
-    const auto reach = static_cast<std::size_t>(span);
     const std::size_t most = reference.size() / stride_ + static_cast<std::size_t>(reference.numEdges());
     for (auto* values :
          {&queries_.u, &queries_.v, &queries_.normal_x, &queries_.normal_y, &side_x_, &side_y_})
@@ -29,8 +28,8 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const float* u, 
         for (std::size_t i = own.first + (stride_ / 2 + stride_ - own.first % stride_) % stride_; i < own.end;
              i += stride_) {
             ++out.looked_up_points;
-            if (!(u[i] >= margin && v[i] >= margin && u[i] <= max_u && v[i] <= max_v)) continue;
-            const auto [before, end] = own.around(i, reach);
+            if (!(u[i] >= margin && v[i] >= margin && u[i] <= max_u_ && v[i] <= max_v_)) continue;
+            const auto [before, end] = own.around(i, span_);
             out.reference[n] = static_cast<std::int32_t>(i);
             queries_.u[n] = u[i];
             queries_.v[n] = v[i];

@@ -1,11 +1,14 @@
 #pragma once
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
+#include "edges/canny.h"
 #include "edges/edge_grid.h"
 #include "edges/organized_edges.h"
+#include "roevo/camera/pinhole_camera.h"
 #include "roevo/options.h"
+#include "roevo/types.h"
+#include "tracking/points3.h"
 
 namespace roevo {
 
@@ -34,7 +37,13 @@ struct EdgeMatches {
 /// several fragments.
 class EdgeAssociator {
   public:
-    explicit EdgeAssociator(const FineOptions& options) : options_(options) {}
+    /// @param camera  ideal
+    /// @param span    points before and after that the tangent of a reprojected point is taken between
+    EdgeAssociator(const PinholeCamera& camera, const FineOptions& options, int span)
+        : max_u_(static_cast<float>(camera.width) - 1 - EdgeMask::kBorder),
+          max_v_(static_cast<float>(camera.height) - 1 - EdgeMask::kBorder),
+          span_(static_cast<std::size_t>(span)),
+          options_(options) {}
 
     /// Of a reference at most so many points are looked up from now on; fine.max_points until then.
     void limit(int max_points) { options_.max_points = max_points; }
@@ -42,17 +51,18 @@ class EdgeAssociator {
     std::size_t stride() const { return stride_; }
 
     /// @param reference  reference edges (spans and normals)
-    /// @param u, v       their reprojected points, px; outside the image where not visible
-    /// @param turn       cosine and sine of the rotation that carries reference normals into the current
-    /// image
-    /// @param span       points before and after that the tangent of a reprojected point is taken between
-    void associate(const OrganizedEdges& reference, const float* u, const float* v,
-                   const Eigen::Vector2f& turn, int span, const OrganizedEdges& current, const EdgeGrid& grid,
-                   int width, int height, double radius, EdgeMatches& out);
+    /// @param projected  their points at T_current_reference; outside the image where not visible
+    /// @param grid       of the current edges
+    /// @param radius     px
+    void associate(const OrganizedEdges& reference, const ProjectedPoints3& projected,
+                   const Pose& T_current_reference, const OrganizedEdges& current, const EdgeGrid& grid,
+                   double radius, EdgeMatches& out);
 
   private:
     void vote(const OrganizedEdges& reference, const OrganizedEdges& current, EdgeMatches& matches);
 
+    float max_u_, max_v_;  ///< px, of what is inside the image
+    std::size_t span_;
     FineOptions options_;
     EdgeQueries queries_;
     std::vector<float> side_x_, side_y_;  ///< that their normals are on

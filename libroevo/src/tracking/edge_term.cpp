@@ -29,7 +29,7 @@ EdgeTerm::EdgeTerm(const PinholeCamera& camera, const OdometryOptions& options)
       options_(options.fine),
       edge_options_(options.edges),
       sensor_(options.sensor),
-      associator_(options.fine) {}
+      associator_(ideal_, options.fine, options.edges.tangent_span) {}
 
 void EdgeTerm::look(const Keyframe& keyframe, const Frame& frame) {
     const bool is_other =
@@ -100,9 +100,8 @@ bool EdgeTerm::isAssociated(const Pose& T_current_keyframe, double radius) const
 void EdgeTerm::associate(const Pose& T_current_keyframe, const RowMotion& rows, double radius) {
     associated_within_ = 0;
     project(keyframe_->edges.points, T_current_keyframe, ideal_, rows, projected_);
-    associator_.associate(keyframe_->edges.image, projected_.u.data(), projected_.v.data(),
-                          imageRotation(T_current_keyframe), edge_options_.tangent_span, frame_->edges,
-                          frame_->grid, ideal_.width, ideal_.height, radius, matches_);
+    associator_.associate(keyframe_->edges.image, projected_, T_current_keyframe, frame_->edges, frame_->grid,
+                          radius, matches_);
 }
 
 void EdgeTerm::renewMatches(const Pose& T_current_keyframe, const RowMotion& rows) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tracking/robust.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -54,11 +55,6 @@ PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const Image
         }
     }
     return points;
-}
-
-Eigen::Vector2f imageRotation(const Pose& T) {
-    const Eigen::Vector2d turn(T.linear()(0, 0) + T.linear()(1, 1), T.linear()(1, 0) - T.linear()(0, 1));
-    return turn.normalized().cast<float>();
 }
 
 void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, const cv::Mat& image,

@@ -121,10 +121,6 @@ class PhotometricTerm : public ResidualTerm {
     std::function<std::size_t()> counted_;
 };
 
-/// Rotation about the optical axis in a pose: how image directions turn from the keyframe to the current
-/// image.
-Eigen::Vector2f imageRotation(const Pose& T_current_keyframe);
-
 /// Image-plane information (2x2 symmetric m00 m01 m11 and vector v0 v1, pixels) of a point carried to three
 /// dimensions through the projection's Jacobian (Eq. (24)): writes P^T M P (xx xy xz yy yz zz) and P^T v.
 inline void liftInformation(float x, float y, float z, float fx, float fy, float m00, float m01, float m11,

@@ -22,6 +22,11 @@ double rollOf(const Pose& pose) {
     return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
 }
 
+Eigen::Vector2f imageRotation(const Pose& pose) {
+    const Eigen::Matrix3d& R = pose.linear();
+    return Eigen::Vector2d(R(0, 0) + R(1, 1), R(1, 0) - R(0, 1)).normalized().cast<float>();
+}
+
 double imageMotion(const Pose& a, const Pose& b, double focal_length, double depth) {
     const Pose between = a.inverse() * b;
     return focal_length * (rotationAngle(between) + between.translation().norm() / depth);

@@ -14,6 +14,9 @@ double rotationAngle(const Pose& pose);
 /// Rotation about the optical axis, rad.
 double rollOf(const Pose& pose);
 
+/// The same as cosine and sine: how image directions turn with the pose.
+Eigen::Vector2f imageRotation(const Pose& pose);
+
 /// How far a point at `depth` (m) moves in the image between two poses of a camera, px, as an order of
 /// magnitude.
 double imageMotion(const Pose& a, const Pose& b, double focal_length, double depth);
