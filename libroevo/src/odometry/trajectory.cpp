@@ -46,6 +46,7 @@ void Trajectory::load(KeyframeGraph graph, bool held) {
     for (const Matrix6d& covariance : graph.covariances) in_world_.push_back({covariance, {}});
     related_ = std::move(graph.related);
     loops_ = std::move(graph.loops);
+    findTracks();
     if (held) held_ = static_cast<int>(keyframes_.size());
 }
 
@@ -58,11 +59,8 @@ KeyframeGraph Trajectory::graph() const {
 
 int Trajectory::beginTrack(double timestamp, const Pose& T_world_camera, const Matrix6d& covariance) {
     const Matrix6d to_camera = turnedBy(T_world_camera.linear().transpose());
-    links_.push_back({-1, T_world_camera, {to_camera * covariance * to_camera.transpose(), {}}});
-    in_world_.push_back(links_.back().uncertainty);
-    const int id = static_cast<int>(keyframes_.size());
-    keyframes_.push_back({id, timestamp, T_world_camera});
-    return id;
+    const PoseUncertainty uncertainty{to_camera * covariance * to_camera.transpose(), {}};
+    return add(timestamp, T_world_camera, {-1, T_world_camera, uncertainty}, uncertainty);
 }
 
 int Trajectory::addKeyframe(double timestamp, const RelativePose& pose,
@@ -72,11 +70,23 @@ int Trajectory::addKeyframe(double timestamp, const RelativePose& pose,
         return std::find(clusters.begin(), clusters.end(), cluster) == clusters.end();
     });
     forgetAll(in_world_.back());
-    in_world_.push_back(std::move(in_world.uncertainty));
-    links_.push_back(pose);
+    return add(timestamp, in_world.T_keyframe_camera, pose, std::move(in_world.uncertainty));
+}
+
+int Trajectory::add(double timestamp, const Pose& T_world_camera, const RelativePose& link,
+                    PoseUncertainty in_world) {
     const int id = static_cast<int>(keyframes_.size());
-    keyframes_.push_back({id, timestamp, in_world.T_keyframe_camera});
+    keyframes_.push_back({id, timestamp, T_world_camera});
+    in_world_.push_back(std::move(in_world));
+    links_.push_back(link);
+    tracks_.push_back(link.keyframe < 0 ? id : beginOfTrack(link.keyframe));
     return id;
+}
+
+void Trajectory::findTracks() {
+    tracks_.clear();
+    for (std::size_t id = 0; id < links_.size(); ++id)
+        tracks_.push_back(links_[id].keyframe < 0 ? static_cast<int>(id) : beginOfTrack(links_[id].keyframe));
 }
 
 void Trajectory::addFrame(double timestamp, const RelativePose& pose, bool measured) {
@@ -125,12 +135,6 @@ Matrix6d Trajectory::motionCovariance(std::size_t from, std::size_t to) const {
     return by_places.trace() < by_motions.trace() ? by_places : by_motions;
 }
 
-int Trajectory::beginOfTrack(int keyframe) const {
-    while (links_[static_cast<std::size_t>(keyframe)].keyframe >= 0)
-        keyframe = links_[static_cast<std::size_t>(keyframe)].keyframe;
-    return keyframe;
-}
-
 Correction Trajectory::join(int keyframe, const RelativePose& pose) {
     const int begin = beginOfTrack(keyframe);
     if (beginOfTrack(pose.keyframe) > begin)
@@ -138,9 +142,8 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
     Correction join;
     join.places.push_back({pose.keyframe, keyframe, pose.T_keyframe_camera, pose.covariance()});
     const Pose motion = worldPose(pose) * keyframePose(keyframe).inverse();
-    const std::vector<int> tracks = this->tracks();
     for (int id = begin; id < static_cast<int>(keyframes_.size()); ++id)
-        if (tracks[static_cast<std::size_t>(id)] == begin) join.keyframes.push_back(id);
+        if (beginOfTrack(id) == begin) join.keyframes.push_back(id);
     for (const int id : join.keyframes) {
         Pose& placed = keyframes_[static_cast<std::size_t>(id)].T_world_camera;
         placed = motion * placed;
@@ -151,6 +154,7 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
     while (link.keyframe > begin) link = compose(links_[static_cast<std::size_t>(link.keyframe)], link);
     links_[static_cast<std::size_t>(begin)] = {
         link.keyframe, keyframePose(link.keyframe).inverse() * keyframePose(begin), {link.covariance(), {}}};
+    findTracks();
     for (const int id : join.keyframes) {
         const auto at = static_cast<std::size_t>(id);
         in_world_[at] = inWorld(links_[at]).uncertainty;
@@ -161,21 +165,11 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
     return join;
 }
 
-std::vector<int> Trajectory::tracks() const {
-    std::vector<int> tracks;
-    for (std::size_t id = 0; id < links_.size(); ++id) {
-        const int parent = links_[id].keyframe;  // older
-        tracks.push_back(parent < 0 ? static_cast<int>(id) : tracks[static_cast<std::size_t>(parent)]);
-    }
-    return tracks;
-}
-
-std::vector<PoseConstraint> Trajectory::constraintsOf(const std::vector<int>& tracks, int track) const {
+std::vector<PoseConstraint> Trajectory::constraintsOf(int track) const {
     std::vector<PoseConstraint> constraints;
     // As the map has it, and as well known as tracking knows it: the map's own knowledge is in its edges
     const auto relate = [&](int from, int to, const Matrix6d& covariance) {
-        if (tracks[static_cast<std::size_t>(from)] != track || tracks[static_cast<std::size_t>(to)] != track)
-            return;
+        if (beginOfTrack(from) != track || beginOfTrack(to) != track) return;
         constraints.push_back({from, to, keyframePose(from).inverse() * keyframePose(to), covariance});
     };
     for (std::size_t id = 0; id < links_.size(); ++id)
@@ -189,25 +183,22 @@ std::vector<PoseConstraint> Trajectory::constraintsOf(const std::vector<int>& tr
 }
 
 Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>& recognised) {
-    const std::vector<int> tracks = this->tracks();
-    const int track = tracks[static_cast<std::size_t>(recognised.front().first)];
-    std::vector<PoseConstraint> constraints = constraintsOf(tracks, track), loops = loops_;
+    const int track = beginOfTrack(recognised.front().first);
+    std::vector<PoseConstraint> constraints = constraintsOf(track), loops = loops_;
     Correction correction;
     for (const auto& [keyframe, pose] : recognised)
         correction.places.push_back({pose.keyframe, keyframe, pose.T_keyframe_camera, pose.covariance()});
     loops.insert(loops.end(), correction.places.begin(), correction.places.end());
     for (const PoseConstraint& loop : loops)
-        if (tracks[static_cast<std::size_t>(loop.to)] == track) constraints.push_back(loop);
+        if (beginOfTrack(loop.to) == track) constraints.push_back(loop);
     std::vector<Pose> poses;
     for (const KeyframeInfo& keyframe : keyframes_) poses.push_back(keyframe.T_world_camera);
     if (!optimisePoseGraph(poses, constraints, std::max(track, held_ - 1))) return {};
     // Tracking may have drifted by more than it knows, but places cannot contradict each other
     for (const PoseConstraint& loop : loops)
-        if (tracks[static_cast<std::size_t>(loop.to)] == track &&
-            contradiction(poses, loop) > kMostContradiction)
-            return {};
+        if (beginOfTrack(loop.to) == track && contradiction(poses, loop) > kMostContradiction) return {};
     for (std::size_t id = 0; id < poses.size(); ++id) {
-        if (tracks[id] != track || static_cast<int>(id) < held_) continue;
+        if (tracks_[id] != track || static_cast<int>(id) < held_) continue;
         Pose& placed = keyframes_[id].T_world_camera;
         correction.keyframes.push_back(static_cast<int>(id));
         correction.motions.push_back(poses[id] * placed.inverse());
@@ -241,23 +232,28 @@ void Trajectory::apply(const MapUpdate& update) {
     if (update.posterior) takePosterior(*update.posterior, update.keyframe);
 }
 
+/// A keyframe's covariance as it errs with an older one's.
+Matrix6d Trajectory::carried(const Matrix6d& covariance, int from, int to) const {
+    const Matrix6d by = carriedTo(keyframePose(from).inverse() * keyframePose(to));
+    return by * covariance * by.transpose();
+}
+
+Matrix6d Trajectory::drift(int older, int keyframe) const {
+    const auto known = [&](int id) { return in_world_[static_cast<std::size_t>(id)].covariance(); };
+    return known(keyframe) - carried(known(older), older, keyframe);
+}
+
 /// Where older keyframes are seen again, a new one errs no more than they do, but for what pulls it to the
 /// oldest one of the window.
 void Trajectory::takePosterior(const WindowPosterior& posterior, int keyframe) {
     const auto at = [](int id) { return static_cast<std::size_t>(id); };
-    const auto carried = [&](const Matrix6d& covariance, int from, int to) -> Matrix6d {
-        const Matrix6d by = carriedTo(keyframePose(from).inverse() * keyframePose(to));
-        return by * covariance * by.transpose();
-    };
-    const Matrix6d of_reused = in_world_[at(posterior.reused)].covariance();
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> drift(
-        in_world_[at(posterior.oldest)].covariance() -
-        carried(of_reused, posterior.reused, posterior.oldest));
-    const Matrix6d drifted = drift.eigenvectors() * drift.eigenvalues().cwiseMax(0).asDiagonal() *
-                             drift.eigenvectors().transpose();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(drift(posterior.reused, posterior.oldest));
+    const Matrix6d drifted =
+        axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() * axes.eigenvectors().transpose();
     PoseUncertainty seen_again = posterior.uncertainty;
-    seen_again.independent += carried(of_reused, posterior.reused, keyframe) +
-                              posterior.follows * drifted * posterior.follows.transpose();
+    seen_again.independent +=
+        carried(in_world_[at(posterior.reused)].covariance(), posterior.reused, keyframe) +
+        posterior.follows * drifted * posterior.follows.transpose();
     PoseUncertainty& known = in_world_[at(keyframe)];
     if (seen_again.covariance().trace() >= known.covariance().trace()) return;
     known = std::move(seen_again);

@@ -37,12 +37,12 @@ class Trajectory {
     void measureAfterwards(double timestamp, const RelativePose& pose);
 
     /// First keyframe of a keyframe's track.
-    int beginOfTrack(int keyframe) const;
+    int beginOfTrack(int keyframe) const { return tracks_[static_cast<std::size_t>(keyframe)]; }
     bool areOfOneTrack(int keyframe, int other) const {
         return beginOfTrack(keyframe) == beginOfTrack(other);
     }
-    /// The first keyframe of each one's track.
-    std::vector<int> tracks() const;
+    /// The same of each keyframe.
+    const std::vector<int>& tracks() const { return tracks_; }
     /// Moves a keyframe's track to where the keyframe was recognised; where that is in a younger track, moves
     /// that one.
     /// @param pose  of the keyframe, relative to one of another track
@@ -64,6 +64,8 @@ class Trajectory {
     Pose lastPose() const { return frames_.empty() ? Pose() : worldPose(frames_.back().pose); }
     /// As FrameResult::covariance.
     Matrix6d worldCovariance(const RelativePose& pose) const;
+    /// What a keyframe's covariance has beyond that of an older one, along its own axes.
+    Matrix6d drift(int older, int keyframe) const;
     /// Of the motion from one frame to another (their indices in the order of addFrame()): of T_from_to,
     /// position, then orientation, along the axes of the second camera. Not finite where they are in
     /// different tracks.
@@ -90,11 +92,15 @@ class Trajectory {
         RelativePose pose;
         bool measured = true;
     };
+    /// @param link  to the one before
+    int add(double timestamp, const Pose& T_world_camera, const RelativePose& link, PoseUncertainty in_world);
+    void findTracks();
     RelativePose inWorld(const RelativePose& pose) const;
+    Matrix6d carried(const Matrix6d& covariance, int from, int to) const;
     void takePosterior(const WindowPosterior& posterior, int keyframe);
     Pose finalPose(const Frame& frame) const;
     bool isKeyframe(const Frame& frame) const;
-    std::vector<PoseConstraint> constraintsOf(const std::vector<int>& tracks, int track) const;
+    std::vector<PoseConstraint> constraintsOf(int track) const;
 
     int held_ = 0;  ///< so many keyframes do not move
     std::vector<KeyframeInfo> keyframes_;
@@ -103,6 +109,7 @@ class Trajectory {
     std::vector<PoseConstraint> loops_;
     std::vector<PoseUncertainty> in_world_;  ///< of the keyframes; influences of the newest alone
     std::vector<RelativePose> links_;        ///< of the keyframes, to the ones before; -1: to the world
+    std::vector<int> tracks_;                ///< of the keyframes, by their links: the first of each track
     std::vector<Frame> frames_;
     std::size_t recent_ = 0;  ///< the oldest frame that nothing was forgotten of
     std::vector<StampedPose> live_;

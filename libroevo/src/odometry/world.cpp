@@ -92,14 +92,11 @@ StoredMap World::map() {
     map.surfaces = semi_dense_.keyframes();
     map.surfaces.resize(map.places.size());
     // Tracks that were not joined are in worlds of their own
-    std::vector<int> tracks, sizes(map.places.size());
-    for (std::size_t id = 0; id < sizes.size(); ++id) {
-        tracks.push_back(trajectory_.beginOfTrack(static_cast<int>(id)));
-        ++sizes[static_cast<std::size_t>(tracks.back())];
-    }
+    std::vector<int> sizes(trajectory_.tracks().size());
+    for (const int track : trajectory_.tracks()) ++sizes[static_cast<std::size_t>(track)];
     const auto largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
     std::vector<bool> kept;
-    for (const int track : tracks) kept.push_back(track == (loaded_ > 0 ? 0 : largest));
+    for (const int track : trajectory_.tracks()) kept.push_back(track == (loaded_ > 0 ? 0 : largest));
     keepOnly(kept, map);
     return map;
 }
@@ -182,7 +179,7 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
     std::vector<Rgb> colours = coloursOf(fresh->edges.image, of.images, camera_);
     if (remembersPlaces()) {
         std::vector<bool> own;
-        const std::vector<int> tracks = trajectory_.tracks();
+        const std::vector<int>& tracks = trajectory_.tracks();
         for (std::size_t id = 0; id + 1 < tracks.size(); ++id) own.push_back(tracks[id] == tracks.back());
         relocaliser_.add(*fresh, of, colours, std::move(own), closes ? fresh->id - kStillInView : 0);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
@@ -221,15 +218,7 @@ Reach World::misplacementOf(int keyframe) const {
 }
 
 Reach World::driftOf(int keyframe) const {
-    const auto covarianceOf = [&](int id) {
-        const Pose axes(trajectory_.keyframePose(id).rotation(), Eigen::Vector3d::Zero());
-        const Matrix6d to_camera = carriedTo(axes);
-        return Matrix6d(to_camera * trajectory_.worldCovariance({id, Pose(), {}}) * to_camera.transpose());
-    };
-    const int begin = trajectory_.beginOfTrack(keyframe);
-    const Matrix6d by =
-        carriedTo(trajectory_.keyframePose(begin).inverse() * trajectory_.keyframePose(keyframe));
-    const Matrix6d drift = covarianceOf(keyframe) - by * covarianceOf(begin) * by.transpose();
+    const Matrix6d drift = trajectory_.drift(trajectory_.beginOfTrack(keyframe), keyframe);
     const auto most = [](const Eigen::Matrix3d& covariance) {
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
         return kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
