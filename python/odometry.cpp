@@ -174,7 +174,7 @@ void addMapParts(py::module_& module) {
         .def_property_readonly(
             "colours", [](const MapEdge& self) { return rows<std::uint8_t>(self.colours); },
             "N x 3 uint8, RGB")
-        .def_readonly("keyframe", &MapEdge::keyframe_id, "keyframe that saw it first")
+        .def_readonly("keyframe", &MapEdge::keyframe_id, "keyframe whose edge its first point is of")
         .def_readonly("cluster", &MapEdge::cluster, "the same for edges of keyframes that show the same edge")
         .def_readonly("views", &MapEdge::views, "keyframes that see it")
         .def_property_readonly(

@@ -38,7 +38,7 @@ std::string describe(const MapRefusal& refusal);
 struct MapEdge {
     std::vector<Eigen::Vector3f> points;
     std::vector<Rgb> colours;  ///< of the image, one per point
-    int keyframe_id = 0;       ///< keyframe that saw it first
+    int keyframe_id = 0;       ///< keyframe whose edge its first point is of, as a rule the longest
     int cluster = 0;           ///< edges of different keyframes that show the same edge have the same number
     int views = 1;             ///< keyframes that see it
     EdgeVerdict verdict = EdgeVerdict::kUnconfirmed;

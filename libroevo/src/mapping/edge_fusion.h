@@ -20,8 +20,8 @@ struct Observation {
     std::int32_t slot = 0, point = 0;
 };
 
-/// Edges of the world, each fused from a cluster of keyframe edges. Points of an edge are consecutive and in
-/// order, and so are the observations of a point.
+/// Edges of the world, each fused from keyframe edges of one cluster. Points of an edge are consecutive and
+/// in order; observations of a point are consecutive, that of the edge which the point is of last.
 struct FusedEdges {
     std::vector<Eigen::Vector3d> points;             ///< world, m
     std::vector<std::int32_t> begin{0};              ///< first point of each edge, plus one past the end

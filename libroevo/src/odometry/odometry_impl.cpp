@@ -8,7 +8,7 @@
 namespace roevo {
 namespace {
 
-constexpr std::size_t kTrackedBack = 10;  // lost frames that are kept
+constexpr std::size_t kTrackedBack = 10;  // lost frames that are kept: images and all
 /// Where fewer edges are matched, a search may find a pose that matches clearly more: so many times.
 constexpr double kFewMatched = 0.5, kClearlyMore = 1.2;
 

@@ -25,7 +25,7 @@ class EdgeTerm : public ResidualTerm {
     void startReadout(const Keyframe& keyframe, const Frame& frame, const EdgeMatches& matches);
     /// For associate() and assess() alone.
     void look(const Keyframe& keyframe, const Frame& frame);
-    /// Of a keyframe at most so many points are looked up until the next look() or start().
+    /// Of a keyframe at most so many points are looked up until the next look(), start() or linearise().
     void limit(int max_points) { associator_.limit(max_points); }
 
     bool linearise(const Linearisation& at, PoseSystem& system) override;

@@ -12,7 +12,7 @@ namespace roevo {
 /// All that an image pair becomes before it is tracked. Its buffers are used again for later images.
 struct Frame {
     Frame() = default;
-    Frame(const Frame&) = delete;  // the grid points to the edges
+    Frame(const Frame&) = delete;  // images would be shared
     Frame& operator=(const Frame&) = delete;
 
     RgbdFrame images;      ///< copies: the caller's buffers may be used again

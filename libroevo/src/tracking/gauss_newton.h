@@ -125,7 +125,7 @@ struct GaussNewtonOptions {
     double depth = 1;           ///< m, of a typical point
     double relaxation = 1;      ///< factor on the steps from `relaxed_from` on
     int relaxed_from = 0;       ///< iteration
-    bool keep_best = false;     ///< the pose with the least cost of the first term counts, not the last one
+    bool keep_best = false;     ///< the last pose whose cost, of the first term, is about the least counts
     bool free_readout = false;  ///< the read-out time moves, too
 };
 

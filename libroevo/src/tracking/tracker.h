@@ -13,8 +13,10 @@ namespace roevo {
 /// What tracking a frame against a keyframe came to.
 struct Tracking {
     RelativePose pose;
-    PoseUncertainty measured;  ///< of the pose, if the motion of its rows were known; also of a reference
-    RowMotion rows;            ///< how the camera moved while the image was read
+    /// Of the pose, if the motion of its rows were known; stays as it was tracked where the frame becomes the
+    /// reference, against which it errs nothing.
+    PoseUncertainty measured;
+    RowMotion rows;  ///< how the camera moved while the image was read
     Brightness brightness;
     EdgeMatches matches;              ///< at that pose
     int inliers = 0;                  ///< of them (in mode ct: all of them)
