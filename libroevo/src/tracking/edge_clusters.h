@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "roevo/types.h"
-#include "tracking/kernels.h"
 
 namespace roevo {
 
@@ -49,7 +48,8 @@ class EdgeClusters {
   private:
     struct Sum {
         bool used = false;
-        kernels::NormalEquations equations{};
+        Matrix6d hessian = Matrix6d::Zero();
+        Vector6d gradient = Vector6d::Zero();
     };
     std::vector<std::int32_t> cluster_of_;  // of each edge; what follows is made of it
     std::vector<std::int32_t> clusters_;    // in order, each once
