@@ -280,18 +280,18 @@ std::string checkOptions(const OdometryOptions& options) {
     for (const auto& field : optionFields(copy)) {
         if (auto fault = field.check(); !fault.empty()) return fault;
     }
-    if (copy.sensor.max_depth <= copy.sensor.min_depth) {
-        return "option sensor.max_depth = " + numberToText(copy.sensor.max_depth) +
-               " must exceed sensor.min_depth = " + numberToText(copy.sensor.min_depth);
-    }
-    if (copy.sensor.depth_limit <= copy.sensor.min_depth) {
-        return "option sensor.depth_limit = " + numberToText(copy.sensor.depth_limit) +
-               " must exceed sensor.min_depth = " + numberToText(copy.sensor.min_depth);
-    }
-    if (copy.fine.final_radius > copy.fine.search_radius) {
-        return "option fine.final_radius = " + numberToText(copy.fine.final_radius) +
-               " must not exceed fine.search_radius = " + numberToText(copy.fine.search_radius);
-    }
+    const auto fault = [](const char* name, double value, const char* must, double limit) {
+        return std::string("option ") + name + " = " + numberToText(value) + " must " + must + " = " +
+               numberToText(limit);
+    };
+    const SensorOptions& sensor = options.sensor;
+    if (sensor.max_depth <= sensor.min_depth)
+        return fault("sensor.max_depth", sensor.max_depth, "exceed sensor.min_depth", sensor.min_depth);
+    if (sensor.depth_limit <= sensor.min_depth)
+        return fault("sensor.depth_limit", sensor.depth_limit, "exceed sensor.min_depth", sensor.min_depth);
+    if (options.fine.final_radius > options.fine.search_radius)
+        return fault("fine.final_radius", options.fine.final_radius, "not exceed fine.search_radius",
+                     options.fine.search_radius);
     return {};
 }
 
