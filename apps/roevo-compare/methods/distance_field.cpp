@@ -123,9 +123,8 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
 }
 
 void DistanceFieldTracker::addTo(const Keyframe& keyframe, EdgeClusters& clusters) const {
-    rows_.addTo(clusters, near_.size(), [&](std::size_t k) {
-        return static_cast<std::size_t>(keyframe.edges.image.edge_of[near_[k]]);
-    });
+    rows_.addTo(clusters, near_.size(),
+                [&](std::size_t k) { return keyframe.edges.image.edge_of[near_[k]]; });
 }
 
 void DistanceFieldTracker::prepare(const Frame& frame) {

@@ -45,11 +45,11 @@ float foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOptions&
         const auto offset = [&](int k) { return (k - half) * radius / half; };
         for (int r = 0; r < size; ++r) {
             const int row = y + offset(r);
-            offsets[static_cast<std::size_t>(r)] = static_cast<float>(offset(r));
+            at(offsets, r) = static_cast<float>(offset(r));
             for (int c = 0; c < size; ++c) {
                 const int column = x + offset(c);
                 if (row >= 0 && row < depth.rows && column >= 0 && column < depth.cols)
-                    samples[static_cast<std::size_t>(r * (kMost + 1) + c)] = depth.at<float>(row, column);
+                    at(samples, r * (kMost + 1) + c) = depth.at<float>(row, column);
             }
         }
         square.offsets = offsets.data();

@@ -17,14 +17,14 @@ void EdgeGrid::build(const OrganizedEdges& edges, int width, int height) {
     cell_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         cell_[i] = row(edges.y[i]) * columns_ + column(edges.x[i]);
-        ++first_[static_cast<std::size_t>(cell_[i])];
+        ++at(first_, cell_[i]);
     }
     std::int32_t end = 0;
     for (std::int32_t& first : first_) first = end += first;  // filled from their ends
     index_.resize(n);
     for (auto* values : {&x_, &y_, &normal_x_, &normal_y_}) values->resize(n + pixels::kGridPadding);
     for (std::size_t i = n; i-- > 0;) {
-        const auto k = static_cast<std::size_t>(--first_[static_cast<std::size_t>(cell_[i])]);
+        const auto k = static_cast<std::size_t>(--at(first_, cell_[i]));
         index_[k] = static_cast<std::int32_t>(i);
         x_[k] = edges.x[i];
         y_[k] = edges.y[i];

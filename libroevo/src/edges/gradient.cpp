@@ -36,18 +36,18 @@ double otsuThreshold(const cv::Mat& magnitude) {
         const auto* row = magnitude.ptr<float>(y);
         for (std::size_t i = 0; i < bins.size(); ++i)  // apart, so that the compiler makes vectors of it
             bins[i] = static_cast<std::int32_t>(std::min<float>(kBins - 1, row[2 * i] / kBinWidth));
-        for (const std::int32_t bin : bins) ++histogram[static_cast<std::size_t>(bin)];
+        for (const std::int32_t bin : bins) ++at(histogram, bin);
     }
     double total = 0, sum = 0;
     for (int i = 0; i < kBins; ++i) {
-        total += histogram[static_cast<std::size_t>(i)];
-        sum += static_cast<double>(i) * histogram[static_cast<std::size_t>(i)];
+        total += at(histogram, i);
+        sum += static_cast<double>(i) * at(histogram, i);
     }
     double below = 0, sum_below = 0, best_variance = -1;
     int best = 0;
     for (int i = 0; i < kBins; ++i) {
-        below += histogram[static_cast<std::size_t>(i)];
-        sum_below += static_cast<double>(i) * histogram[static_cast<std::size_t>(i)];
+        below += at(histogram, i);
+        sum_below += static_cast<double>(i) * at(histogram, i);
         const double above = total - below;
         if (below == 0 || above == 0) continue;
         const double difference = sum_below / below - (sum - sum_below) / above;

@@ -168,7 +168,7 @@ std::size_t EdgeOrganizer::appendLongestRoute() {
 
 void EdgeOrganizer::searchFrom(const Gradient& gradient, const std::uint8_t* mask, std::int32_t seed,
                                float min_cosine, std::size_t min_length, std::vector<std::int32_t>& begin) {
-    if (open_[static_cast<std::size_t>(seed)] == 0) return;
+    if (at(open_, seed) == 0) return;
     growCluster(gradient, mask, seed, min_cosine);
     if (nodes_ < min_length) return;
     const std::size_t length = appendLongestRoute();
@@ -187,7 +187,7 @@ void EdgeOrganizer::organize(const Gradient& gradient, const EdgeMask& edges, do
     width_ = edges.mask.cols;
     if (open_.size() != edges.mask.total()) open_.assign(edges.mask.total(), 0);
     if (tree_.size() < edges.pixels.size()) tree_.resize(edges.pixels.size());
-    for (const std::int32_t p : edges.pixels) open_[static_cast<std::size_t>(p)] = 1;
+    for (const std::int32_t p : edges.pixels) at(open_, p) = 1;
     const auto min_cosine = static_cast<float>(std::cos(angle_deg * kDegree));
     const auto least = static_cast<std::size_t>(std::max(1, min_length));
     const auto* mask = edges.mask.ptr<std::uint8_t>();
@@ -199,7 +199,7 @@ void EdgeOrganizer::organize(const Gradient& gradient, const EdgeMask& edges, do
     // Branches left out are opened together and searched once; what is left out then is dropped, which keeps
     // the work linear.
     const std::size_t count = again_.size();
-    for (std::size_t i = 0; i < count; ++i) open_[static_cast<std::size_t>(again_[i])] = 1;
+    for (std::size_t i = 0; i < count; ++i) at(open_, again_[i]) = 1;
     for (std::size_t i = 0; i < count; ++i)
         searchFrom(gradient, mask, again_[i], min_cosine, least, out.begin);
 

@@ -1,29 +1,13 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "indexing.h"
+
 namespace roevo {
-
-/// Half open.
-struct IndexRange {
-    std::size_t first = 0, end = 0;
-    std::size_t size() const { return end - first; }
-    /// Those at most `reach` places before and after `i`, which is one of them.
-    IndexRange around(std::size_t i, std::size_t reach) const {
-        return {i - std::min(reach, i - first), std::min(end, i + reach + 1)};
-    }
-};
-
-/// Range number `i`, of any integer type, where `begin` has the first of each and one past the last.
-template <class Index>
-IndexRange rangeOf(const std::vector<std::int32_t>& begin, Index i) {
-    const auto at = static_cast<std::size_t>(i);
-    return {static_cast<std::size_t>(begin[at]), static_cast<std::size_t>(begin[at + 1])};
-}
 
 /// Organized edges of one image: ordered chains of sub-pixel points, stored as structure of arrays with edges
 /// as spans over them. All arrays of points have size() entries; points of an edge are consecutive and in

@@ -26,8 +26,7 @@ void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<con
         const Pose T_other_current = other->T_world_camera.inverse() * current.T_world_camera;
         project(current.points, T_other_current, camera_, RowMotion(), projected_);
         for (std::size_t i = 0; i < current.size(); ++i) {
-            if (associated[static_cast<std::size_t>(current.image.edge_of[i])] != 0)
-                projected_.u[i] = kNowhere;
+            if (at(associated, current.image.edge_of[i]) != 0) projected_.u[i] = kNowhere;
         }
         grid_.build(other->image, camera_.width, camera_.height);
         associator_.associate(current.image, projected_, T_other_current, other->image, grid_, radius,
@@ -36,10 +35,8 @@ void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<con
         std::vector<Link>& links = found.links;
         // Pairs come in the order of the current edges
         for (std::size_t k = 0; k < matches_.size(); ++k) {
-            const auto edge = static_cast<std::size_t>(
-                current.image.edge_of[static_cast<std::size_t>(matches_.reference[k])]);
-            const auto other_edge =
-                static_cast<std::size_t>(other->image.edge_of[static_cast<std::size_t>(matches_.current[k])]);
+            const auto edge = static_cast<std::size_t>(at(current.image.edge_of, matches_.reference[k]));
+            const auto other_edge = static_cast<std::size_t>(at(other->image.edge_of, matches_.current[k]));
             associated[edge] = 1;
             auto same = links.rbegin();
             while (same != links.rend() && same->edge == edge && same->other_edge != other_edge) ++same;

@@ -41,9 +41,9 @@ void EdgeFuser::fuse(const std::vector<WindowKeyframe>& window, const std::vecto
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
         for (std::size_t e = 0; e < clusters[slot].size(); ++e) {
             const IndexRange own = window[slot].keyframe->image.pointsOf(e);
-            members_[next[static_cast<std::size_t>(clusters[slot][e])]++] = {
-                static_cast<std::int32_t>(slot), static_cast<std::int32_t>(own.first),
-                static_cast<std::int32_t>(own.size())};
+            members_[at(next, clusters[slot][e])++] = {static_cast<std::int32_t>(slot),
+                                                       static_cast<std::int32_t>(own.first),
+                                                       static_cast<std::int32_t>(own.size())};
         }
     }
     for (std::size_t cluster = 0; cluster + 1 < first_member_.size(); ++cluster) {
@@ -77,11 +77,10 @@ void EdgeFuser::keepChain(std::size_t slots, int cluster, FusedEdges& out) {
     seen_.assign(slots, 0);
     for (const Node& node : chain_) {
         out.points.push_back(node.position);
-        for (std::int32_t k = node.first_observation; k >= 0;
-             k = observations_[static_cast<std::size_t>(k)].next) {
-            const Observation& observation = observations_[static_cast<std::size_t>(k)].observation;
+        for (std::int32_t k = node.first_observation; k >= 0; k = at(observations_, k).next) {
+            const Observation& observation = at(observations_, k).observation;
             out.observations.push_back(observation);
-            char& flag = seen_[static_cast<std::size_t>(observation.slot)];
+            char& flag = at(seen_, observation.slot);
             views += flag == 0 ? 1 : 0;
             flag = 1;
         }
@@ -156,7 +155,7 @@ std::int32_t EdgeFuser::fit(const Eigen::Vector3d& p, std::size_t near) const {
 }
 
 void EdgeFuser::merge(const std::vector<WindowKeyframe>& window, const Member& member) {
-    const WindowKeyframe& view = window[static_cast<std::size_t>(member.slot)];
+    const WindowKeyframe& view = at(window, member.slot);
     const MapKeyframe& keyframe = *view.keyframe;
     const auto first = static_cast<std::size_t>(member.first);
     const auto count = static_cast<std::size_t>(member.length);

@@ -32,8 +32,7 @@ void smoothDepthAlong(std::vector<Eigen::Vector3d>& points, const Pose& T_world_
         const int first = std::clamp(i - kSpan, 0, std::max(0, count - 1 - 2 * kSpan));
         const int last = std::min(count - 1, first + 2 * kSpan);
         const auto at = static_cast<std::size_t>(i);
-        const Eigen::Vector2d chord =
-            image[static_cast<std::size_t>(last)] - image[static_cast<std::size_t>(first)];
+        const Eigen::Vector2d chord = at(image, last) - at(image, first);
         LineFit<double> line;
         for (int j = first; j <= last; ++j) {
             const auto other = static_cast<std::size_t>(j);

@@ -19,12 +19,10 @@ void takeKeptVerdicts(const std::vector<WindowKeyframe>& window, FusedEdges& edg
         std::array<int, 4> votes{};
         const auto [first, end] = edges.observationsOfEdge(edge);
         for (std::size_t k = first; k < end; ++k) {
-            const MapKeyframe& keyframe =
-                *window[static_cast<std::size_t>(edges.observations[k].slot)].keyframe;
+            const MapKeyframe& keyframe = *at(window, edges.observations[k].slot).keyframe;
             if (keyframe.verdicts.empty()) continue;
-            const auto own = static_cast<std::size_t>(
-                keyframe.image.edge_of[static_cast<std::size_t>(edges.observations[k].point)]);
-            ++votes[static_cast<std::size_t>(keyframe.verdicts[own])];
+            const std::int32_t own = at(keyframe.image.edge_of, edges.observations[k].point);
+            ++at(votes, at(keyframe.verdicts, own));
         }
         const auto most = std::max_element(votes.begin(), votes.end());
         edges.verdicts[edge] = static_cast<EdgeVerdict>(most - votes.begin());
@@ -53,14 +51,13 @@ EdgeMap fuseEdges(const std::map<int, MapKeyframe>& keyframes, const std::vector
         const auto reference = [&](std::size_t p) {
             return edges.observations[edges.observationsOf(p).end - 1];
         };
-        smoothDepthAlong(points, window[static_cast<std::size_t>(reference(first).slot)].T_world_camera,
-                         options.sensor);
+        smoothDepthAlong(points, at(window, reference(first).slot).T_world_camera, options.sensor);
         for (std::size_t p = first; p < end; ++p) {
             const Observation seen = reference(p);
-            const MapKeyframe& keyframe = *window[static_cast<std::size_t>(seen.slot)].keyframe;
+            const MapKeyframe& keyframe = *at(window, seen.slot).keyframe;
             if (edge.points.empty()) edge.keyframe_id = keyframe.id;
             edge.points.push_back(points[p - first].cast<float>());
-            edge.colours.push_back(keyframe.colours[static_cast<std::size_t>(seen.point)]);
+            edge.colours.push_back(at(keyframe.colours, seen.point));
         }
         map.push_back(std::move(edge));
     }

@@ -22,8 +22,7 @@ Eigen::Vector3d logarithm(const Eigen::Quaterniond& q) {
 
 /// Position and orientation of `to` as the poses have it against the constraint, along its axes.
 Vector6d residual(const std::vector<Pose>& poses, const PoseConstraint& c) {
-    const Pose T_from_to =
-        poses[static_cast<std::size_t>(c.from)].inverse() * poses[static_cast<std::size_t>(c.to)];
+    const Pose T_from_to = at(poses, c.from).inverse() * at(poses, c.to);
     const Pose error = c.T_from_to.inverse() * T_from_to;
     Vector6d out;
     // Along the axes of `to` as it is, so that steps enter with the identity
@@ -59,8 +58,7 @@ bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstrain
     int count = 0;
     for (const PoseConstraint& c : constraints)
         for (const int id : {c.from, c.to})
-            if (id > fixed && rows[static_cast<std::size_t>(id)] < 0)
-                rows[static_cast<std::size_t>(id)] = count++;
+            if (id > fixed && at(rows, id) < 0) at(rows, id) = count++;
     std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>> information;
     for (const PoseConstraint& c : constraints) information.push_back(informationOf(c));
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
@@ -70,10 +68,9 @@ bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstrain
         for (std::size_t k = 0; k < constraints.size(); ++k) {
             const PoseConstraint& c = constraints[k];
             const Vector6d e = residual(poses, c);
-            const Pose T =
-                poses[static_cast<std::size_t>(c.from)].inverse() * poses[static_cast<std::size_t>(c.to)];
+            const Pose T = at(poses, c.from).inverse() * at(poses, c.to);
             const Matrix6d from = -carriedTo(T);  // how a step of `from` changes the residual
-            const int i = rows[static_cast<std::size_t>(c.from)], j = rows[static_cast<std::size_t>(c.to)];
+            const int i = at(rows, c.from), j = at(rows, c.to);
             const Matrix6d& W = information[k];
             sum.add(i, i, from.transpose() * W * from);
             sum.add(i, j, from.transpose() * W);

@@ -48,7 +48,7 @@ double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, cons
     const auto [first, end] = edges.observationsOf(p);
     double sum = 0;
     for (std::size_t k = first; k < end; ++k) {
-        const WindowKeyframe& view = window[static_cast<std::size_t>(edges.observations[k].slot)];
+        const WindowKeyframe& view = at(window, edges.observations[k].slot);
         const auto i = static_cast<std::size_t>(edges.observations[k].point);
         const Eigen::Vector3d q =
             view.T_world_camera.linear().transpose() * (edges.points[p] - view.T_world_camera.translation());
@@ -96,7 +96,7 @@ void PseudoEdgeJudge::findPoints(const FusedEdges& edges, std::size_t edge) {
         squared_radius = std::max(squared_radius, (edges.points[p] - centre).squaredNorm());
         const IndexRange range = edges.observationsOf(p);
         for (std::size_t k = range.first; k < range.end; ++k)
-            observed_[static_cast<std::size_t>(edges.observations[k].slot)] |= bit;
+            at(observed_, edges.observations[k].slot) |= bit;
     }
     const double radius = std::sqrt(squared_radius);
     for (std::size_t slot = 0; slot < views_.size(); ++slot) {
@@ -238,10 +238,8 @@ double PseudoEdgeJudge::foundShare(const std::vector<WindowKeyframe>& window, co
     int count = 0;
     const auto [first, end] = edges.observationsOfEdge(edge);
     for (std::size_t k = first; k < end; ++k) {
-        const MapKeyframe& keyframe = *window[static_cast<std::size_t>(edges.observations[k].slot)].keyframe;
-        const std::int32_t own =
-            keyframe.image.edge_of[static_cast<std::size_t>(edges.observations[k].point)];
-        const float found = keyframe.found[static_cast<std::size_t>(own)];
+        const MapKeyframe& keyframe = *at(window, edges.observations[k].slot).keyframe;
+        const float found = at(keyframe.found, at(keyframe.image.edge_of, edges.observations[k].point));
         if (found < 0) continue;
         sum += static_cast<double>(found);
         ++count;

@@ -52,8 +52,8 @@ std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& wi
     };
 
     WindowPosterior out;
-    const auto at = static_cast<std::size_t>(anchor);
-    out.oldest = window[at].keyframe->id;
+    const WindowKeyframe& oldest = at(window, anchor);
+    out.oldest = oldest.keyframe->id;
     out.reused = window[0].keyframe->id;
     out.follows.setZero();
     for (int slot = anchor + 1; slot <= newest; ++slot)
@@ -67,14 +67,13 @@ std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& wi
         const Matrix6d moved = moves(prior.to, information) - moves(prior.from, information);
         out.uncertainty.independent += moved * known.inverse() * moved.transpose();
     }
-    out.follows = (out.follows * toCamera(window[at].T_world_camera, equations.origin()).inverse()).eval();
+    out.follows = (out.follows * toCamera(oldest.T_world_camera, equations.origin()).inverse()).eval();
 
     std::map<std::int32_t, Vector6d> moved;
     for (const WindowEquations::EdgePull& pull : equations.pulls()) {
         const int row = equations.row(static_cast<std::size_t>(pull.slot));
         if (row < 0) continue;
-        Vector6d& sum =
-            moved.try_emplace(clusters[static_cast<std::size_t>(pull.edge)], Vector6d::Zero()).first->second;
+        Vector6d& sum = moved.try_emplace(at(clusters, pull.edge), Vector6d::Zero()).first->second;
         sum -= gain.middleCols<6>(row) * pull.gradient;  // a step is against the gradient
     }
     const auto edges = static_cast<double>(moved.size());

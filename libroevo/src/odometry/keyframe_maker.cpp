@@ -37,7 +37,7 @@ void numberEdges(Keyframe& keyframe, const Keyframe* before, const EdgeMatches& 
     for (std::size_t k = 0; before != nullptr && k < matches.size(); ++k) {
         const auto point = static_cast<std::size_t>(matches.current[k]);
         if (point >= matched.size()) matched.resize(point + 1, -1);
-        matched[point] = before->edges.image.edge_of[static_cast<std::size_t>(matches.reference[k])];
+        matched[point] = at(before->edges.image.edge_of, matches.reference[k]);
     }
     std::map<std::int32_t, int> votes;
     keyframe.clusters.clear();
@@ -50,8 +50,7 @@ void numberEdges(Keyframe& keyframe, const Keyframe* before, const EdgeMatches& 
         }
         const auto most = std::max_element(votes.begin(), votes.end(),
                                            [](const auto& a, const auto& b) { return a.second < b.second; });
-        keyframe.clusters.push_back(
-            most == votes.end() ? next++ : before->clusters[static_cast<std::size_t>(most->first)]);
+        keyframe.clusters.push_back(most == votes.end() ? next++ : at(before->clusters, most->first));
     }
 }
 

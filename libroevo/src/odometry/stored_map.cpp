@@ -53,7 +53,7 @@ bool linksAreSound(const StoredMap& map, std::size_t id) {
     const int edges = map.edges[id].points.numEdges();
     for (const CovisibilityGraph::Links& links : map.edges[id].links) {
         if (links.other < 0 || links.other >= static_cast<int>(id)) return false;
-        const int others = map.edges[static_cast<std::size_t>(links.other)].points.numEdges();
+        const int others = at(map.edges, links.other).points.numEdges();
         for (const CovisibilityGraph::Link& link : links.links)
             if (link.edge >= edges || link.other_edge >= others) return false;
     }
@@ -75,13 +75,12 @@ bool edgesAreSound(const StoredMap& map, std::size_t id) {
 bool graphIsSound(const KeyframeGraph& graph) {
     const auto count = static_cast<int>(graph.keyframes.size());
     for (int id = 0; id < count; ++id) {
-        const auto at = static_cast<std::size_t>(id);
-        const KeyframeInfo& keyframe = graph.keyframes[at];
-        const RelativePose& link = graph.links[at];
+        const KeyframeInfo& keyframe = at(graph.keyframes, id);
+        const RelativePose& link = at(graph.links, id);
         // One track: all but the first are linked to older ones
         if (keyframe.id != id || !std::isfinite(keyframe.timestamp) || !isSound(keyframe.T_world_camera) ||
             link.keyframe >= id || (link.keyframe < 0) != (id == 0) || !isSound(link.T_keyframe_camera) ||
-            !isSound(link.covariance()) || !isSound(graph.covariances[at]))
+            !isSound(link.covariance()) || !isSound(at(graph.covariances, id)))
             return false;
     }
     const auto is_pair = [&](int older, int newer) { return older >= 0 && older < newer && newer < count; };
@@ -98,7 +97,7 @@ void keepOnly(const std::vector<bool>& kept, StoredMap& map) {
     std::vector<int> ids;  // of each, now; -1: none
     int next = 0;
     for (const bool keep : kept) ids.push_back(keep ? next++ : -1);
-    const auto now = [&](int id) { return id < 0 ? -1 : ids[static_cast<std::size_t>(id)]; };
+    const auto now = [&](int id) { return id < 0 ? -1 : at(ids, id); };
 
     KeyframeGraph& graph = map.graph;
     for (KeyframeInfo& keyframe : graph.keyframes) keyframe.id = now(keyframe.id);

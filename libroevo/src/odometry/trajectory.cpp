@@ -106,8 +106,7 @@ void Trajectory::measureAfterwards(double timestamp, const RelativePose& pose) {
 }
 
 RelativePose Trajectory::inWorld(const RelativePose& pose) const {
-    return compose({-1, keyframePose(pose.keyframe), in_world_[static_cast<std::size_t>(pose.keyframe)]},
-                   pose);
+    return compose({-1, keyframePose(pose.keyframe), at(in_world_, pose.keyframe)}, pose);
 }
 
 Pose Trajectory::worldPose(const RelativePose& pose) const {
@@ -124,7 +123,7 @@ Matrix6d Trajectory::motionCovariance(std::size_t from, std::size_t to) const {
     RelativePose first = frames_.at(from).pose, last = frames_.at(to).pose;
     while (first.keyframe != last.keyframe) {  // back to the newest keyframe that both come from
         RelativePose& later = first.keyframe > last.keyframe ? first : last;
-        const RelativePose& link = links_[static_cast<std::size_t>(later.keyframe)];
+        const RelativePose& link = at(links_, later.keyframe);
         if (link.keyframe < 0) return Matrix6d::Constant(std::numeric_limits<double>::infinity());
         later = compose(link, later);
     }
@@ -145,22 +144,19 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
     for (int id = begin; id < static_cast<int>(keyframes_.size()); ++id)
         if (beginOfTrack(id) == begin) join.keyframes.push_back(id);
     for (const int id : join.keyframes) {
-        Pose& placed = keyframes_[static_cast<std::size_t>(id)].T_world_camera;
+        Pose& placed = at(keyframes_, id).T_world_camera;
         placed = motion * placed;
         join.motions.push_back(motion);
     }
     // As well known as what was recognised. A track is linked to what is older than all of it.
     RelativePose link = pose;
-    while (link.keyframe > begin) link = compose(links_[static_cast<std::size_t>(link.keyframe)], link);
-    links_[static_cast<std::size_t>(begin)] = {
+    while (link.keyframe > begin) link = compose(at(links_, link.keyframe), link);
+    at(links_, begin) = {
         link.keyframe, keyframePose(link.keyframe).inverse() * keyframePose(begin), {link.covariance(), {}}};
     findTracks();
-    for (const int id : join.keyframes) {
-        const auto at = static_cast<std::size_t>(id);
-        in_world_[at] = inWorld(links_[at]).uncertainty;
-    }
+    for (const int id : join.keyframes) at(in_world_, id) = inWorld(at(links_, id)).uncertainty;
     for (const int id : join.keyframes)
-        if (id + 1 < static_cast<int>(keyframes_.size())) forgetAll(in_world_[static_cast<std::size_t>(id)]);
+        if (id + 1 < static_cast<int>(keyframes_.size())) forgetAll(at(in_world_, id));
     corrections_.push_back(join);
     return join;
 }
@@ -176,7 +172,7 @@ std::vector<PoseConstraint> Trajectory::constraintsOf(int track) const {
         if (links_[id].keyframe >= 0)
             relate(links_[id].keyframe, static_cast<int>(id), links_[id].covariance());
     for (const auto& [older, newer] : related_) {
-        const RelativePose& link = links_[static_cast<std::size_t>(newer)];
+        const RelativePose& link = at(links_, newer);
         if (link.keyframe >= 0) relate(older, newer, link.covariance());
     }
     return constraints;
@@ -208,7 +204,7 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
     corrections_.push_back(correction);
     const auto& [keyframe, pose] = recognised.back();
     const PoseUncertainty by_loop{inWorld(pose).covariance(), {}};
-    PoseUncertainty& known = in_world_[static_cast<std::size_t>(keyframe)];
+    PoseUncertainty& known = at(in_world_, keyframe);
     if (by_loop.independent.trace() < known.covariance().trace()) known = by_loop;
     return correction;
 }
@@ -220,7 +216,7 @@ void Trajectory::apply(const MapUpdate& update) {
                        [&](const Correction& c) { return c.keyframes.back() < update.keyframe; }),
         corrections_.end());
     for (const auto& [id, pose] : update.poses) {
-        Pose& placed = keyframes_[static_cast<std::size_t>(id)].T_world_camera;
+        Pose& placed = at(keyframes_, id).T_world_camera;
         placed = pose;
         for (const Correction& correction : corrections_)
             if (const Pose* motion = correction.motionOf(id)) placed = *motion * placed;
@@ -239,27 +235,27 @@ Matrix6d Trajectory::carried(const Matrix6d& covariance, int from, int to) const
 }
 
 Matrix6d Trajectory::drift(int older, int keyframe) const {
-    const auto known = [&](int id) { return in_world_[static_cast<std::size_t>(id)].covariance(); };
+    const auto known = [&](int id) { return at(in_world_, id).covariance(); };
     return known(keyframe) - carried(known(older), older, keyframe);
 }
 
 /// Where older keyframes are seen again, a new one errs no more than they do, but for what pulls it to the
 /// oldest one of the window.
 void Trajectory::takePosterior(const WindowPosterior& posterior, int keyframe) {
-    const auto at = [](int id) { return static_cast<std::size_t>(id); };
     const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(drift(posterior.reused, posterior.oldest));
     const Matrix6d drifted =
         axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() * axes.eigenvectors().transpose();
     PoseUncertainty seen_again = posterior.uncertainty;
     seen_again.independent +=
-        carried(in_world_[at(posterior.reused)].covariance(), posterior.reused, keyframe) +
+        carried(at(in_world_, posterior.reused).covariance(), posterior.reused, keyframe) +
         posterior.follows * drifted * posterior.follows.transpose();
-    PoseUncertainty& known = in_world_[at(keyframe)];
+    const auto seen = static_cast<std::size_t>(keyframe);
+    PoseUncertainty& known = in_world_[seen];
     if (seen_again.covariance().trace() >= known.covariance().trace()) return;
     known = std::move(seen_again);
-    for (std::size_t id = at(keyframe) + 1; id < links_.size(); ++id)
+    for (std::size_t id = seen + 1; id < links_.size(); ++id)
         if (links_[id].keyframe >= keyframe) in_world_[id] = inWorld(links_[id]).uncertainty;
-    for (std::size_t id = at(keyframe); id + 1 < in_world_.size(); ++id) forgetAll(in_world_[id]);
+    for (std::size_t id = seen; id + 1 < in_world_.size(); ++id) forgetAll(in_world_[id]);
 }
 
 Pose Trajectory::finalPose(const Frame& frame) const {

@@ -37,7 +37,7 @@ class Trajectory {
     void measureAfterwards(double timestamp, const RelativePose& pose);
 
     /// First keyframe of a keyframe's track.
-    int beginOfTrack(int keyframe) const { return tracks_[static_cast<std::size_t>(keyframe)]; }
+    int beginOfTrack(int keyframe) const { return at(tracks_, keyframe); }
     bool areOfOneTrack(int keyframe, int other) const {
         return beginOfTrack(keyframe) == beginOfTrack(other);
     }
@@ -77,7 +77,7 @@ class Trajectory {
     }
 
     const std::vector<KeyframeInfo>& keyframes() const { return keyframes_; }
-    const Pose& keyframePose(int id) const { return keyframes_[static_cast<std::size_t>(id)].T_world_camera; }
+    const Pose& keyframePose(int id) const { return at(keyframes_, id).T_world_camera; }
     /// Poses of the frames. What the map found to be wrong with the tracked motion to the next keyframe was
     /// wrong with the motions of the frames between in part: tracking errs the more the view differs from the
     /// keyframe's. Where they were not measured, they are between those that were.

@@ -93,7 +93,7 @@ StoredMap World::map() {
     map.surfaces.resize(map.places.size());
     // Tracks that were not joined are in worlds of their own
     std::vector<int> sizes(trajectory_.tracks().size());
-    for (const int track : trajectory_.tracks()) ++sizes[static_cast<std::size_t>(track)];
+    for (const int track : trajectory_.tracks()) ++at(sizes, track);
     const auto largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
     std::vector<bool> kept;
     for (const int track : trajectory_.tracks()) kept.push_back(track == (loaded_ > 0 ? 0 : largest));

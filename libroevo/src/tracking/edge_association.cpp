@@ -39,7 +39,7 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const ProjectedP
             side_y_[n] = turn.y() * reference.normal_x[i] + turn.x() * reference.normal_y[i];
             ++n;
         }
-        out.visible[static_cast<std::size_t>(e)] = static_cast<std::int32_t>(n - before_this);
+        at(out.visible, e) = static_cast<std::int32_t>(n - before_this);
     }
     out.visible_points = static_cast<int>(n);
     pixels::best().normals(queries_.normal_x.data(), queries_.normal_y.data(), side_x_.data(), side_y_.data(),
@@ -63,11 +63,11 @@ void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges&
     const auto stride = static_cast<double>(stride_);
     votes_.assign(static_cast<std::size_t>(current.numEdges()), 0);
     const auto otherEdge = [&](std::size_t pair) {
-        return static_cast<std::size_t>(current.edge_of[static_cast<std::size_t>(matches.current[pair])]);
+        return static_cast<std::size_t>(at(current.edge_of, matches.current[pair]));
     };
     std::size_t kept = 0, next = 0;  // pairs are in the order of the reference's edges
     for (int e = 0; e < reference.numEdges(); ++e) {
-        const int visible = matches.visible[static_cast<std::size_t>(e)];
+        const int visible = at(matches.visible, e);
         const std::size_t first = next;
         touched_.clear();
         const std::size_t end = reference.pointsOf(e).end;
@@ -87,7 +87,7 @@ void EdgeAssociator::vote(const OrganizedEdges& reference, const OrganizedEdges&
             matches.current[kept] = matches.current[pair];
             ++kept;
         }
-        for (const std::int32_t other : touched_) votes_[static_cast<std::size_t>(other)] = 0;
+        for (const std::int32_t other : touched_) at(votes_, other) = 0;
         if (kept > kept_before) matches.matched_extent += visible;
     }
     matches.reference.resize(kept);

@@ -46,7 +46,7 @@ void EdgeClusters::start(const std::vector<std::int32_t>& cluster_of) {
 void EdgeClusters::add(std::size_t edge, const float (&matrix)[6], const float (&vector)[3],
                        const Eigen::Vector3d& point) {
     if (edge >= slot_of_.size()) return;  // of points that are no edge points, as experiments choose them
-    Sum& sum = sums_[static_cast<std::size_t>(slot_of_[edge])];
+    Sum& sum = at(sums_, slot_of_[edge]);
     sum.used = true;
     Eigen::Matrix3d information;
     information << matrix[0], matrix[1], matrix[2],  //

@@ -266,10 +266,8 @@ void EdgeTerm::accumulate(PoseSystem& system) {
 }
 
 void EdgeTerm::addTo(EdgeClusters& clusters) const {
-    rows_.addTo(clusters, matches_.size(), [&](std::size_t k) {
-        const auto point = static_cast<std::size_t>(matches_.reference[k]);
-        return static_cast<std::size_t>(keyframe_->edges.image.edge_of[point]);
-    });
+    rows_.addTo(clusters, matches_.size(),
+                [&](std::size_t k) { return at(keyframe_->edges.image.edge_of, matches_.reference[k]); });
 }
 
 void EdgeTerm::accumulateReadout(const Linearisation& at, PoseSystem& system) {

@@ -39,7 +39,7 @@ class InformationRows {
     /// Multiplies what each point contributes by a factor of its own (padded).
     void scale(const std::vector<float>& factors);
     /// Adds each of them to its edge; none before anything was set.
-    /// @param edge_of(point)  index of its edge
+    /// @param edge_of(point)  index of its edge, -1 for none
     template <class EdgeOf>
     void addTo(EdgeClusters& clusters, std::size_t count, EdgeOf&& edge_of) const {
         for (std::size_t i = 0; i < std::min(count, points_.size()); ++i) {
@@ -47,7 +47,7 @@ class InformationRows {
             for (int a = 0; a < 6; ++a) matrix[a] = matrix_[a][i];
             for (int a = 0; a < 3; ++a) vector[a] = vector_[a][i];
             if (matrix[0] + matrix[3] + matrix[5] > 0)
-                clusters.add(edge_of(i), matrix, vector, points_.at(i));
+                clusters.add(static_cast<std::size_t>(edge_of(i)), matrix, vector, points_.at(i));
         }
     }
 

@@ -16,7 +16,7 @@ void ImagePyramid::build(const cv::Mat& grey, int levels) {
             break;
         }
         // An odd last row or column is left out, so that every level's pixel is the mean of exactly four
-        cv::Mat& level = levels_[static_cast<std::size_t>(i)];
+        cv::Mat& level = at(levels_, i);
         level.create(half, CV_8UC1);
         for (int y = 0; y < half.height; ++y)
             pixels::best().halve(below.ptr<std::uint8_t>(2 * y), below.ptr<std::uint8_t>(2 * y + 1),

@@ -12,7 +12,7 @@ class ImagePyramid {
   public:
     /// Level 0 shares the memory of `grey` (CV_8UC1).
     void build(const cv::Mat& grey, int levels);
-    const cv::Mat& level(int i) const { return levels_[static_cast<std::size_t>(i)]; }
+    const cv::Mat& level(int i) const { return at(levels_, i); }
     int numLevels() const { return static_cast<int>(levels_.size()); }
 
   private:

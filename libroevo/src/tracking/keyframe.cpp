@@ -34,14 +34,14 @@ std::vector<float> Keyframe::foundShares() const {
 void Keyframe::weaken(const std::vector<bool>& edges_to_weaken, double weight) {
     const auto factor = static_cast<float>(weight);
     weakened_.resize(edges_to_weaken.size(), false);
-    const auto affected = [&](std::size_t point) {
-        const auto edge = static_cast<std::size_t>(edges.image.edge_of[point]);
-        return edges_to_weaken[edge] && !weakened_[edge];
+    const auto affected = [&](auto point) {
+        const std::int32_t edge = at(edges.image.edge_of, point);
+        return at(edges_to_weaken, edge) && !at(weakened_, edge);
     };
     for (std::size_t i = 0; i < edges.size(); ++i)
         if (affected(i)) edges.weight[i] *= factor;
     for (std::size_t k = 0; k < photometric.source.size(); ++k)
-        if (affected(static_cast<std::size_t>(photometric.source[k]))) photometric.weight[k] *= factor;
+        if (affected(photometric.source[k])) photometric.weight[k] *= factor;
     for (std::size_t edge = 0; edge < weakened_.size(); ++edge)
         weakened_[edge] = weakened_[edge] || edges_to_weaken[edge];
 }

@@ -45,7 +45,7 @@ PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const Image
     points.points.pad();
     points.patches.resize(static_cast<std::size_t>(pyramid.numLevels()));
     for (int level = 0; level < pyramid.numLevels(); ++level) {
-        auto& patches = points.patches[static_cast<std::size_t>(level)];
+        auto& patches = at(points.patches, level);
         patches.resize(chosen.size());
         const float scale = 1.0F / static_cast<float>(1 << level);
         for (std::size_t k = 0; k < chosen.size(); ++k) {
@@ -74,7 +74,7 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
         axis_x_[i] = turn.x() * points.axis_x[i] - turn.y() * points.axis_y[i];
         axis_y_[i] = turn.y() * points.axis_x[i] + turn.x() * points.axis_y[i];
     }
-    const auto& patches = points.patches[static_cast<std::size_t>(level)];
+    const auto& patches = at(points.patches, level);
     const auto& kernels = kernels::best();
     kernels.patches(viewOf(image), patches.data(), projected_.u.data(), projected_.v.data(), axis_x_.data(),
                     axis_y_.data(), n, static_cast<float>(brightness.gain),
@@ -105,7 +105,7 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
 }
 
 kernels::PatchPoints PhotometricResiduals::view(const PhotometricPoints& points, int level) const {
-    return {points.patches[static_cast<std::size_t>(level)].data(),
+    return {at(points.patches, level).data(),
             residuals_.data(),
             points.size(),
             projected_.x.data(),

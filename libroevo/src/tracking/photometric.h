@@ -59,8 +59,7 @@ class PhotometricResiduals {
                     kernels::NormalEquations& out);
     /// Adds the points of the last normal equations to their edges.
     void addTo(EdgeClusters& clusters, const PhotometricPoints& points) const {
-        rows_.addTo(clusters, points.size(),
-                    [&](std::size_t i) { return static_cast<std::size_t>(points.edge_of[i]); });
+        rows_.addTo(clusters, points.size(), [&](std::size_t i) { return points.edge_of[i]; });
     }
 
   private:

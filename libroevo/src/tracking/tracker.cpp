@@ -50,6 +50,22 @@ PoseUncertainty photometricUncertainty(const Keyframe& reference, const Frame& f
     return clusters.uncertainty(system, residuals.slope());
 }
 
+/// Rotations about the camera's x and y axes, up to 18 degrees each by 3: T_current_keyframe of each.
+/// @param share_of_view  factor on these angles: the field of view as a share of a Kinect's
+std::vector<Pose> searchAround(const Pose& T_keyframe_camera, double share_of_view) {
+    const double step = 3 * kDegree * share_of_view;
+    constexpr int kReach = 6;
+    std::vector<Pose> guesses;
+    for (int yaw = -kReach; yaw <= kReach; ++yaw) {
+        for (int pitch = -kReach; pitch <= kReach; ++pitch) {
+            Vector6d turn;
+            turn << 0, 0, 0, pitch * step, yaw * step, 0;
+            guesses.push_back(poseIncrement(turn) * T_keyframe_camera.inverse());
+        }
+    }
+    return guesses;
+}
+
 }  // namespace
 
 void Tracking::doubt() {
@@ -176,9 +192,8 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
     out.inliers = found.inliers;
     out.found.assign(static_cast<std::size_t>(reference.edges.image.numEdges()), 0);
     for (std::size_t k = 0; k < out.matches.size(); ++k) {
-        const auto point = static_cast<std::size_t>(out.matches.reference[k]);
         if (fine_.weights()[k] > 0)
-            ++out.found[static_cast<std::size_t>(reference.edges.image.edge_of[point])];
+            ++at(out.found, at(reference.edges.image.edge_of, out.matches.reference[k]));
     }
     if (!found.converged) return describeFailure(found, options_.fine);
     out.depth_fault = contradiction;
@@ -195,21 +210,6 @@ void Tracker::learnReadout(const Keyframe& reference, const Frame& frame, const 
         return;
     fine_.addReadoutEvidence(reference, tracking.pose.T_keyframe_camera.inverse(), tracking.matches, shutter,
                              frame, estimator);
-}
-
-std::vector<Pose> searchAround(const Pose& T_keyframe_camera, double share_of_view) {
-    const double step = 3 * kDegree * share_of_view;
-    constexpr int kReach = 6;
-    std::vector<Pose> guesses;
-    for (int yaw = -kReach; yaw <= kReach; ++yaw) {
-        for (int pitch = -kReach; pitch <= kReach; ++pitch) {
-            Vector6d turn = Vector6d::Zero();
-            turn[3] = pitch * step;
-            turn[4] = yaw * step;
-            guesses.push_back(poseIncrement(turn) * T_keyframe_camera.inverse());
-        }
-    }
-    return guesses;
 }
 
 }  // namespace roevo

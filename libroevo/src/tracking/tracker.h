@@ -91,8 +91,4 @@ class Tracker {
     FineTracker fine_;
 };
 
-/// Rotations about the camera's x and y axes, up to 18 degrees each by 3: T_current_keyframe of each.
-/// @param share_of_view  factor on these angles: the field of view as a share of a Kinect's
-std::vector<Pose> searchAround(const Pose& T_keyframe_camera, double share_of_view = 1);
-
 }  // namespace roevo
