@@ -64,8 +64,8 @@ Eigen::Vector2d PinholeCamera::distortPixel(const Eigen::Vector2d& ideal) const 
         const double scale = r > 0 ? fisheyeAngle(distortion, std::atan(r)) / r : 1;
         return {fx * scale * x + cx, fy * scale * y + cy};
     }
-    double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-    if (isRational()) radial /= Cubic(denominator[0], denominator[1], denominator[2], r2).value;
+    const auto& [k4, k5, k6] = denominator;
+    const double radial = Cubic(k1, k2, k3, r2).value / Cubic(k4, k5, k6, r2).value;
     const double xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x);
     const double yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y;
     return {fx * xd + cx, fy * yd + cy};
@@ -106,7 +106,6 @@ double PinholeCamera::unfoldedRadiusSquared() const {
         const auto& [k1, k2, p1, p2, k3] = distortion;
         const auto& [k4, k5, k6] = denominator;
         if (lens == LensModel::kKannalaBrandt) return fisheyeSlope(distortion, std::atan(std::sqrt(r2))) > 0;
-        if (!isRational()) return 1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3)) > 0;
         const Cubic above(k1, k2, k3, r2), below(k4, k5, k6, r2);
         return below.value > 0 &&
                above.value * below.value + 2 * r2 * (above.slope * below.value - above.value * below.slope) >

@@ -38,7 +38,7 @@ class EdgeOrganizer {
     std::vector<std::uint8_t> open_;  ///< 1 where an edge pixel waits to be visited; all 0 between calls
     std::vector<Node> tree_;          ///< room for all pixels
     std::size_t nodes_ = 0;           ///< of them in use
-    std::vector<std::int32_t> route_, again_;
+    std::vector<std::int32_t> again_;
     std::vector<std::int32_t> points_;  ///< pixels of the edges found, one edge after the other
     int width_ = 0;
 };

@@ -27,27 +27,19 @@ void FusedEdges::clear() {
 void EdgeFuser::fuse(const std::vector<WindowKeyframe>& window, const std::vector<std::vector<int>>& clusters,
                      FusedEdges& out) {
     out.clear();
-    first_member_.assign(1, 0);
-    for (const auto& of_edges : clusters) {
-        for (const int cluster : of_edges) {
-            const auto place = static_cast<std::size_t>(cluster) + 1;
-            if (place >= first_member_.size()) first_member_.resize(place + 1, 0);
-            ++first_member_[place];
-        }
-    }
-    for (std::size_t k = 1; k < first_member_.size(); ++k) first_member_[k] += first_member_[k - 1];
-    members_.resize(first_member_.back());
-    std::vector<std::size_t> next(first_member_.begin(), first_member_.end() - 1);
+    for (std::vector<Member>& of_cluster : members_) of_cluster.clear();
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
         for (std::size_t e = 0; e < clusters[slot].size(); ++e) {
             const IndexRange own = window[slot].keyframe->image.pointsOf(e);
-            members_[at(next, clusters[slot][e])++] = {static_cast<std::int32_t>(slot),
-                                                       static_cast<std::int32_t>(own.first),
-                                                       static_cast<std::int32_t>(own.size())};
+            const auto cluster = static_cast<std::size_t>(clusters[slot][e]);
+            if (cluster >= members_.size()) members_.resize(cluster + 1);
+            members_[cluster].push_back({static_cast<std::int32_t>(slot),
+                                         static_cast<std::int32_t>(own.first),
+                                         static_cast<std::int32_t>(own.size())});
         }
     }
-    for (std::size_t cluster = 0; cluster + 1 < first_member_.size(); ++cluster) {
-        rest_.assign(members_.data() + first_member_[cluster], members_.data() + first_member_[cluster + 1]);
+    for (std::size_t cluster = 0; cluster < members_.size(); ++cluster) {
+        rest_ = members_[cluster];
         fuseCluster(window, static_cast<int>(cluster), out);
     }
 }

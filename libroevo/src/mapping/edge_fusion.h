@@ -81,8 +81,8 @@ class EdgeFuser {
     std::size_t nearest(const Eigen::Vector3d& p, std::size_t from, bool search_all) const;
 
     SensorOptions sensor_;
-    std::vector<Member> members_, apart_, rest_;
-    std::vector<std::size_t> first_member_;
+    std::vector<std::vector<Member>> members_;  ///< of each cluster
+    std::vector<Member> apart_, rest_;
     std::vector<char> seen_;  ///< of each slot
     std::vector<Node> chain_, run_;
     std::vector<Chained> observations_;

@@ -43,10 +43,10 @@ std::string describe(const Outcome& outcome, const WorldChange& change) {
     return text;
 }
 
-FrameResult rejected(double timestamp, const Fault& fault, const char* where) {
+FrameResult rejected(double timestamp, const Fault& fault) {
     FrameResult result;
     result.timestamp = timestamp;
-    result.reason = where + describe(fault);
+    result.reason = describe(fault);
     return result;
 }
 

@@ -27,6 +27,6 @@ std::string describe(const Outcome& outcome, const WorldChange& change);
 void fill(FrameResult& result, const Outcome& outcome, const WorldChange& change);
 
 /// A frame that is not processed.
-FrameResult rejected(double timestamp, const Fault& fault, const char* where = "");
+FrameResult rejected(double timestamp, const Fault& fault);
 
 }  // namespace roevo
