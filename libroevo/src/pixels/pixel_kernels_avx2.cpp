@@ -8,8 +8,7 @@ namespace {
 }  // namespace
 
 const Table* avx2() {
-    static const Table table{"avx2", gradient, ridges,        remap,      halve,
-                             refine, normals,  nearestPoints, depthPatch, side};
+    static constexpr Table table = tableNamed("avx2");
     return __builtin_cpu_supports("avx2") ? &table : nullptr;
 }
 

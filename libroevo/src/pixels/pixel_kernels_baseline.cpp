@@ -6,8 +6,7 @@ namespace {
 }  // namespace
 
 const Table& baseline() {
-    static const Table table{"baseline", gradient, ridges,        remap,      halve,
-                             refine,     normals,  nearestPoints, depthPatch, side};
+    static constexpr Table table = tableNamed("baseline");
     return table;
 }
 

@@ -18,17 +18,13 @@ inline std::uint64_t bitsOf(IntLanes condition) {
 }
 
 /// Of one pixel; `l` and `r` are the columns to the left and right.
-inline void sobel(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below, int l,
-                  int x, int r, std::int16_t& gx, std::int16_t& gy) {
-    gx = static_cast<std::int16_t>((above[r] - above[l]) + 2 * (here[r] - here[l]) + (below[r] - below[l]));
-    gy = static_cast<std::int16_t>((below[l] - above[l]) + 2 * (below[x] - above[x]) + (below[r] - above[r]));
-}
-
 inline void sobelAndNorm(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below,
                          int l, int x, int r, std::int16_t* gx, std::int16_t* gy, float* magnitude) {
-    sobel(above, here, below, l, x, r, gx[x], gy[x]);
-    const auto dx = static_cast<float>(gx[x]), dy = static_cast<float>(gy[x]);
-    magnitude[x] = __builtin_sqrtf(dx * dx + dy * dy);
+    const int dx = (above[r] - above[l]) + 2 * (here[r] - here[l]) + (below[r] - below[l]);
+    const int dy = (below[l] - above[l]) + 2 * (below[x] - above[x]) + (below[r] - above[r]);
+    gx[x] = static_cast<std::int16_t>(dx);
+    gy[x] = static_cast<std::int16_t>(dy);
+    magnitude[x] = __builtin_sqrtf(static_cast<float>(dx * dx + dy * dy));  // the sum is exact
 }
 
 inline WideShorts widen(const std::uint8_t* p) {

@@ -72,3 +72,7 @@ void sumSide(const DepthView& depth, const EdgePoint& at, const SideReach& reach
 void side(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& sums) {
     (reach.widening > 0 ? sumSide<true> : sumSide<false>)(depth, at, reach, sums);
 }
+
+constexpr Table tableNamed(const char* name) {
+    return {name, gradient, ridges, remap, halve, refine, normals, nearestPoints, depthPatch, side};
+}

@@ -4,15 +4,11 @@
 
 namespace roevo::kernels {
 namespace {
-#include "residuals_impl.h"
-#include "schur_impl.h"
+#include "table_impl.h"
 }  // namespace
 
 const Table* avx2() {
-    static const Table table{"avx2",      project,       exchangeMotion, patches,     referencePatch,
-                             accumulate,  weighPatches,  sumPatches,     liftPatches, pick,
-                             follow,      blur,          edgeResiduals,  weighEdges,  liftEdges,
-                             liftReadout, eliminatePoint};
+    static constexpr Table table = tableNamed("avx2");
     return __builtin_cpu_supports("avx2") ? &table : nullptr;
 }
 

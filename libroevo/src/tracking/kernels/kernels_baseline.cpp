@@ -2,15 +2,11 @@
 
 namespace roevo::kernels {
 namespace {
-#include "residuals_impl.h"
-#include "schur_impl.h"
+#include "table_impl.h"
 }  // namespace
 
 const Table& baseline() {
-    static const Table table{"baseline",  project,       exchangeMotion, patches,     referencePatch,
-                             accumulate,  weighPatches,  sumPatches,     liftPatches, pick,
-                             follow,      blur,          edgeResiduals,  weighEdges,  liftEdges,
-                             liftReadout, eliminatePoint};
+    static constexpr Table table = tableNamed("baseline");
     return table;
 }
 
