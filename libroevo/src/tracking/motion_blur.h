@@ -15,38 +15,36 @@ class MotionBlur {
   public:
     /// @param rows     how the camera moves; unknown: as if it stood still
     /// @param seconds  one sigma of the time at which an edge was seen (sensor.blur_time); 0: all are sharp
-    MotionBlur(const RowMotion& rows, const PinholeCamera& camera, double seconds)
-        : vx_(static_cast<float>(rows.velocity.x())),
-          vy_(static_cast<float>(rows.velocity.y())),
-          vz_(static_cast<float>(rows.velocity.z())),
-          wx_(static_cast<float>(rows.turn.x())),
-          wy_(static_cast<float>(rows.turn.y())),
-          wz_(static_cast<float>(rows.turn.z())),
-          to_sigmas_x_(static_cast<float>(camera.fx * seconds / atRest(camera))),
-          to_sigmas_y_(static_cast<float>(camera.fy * seconds / atRest(camera))) {}
+    MotionBlur(const RowMotion& rows, const PinholeCamera& camera, double seconds) {
+        for (int k = 0; k < 3; ++k) {
+            motion_.velocity[k] = static_cast<float>(rows.velocity[k]);
+            motion_.turn[k] = static_cast<float>(rows.turn[k]);
+        }
+        motion_.to_sigmas_x = static_cast<float>(camera.fx * seconds / atRest(camera));
+        motion_.to_sigmas_y = static_cast<float>(camera.fy * seconds / atRest(camera));
+    }
 
     /// Variance across an edge with unit normal (nx, ny) at a point of the camera frame (m) that its motion
     /// adds, relative to that of an edge at rest.
     float variance(float x, float y, float z, float nx, float ny) const {
+        const auto& [velocity, turn, to_sigmas_x, to_sigmas_y] = motion_;
         const float inverse = 1 / z, a = x * inverse, b = y * inverse;
-        const float towards = vz_ * inverse + wx_ * b - wy_ * a;
-        const float u = vx_ * inverse + wy_ - wz_ * b - a * towards;
-        const float v = vy_ * inverse + wz_ * a - wx_ - b * towards;
-        const float sigmas = to_sigmas_x_ * nx * u + to_sigmas_y_ * ny * v;
+        const float towards = velocity[2] * inverse + turn[0] * b - turn[1] * a;
+        const float u = velocity[0] * inverse + turn[1] - turn[2] * b - a * towards;
+        const float v = velocity[1] * inverse + turn[2] * a - turn[0] - b * towards;
+        const float sigmas = to_sigmas_x * nx * u + to_sigmas_y * ny * v;
         return sigmas * sigmas;
     }
 
     /// For the kernels, which do the same.
-    kernels::CameraMotion motion() const {
-        return {{vx_, vy_, vz_}, {wx_, wy_, wz_}, to_sigmas_x_, to_sigmas_y_};
-    }
+    const kernels::CameraMotion& motion() const { return motion_; }
 
     /// One sigma across an edge at rest, px. Of larger images edges are found in as large a part of the
     /// scene, see scaledTo().
     static double atRest(const PinholeCamera& camera) { return std::max(1., camera.width / 640.) / 3; }
 
   private:
-    float vx_, vy_, vz_, wx_, wy_, wz_, to_sigmas_x_, to_sigmas_y_;
+    kernels::CameraMotion motion_;
 };
 
 }  // namespace roevo
