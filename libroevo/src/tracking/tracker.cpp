@@ -102,23 +102,22 @@ FineResult Tracker::refine(const Keyframe& reference, const Frame& frame, const 
 }
 
 Tracking Tracker::track(const Keyframe& reference, const Frame& frame, const Prediction& prediction) {
-    return run(reference, frame,
+    return run(reference, frame, prediction,
                {prediction.T_reference_camera.inverse(), prediction.T_reference_last.inverse()},
-               prediction.prior, prediction.shutter, prediction.brightness);
+               prediction.prior);
 }
 
 Tracking Tracker::trackFrom(const Keyframe& reference, const Frame& frame, const Prediction& prediction,
                             const Pose& T_keyframe_camera) {
-    return run(reference, frame, {T_keyframe_camera.inverse()}, prediction.prior, prediction.shutter,
-               prediction.brightness);
+    return run(reference, frame, prediction, {T_keyframe_camera.inverse()}, prediction.prior);
 }
 
 Tracking Tracker::search(const Keyframe& reference, const Frame& frame, const Prediction& prediction,
                          Tracking failed) {
     if (frame.edges.numEdges() == 0) return failed;
-    Tracking found = run(reference, frame,
-                         searchAround(prediction.T_reference_last, ideal_.width / ideal_.fx / (640. / 525)),
-                         prediction.search_prior, prediction.shutter, prediction.brightness);
+    const double share_of_view = ideal_.width / ideal_.fx / (640. / 525);
+    Tracking found = run(reference, frame, prediction,
+                         searchAround(prediction.T_reference_last, share_of_view), prediction.search_prior);
     if (found.tracked) std::swap(found, failed);
     failed.ms_coarse += found.ms_coarse;
     failed.ms_fine += found.ms_fine;
@@ -127,14 +126,15 @@ Tracking Tracker::search(const Keyframe& reference, const Frame& frame, const Pr
     return failed;
 }
 
-Tracking Tracker::run(const Keyframe& reference, const Frame& frame, const std::vector<Pose>& guesses,
-                      const PosePrior& prior, RollingShutter shutter, const Brightness& brightness) {
+Tracking Tracker::run(const Keyframe& reference, const Frame& frame, const Prediction& prediction,
+                      const std::vector<Pose>& guesses, const PosePrior& prior) {
     Tracking out;
     out.pose.keyframe = reference.id;
+    RollingShutter shutter = prediction.shutter;
     // Two images in a row are sheared nearly alike: better both for still than one of them
     if (!reference.row_motion.known()) shutter.seconds_per_row = 0;
     const Stopwatch coarse_watch;
-    const CoarseResult aligned = align(reference, frame, shutter, guesses, brightness);
+    const CoarseResult aligned = align(reference, frame, shutter, guesses, prediction.brightness);
     out.ms_coarse = coarse_watch.milliseconds();
     out.brightness = aligned.brightness;
     const Stopwatch fine_watch;

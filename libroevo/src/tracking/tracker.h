@@ -80,8 +80,9 @@ class Tracker {
     const OdometryOptions options_;  ///< scaled to the camera
 
   private:
-    Tracking run(const Keyframe& reference, const Frame& frame, const std::vector<Pose>& guesses,
-                 const PosePrior& prior, RollingShutter shutter, const Brightness& brightness);
+    /// @param guesses  of T_current_keyframe
+    Tracking run(const Keyframe& reference, const Frame& frame, const Prediction& prediction,
+                 const std::vector<Pose>& guesses, const PosePrior& prior);
     Fault runCoarse(const Keyframe& reference, const Frame& frame, const CoarseResult& aligned,
                     const RollingShutter& shutter, Tracking& out);
     Fault runFine(const Keyframe& reference, const Frame& frame, const CoarseResult& aligned,
