@@ -119,7 +119,8 @@ class HeldCost {
         : points_(points), image_(image), brightness_(brightness) {
         PhotometricResiduals residuals;
         residuals.evaluate(points, 0, image, kCamera, pose, RowMotion(), brightness);
-        const double information = 1 / (residuals.scale() * residuals.scale());
+        const double scale = std::max(1.0, residuals.cost());  // grey levels
+        const double information = 1 / (scale * scale);
         for (const kernels::PatchResidual& patch : patchesAt(pose)) {
             const double squared = static_cast<double>(patch.squared) * information / kernels::kPatchSize;
             const auto weight = static_cast<double>(points.weight[weight_.size()]);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "indexing.h"
 #include "pixels/nearest.h"
 #include "pixels/pixel_kernels.h"
 

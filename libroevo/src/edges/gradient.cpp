@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "indexing.h"
 #include "pixels/pixel_kernels.h"
 
 namespace roevo {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "indexing.h"
 #include "line_fit.h"
 
 namespace roevo {
@@ -31,18 +32,16 @@ void smoothDepthAlong(std::vector<Eigen::Vector3d>& points, const Pose& T_world_
         // A window that does not shrink at the ends
         const int first = std::clamp(i - kSpan, 0, std::max(0, count - 1 - 2 * kSpan));
         const int last = std::min(count - 1, first + 2 * kSpan);
-        const auto at = static_cast<std::size_t>(i);
+        const auto here = static_cast<std::size_t>(i);
         const Eigen::Vector2d chord = at(image, last) - at(image, first);
         LineFit<double> line;
-        for (int j = first; j <= last; ++j) {
-            const auto other = static_cast<std::size_t>(j);
-            line.add(chord.dot(image[other] - image[at]), inverse[other]);
-        }
+        for (int j = first; j <= last; ++j) line.add(chord.dot(at(image, j) - image[here]), at(inverse, j));
         if (!(line.spread() > 1e-9 * line.magnitude())) continue;
         const double fitted = line.atZero();
-        const double sigma = sensor.depthSigma(1 / inverse[at]) * inverse[at] * inverse[at];  // of 1 / z
-        if (!(std::abs(fitted - inverse[at]) <= kSigmas * sigma) || !(fitted > 0)) continue;
-        points[at] = T_world_camera * (Eigen::Vector3d(image[at].x(), image[at].y(), 1) / fitted);
+        const double sigma =
+            sensor.depthSigma(1 / inverse[here]) * inverse[here] * inverse[here];  // of 1 / z
+        if (!(std::abs(fitted - inverse[here]) <= kSigmas * sigma) || !(fitted > 0)) continue;
+        points[here] = T_world_camera * (Eigen::Vector3d(image[here].x(), image[here].y(), 1) / fitted);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
+#include "indexing.h"
 #include "tracking/relative_pose.h"
 #include "tracking/se3.h"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "indexing.h"
 #include "tracking/gauss_newton.h"
 #include "tracking/se3.h"
 

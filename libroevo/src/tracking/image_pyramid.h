@@ -2,7 +2,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-#include "roevo/camera/pinhole_camera.h"
+#include "indexing.h"
 
 namespace roevo {
 

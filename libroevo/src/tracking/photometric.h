@@ -46,8 +46,6 @@ class PhotometricResiduals {
                   const Brightness& brightness);
 
     int numVisible() const { return num_visible_; }
-    /// Robust spread of a patch's root mean square residual, grey levels.
-    double scale() const { return scale_; }
     double slope() const { return slope_; }  ///< see studentSlope(): mean over the points by their weights
     double cost() const { return cost_; }    ///< median, comparable between poses at one level
 
