@@ -38,9 +38,9 @@ void smoothDepthAlong(std::vector<Eigen::Vector3d>& points, const Pose& T_world_
         for (int j = first; j <= last; ++j) line.add(chord.dot(at(image, j) - image[here]), at(inverse, j));
         if (!(line.spread() > 1e-9 * line.magnitude())) continue;
         const double fitted = line.atZero();
-        const double sigma =
-            sensor.depthSigma(1 / inverse[here]) * inverse[here] * inverse[here];  // of 1 / z
-        if (!(std::abs(fitted - inverse[here]) <= kSigmas * sigma) || !(fitted > 0)) continue;
+        const double seen = inverse[here];
+        const double sigma = sensor.depthSigma(1 / seen) * seen * seen;  // of 1 / z
+        if (!(std::abs(fitted - seen) <= kSigmas * sigma) || !(fitted > 0)) continue;
         points[here] = T_world_camera * (Eigen::Vector3d(image[here].x(), image[here].y(), 1) / fitted);
     }
 }
