@@ -117,7 +117,7 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
                         matrix, vector);
         rows_.set(k, matrix, vector, x, y, z);
     }
-    slope_ = weights > 0 ? std::max(slopes / weights, kLeastSlope) : 1;
+    slope_ = meanSlope(slopes, weights);
     system.add(rows_.sum());
     return system;
 }

@@ -75,7 +75,7 @@ class DistanceFieldTracker {
     std::vector<float> gradient_u_, gradient_v_, residual_, magnitudes_;
     InformationRows rows_;
     EdgeClusters clusters_;
-    double slope_ = 1;  ///< see studentSlope()
+    double slope_ = 1;  ///< see meanSlope()
     double scale_ = 1;
     int visible_ = 0, inliers_ = 0;
     Times times_;

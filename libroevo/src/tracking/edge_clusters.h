@@ -42,7 +42,7 @@ class EdgeClusters {
     /// one edge were left out (the jackknife over clusters, which is the sandwich estimator with its
     /// small-sample correction). What nothing but a prior tells has the prior's variance; with no prior, what
     /// one edge alone tells is as uncertain as if nothing were known (1 m, 1 rad).
-    /// @param slope  of all residuals' pull (see studentSlope()): weights alone overstate the Hessian
+    /// @param slope  of all residuals' pull (see meanSlope()): weights alone overstate the Hessian
     PoseUncertainty uncertainty(const PoseSystem& system, double slope) const;
 
   private:

@@ -254,7 +254,7 @@ void EdgeTerm::weigh() {
     inliers_ = kernels::best().weighEdges(residual_.data(), sharpness_.data(), matched_.weight.data(),
                                           weight_.size(), static_cast<float>(1 / (scale_ * scale_)),
                                           static_cast<float>(options_.chi2), weight_.data(), fit);
-    slope_ = fit.weights > 0 ? std::max(fit.slopes / fit.weights, kLeastSlope) : 1;
+    slope_ = meanSlope(fit.slopes, fit.weights);
 }
 
 void EdgeTerm::accumulate(PoseSystem& system) {

@@ -54,7 +54,7 @@ class EdgeTerm : public ResidualTerm {
     int narrowed() const;
     const EdgeMatches& matches() const { return matches_; }
     int inliers() const { return inliers_; }  ///< matches that passed the chi-square test
-    double slope() const { return slope_; }   ///< see studentSlope(): mean over the inliers by their weights
+    double slope() const { return slope_; }   ///< see meanSlope(): of the inliers
     /// Of the matches, padded; 0 where one is an outlier.
     const std::vector<float>& weights() const { return weight_; }
 

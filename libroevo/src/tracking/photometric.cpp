@@ -101,7 +101,7 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
     const auto inverse = static_cast<float>(1 / (scale_ * scale_ * kernels::kPatchSize));
     kernels::Fit fit;
     kernels.weighPatches(residuals_.data(), prior_.data(), padded, inverse, weight_.data(), fit);
-    if (fit.weights > 0) slope_ = std::max(fit.slopes / fit.weights, kLeastSlope);
+    slope_ = meanSlope(fit.slopes, fit.weights);
 }
 
 kernels::PatchPoints PhotometricResiduals::view(const PhotometricPoints& points, int level) const {

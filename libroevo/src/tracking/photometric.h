@@ -46,7 +46,7 @@ class PhotometricResiduals {
                   const Brightness& brightness);
 
     int numVisible() const { return num_visible_; }
-    double slope() const { return slope_; }  ///< see studentSlope(): mean over the points by their weights
+    double slope() const { return slope_; }  ///< see meanSlope(): of the points
     double cost() const { return cost_; }    ///< median, comparable between poses at one level
 
     /// The brightness that fits the present alignment best (weighted linear regression).

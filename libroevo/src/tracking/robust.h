@@ -60,14 +60,18 @@ Scalar studentWeight(Scalar weight, Scalar squared, Scalar variance = 1) {
     return weight * (kStudentNu + 1) / (kStudentNu * variance + squared);
 }
 
-inline constexpr double kLeastSlope = 0.2;  ///< of any set of residuals
-
 /// How fast a residual's pull grows with it, as a share of its weight: 1 where residuals are small, negative
 /// where the t-distribution lets go of one.
 /// @param squared  residual over its spread, squared
 template <typename Scalar>
 Scalar studentSlope(Scalar squared) {
     return (kStudentNu - squared) / (kStudentNu + squared);
+}
+
+/// Mean slope of residuals by their weights, from the sums of both; 1 where there are none.
+inline double meanSlope(double slopes, double weights) {
+    constexpr double kLeastSlope = 0.2;
+    return weights > 0 ? std::max(slopes / weights, kLeastSlope) : 1;
 }
 
 }  // namespace roevo
