@@ -22,9 +22,6 @@ constexpr double kLeastVisible = 0.25;
 constexpr double kMostSigmaTranslation = 0.02;  ///< m
 constexpr double kMostSigmaRotation = 1 * kDegree;
 
-constexpr double kDepthSigmas = 3;    ///< within which depths agree
-constexpr double kDepthFloor = 0.02;  ///< m, one sigma: foregrounds are found differently from elsewhere
-
 OdometryOptions widened(OdometryOptions options, double scale, bool thinned) {
     if (thinned) options.fine = forThinned(options.fine);
     options.fine.search_radius = std::max(options.fine.search_radius, kSearchRadius * scale);
@@ -90,11 +87,8 @@ void EdgeRegistrar::lookBack(const Keyframe& keyframe, const EdgePoints3D& frame
     for (std::size_t k = 0; k < matches_.size(); ++k) {
         const auto i = static_cast<std::size_t>(matches_.reference[k]),
                    j = static_cast<std::size_t>(matches_.current[k]);
-        const auto seen = static_cast<double>(keyframe.edges.points.z[j]);
-        const double difference = static_cast<double>(projected_.z[i]) - seen;
-        const double sigma = options_.sensor.depthSigma(seen);
-        if (difference * difference <
-            kDepthSigmas * kDepthSigmas * (2 * sigma * sigma + kDepthFloor * kDepthFloor))
+        if (depthsAgree(static_cast<double>(projected_.z[i]), static_cast<double>(keyframe.edges.points.z[j]),
+                        options_.sensor))
             ++agreed;
     }
     out.depth_agreement =

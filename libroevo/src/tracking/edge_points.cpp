@@ -60,6 +60,12 @@ double depthWeight(double depth, const SensorOptions& sensor) {
     return 1 / (1 + std::exp(sensor.depth_weight_k * (depth - (sensor.max_depth + sensor.min_depth) / 2)));
 }
 
+bool depthsAgree(double expected, double seen, const SensorOptions& sensor) {
+    constexpr double kSigmas = 3, kFloor = 0.02;  // m: foregrounds are found differently from elsewhere
+    const double difference = expected - seen, sigma = sensor.depthSigma(seen);
+    return difference * difference < kSigmas * kSigmas * (2 * sigma * sigma + kFloor * kFloor);
+}
+
 EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const PinholeCamera& camera,
                        const RowMotion& rows, const EdgeOptions& edge_options, const SensorOptions& sensor) {
     const double scale = std::max(1.0, camera.pixelScale());

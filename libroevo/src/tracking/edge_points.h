@@ -27,6 +27,9 @@ struct EdgePoints3D {
 /// w_s(d) of Eq. (20).
 double depthWeight(double depth, const SensorOptions& sensor);
 
+/// Whether a point may have both depths, m: what is expected, and what is seen.
+bool depthsAgree(double expected, double seen, const SensorOptions& sensor);
+
 /// Looks up the foreground depth of every edge point (`depth` is the raw image of the possibly distorted
 /// `camera`, the edges are in ideal pixels), corrects it by the edge's two sides (EdgeSides), splits edges at
 /// depth jumps and drops pieces of fewer than five points.

@@ -187,17 +187,14 @@ void EdgeTerm::tangentResiduals(const RowMotion& rows) {
 }
 
 double EdgeTerm::depthAgreement() {
-    constexpr double kSigmas = 3, kFloor = 0.02;  // m: foregrounds are found differently from elsewhere
     int known = 0, agreed = 0;
     if (!use_depth_ || frame_->images.depth.empty()) return 1;
     for (std::size_t k = 0; k < matches_.size(); k += kDepthStride) {
         if (weight_[k] <= 0) continue;
         const double seen = static_cast<double>(currentDepth(static_cast<std::size_t>(matches_.current[k])));
         if (seen <= 0) continue;
-        const auto z = static_cast<double>(matched_.projected.z[k]);
-        const double sigma = sensor_.depthSigma(seen);
         ++known;
-        if ((z - seen) * (z - seen) < kSigmas * kSigmas * (2 * sigma * sigma + kFloor * kFloor)) ++agreed;
+        if (depthsAgree(static_cast<double>(matched_.projected.z[k]), seen, sensor_)) ++agreed;
     }
     return known > 0 ? static_cast<double>(agreed) / known : 1;
 }
