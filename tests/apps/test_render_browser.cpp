@@ -12,6 +12,9 @@ TEST_F(RenderPage, WorksInABrowser) {
         GTEST_SKIP() << "no chromium here (apt-get install chromium): the page is not tried in a browser";
     writeTumTrajectory(folder_ / "truth.txt", test::circle(1.1));
     writeTumTrajectory(folder_ / "other.txt", test::circle(1.3));
+    map_.push_back(test::lineOf({-3, 0, -7}, {3, 0, -7}, 100));  // behind all else, but of the room
+    map_.back().colours.assign(100, {20, 250, 20});
+    savePly(result() + "/map.ply", map_);
     ASSERT_EQ(
         render({"--ground-truth", folder_ / "truth.txt", "--trajectory", "</b>x=" + (folder_ / "other.txt")})
             .exit_code,
@@ -25,6 +28,7 @@ TEST_F(RenderPage, WorksInABrowser) {
     const auto number = [&](const char* key) { return found[key].get<int>(); };
     EXPECT_GT(number("edges"), 300) << found;
     EXPECT_GT(number("path"), 50) << found;
+    EXPECT_GT(number("behind"), 80) << "the first view holds the whole map" << found;
     EXPECT_EQ(number("hidden"), 0) << found;
     EXPECT_EQ(number("shown"), number("edges")) << found;
     EXPECT_LT(number("path_by_error"), number("path") / 5) << found;

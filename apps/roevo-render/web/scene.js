@@ -173,7 +173,7 @@ roevo.withoutOutliers = function (points) {
     if (points.length === 0) return points;
     const middle = [0, 1, 2].map(axis => roevo.quantile(points.map(p => p[axis]), 0.5));
     const distance = p => Math.hypot(p[0] - middle[0], p[1] - middle[1], p[2] - middle[2]);
-    const reach = 1.6 * roevo.quantile(points.map(distance), 0.9);
+    const reach = 3 * roevo.quantile(points.map(distance), 0.9);  // real maps reach up to 2.8 times as far
     return points.filter(p => distance(p) <= reach);
 };
 
@@ -213,7 +213,7 @@ roevo.lengthText = function (metres) {
 roevo.grid = function (points) {
     const range = axis => [0.02, 0.98].map(share => roevo.quantile(points.map(p => p[axis]), share));
     const [x, y, z] = [0, 1, 2].map(range), cell = roevo.roundLength(Math.max(x[1] - x[0], y[1] - y[0], 0.1) / 5);
-    const low = v => (Math.floor(v / cell) - 1) * cell, high = v => (Math.ceil(v / cell) + 1) * cell;
+    const low = v => Math.floor(v / cell) * cell, high = v => Math.ceil(v / cell) * cell;
     const positions = [];
     for (let u = low(x[0]); u <= high(x[1]) + cell / 2; u += cell) positions.push(u, low(y[0]), z[0], u, high(y[1]), z[0]);
     for (let v = low(y[0]); v <= high(y[1]) + cell / 2; v += cell) positions.push(low(x[0]), v, z[0], high(x[1]), v, z[0]);

@@ -77,6 +77,7 @@
         figure: 'cells of ' + roevo.lengthText(grid.cell),
         object: roevo.lines(grid.positions, roevo.evenColours(grid.positions.length / 3, [58, 68, 84], 2), {width: 1})
     });
+    const framed = content.concat(roevo.sample([grid.positions], 5000));
 
     paths.forEach((path, i) => {  // where they lie on one another the first in the list is seen
         path.item.object.material.polygonOffset = true;
@@ -148,7 +149,7 @@
     function look(name) {
         viewName = name;
         const area = freeArea(), tangent = 0.94 * Math.tan(kFieldOfView * Math.PI / 360) / innerHeight;
-        const place = roevo.standpoint(content, ...kViews[name],
+        const place = roevo.standpoint(framed, ...kViews[name],
                                        [tangent * (area.right - area.left), tangent * (area.bottom - area.top)]);
         camera.position.copy(place.position);
         controls.target.copy(place.target);
