@@ -204,10 +204,9 @@ roevo.roundLength = function (length) {
     return power * [5, 2, 1].find(n => n * power <= length * 1.000001);
 };
 
-roevo.lengthText = function (metres) {
-    const [unit, factor] = metres >= 1 ? ['m', 1] : metres >= 0.01 ? ['cm', 100] : ['mm', 1000];
-    return Number((metres * factor).toPrecision(3)) + ' ' + unit;
-};
+// Lengths are in m and errors in cm, as in all that the programs print.
+roevo.lengthText = metres => Number(metres.toPrecision(3)) + ' m';
+roevo.errorText = metres => Number((100 * metres).toPrecision(3)) + ' cm';
 
 // Lines on the ground under the points, and the size of their cells.
 roevo.grid = function (points) {

@@ -29,7 +29,7 @@
             item: add({
                 id: path.role === 'other' ? 'other' + (others + 1) : path.role, title: path.name, swatch: colour,
                 list: 'path-list', shown: path.role !== 'live',
-                figure: path.ate === null ? '' : 'ATE ' + roevo.lengthText(path.ate),
+                figure: path.ate === null ? '' : 'ATE ' + roevo.errorText(path.ate),
                 object: roevo.lines(poses.positions, roevo.evenColours(poses.count, roevo.rgb(colour), poses.count),
                                     {width: path.role === 'final' ? 2.6 : 2})
             })
@@ -181,8 +181,8 @@
             paint.needsUpdate = true;
         }
         byId('scale').hidden = !byError;
-        byId('middle').textContent = roevo.lengthText(most / 2);
-        byId('most').textContent = roevo.lengthText(most);
+        byId('middle').textContent = roevo.errorText(most / 2);
+        byId('most').textContent = roevo.errorText(most);
         changed();
     }
 
@@ -239,7 +239,7 @@
 
     function momentText(path, i) {
         const error = path.errors ? path.errors[i] : NaN;
-        return path.times[i].toFixed(2) + ' s' + (error >= 0 ? ' · error ' + roevo.lengthText(error) : '');
+        return path.times[i].toFixed(2) + ' s' + (error >= 0 ? ' · error ' + roevo.errorText(error) : '');
     }
 
     function showMoment(i) {
