@@ -56,8 +56,7 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_flag("--list-methods", a.list_methods, "Say what methods there are and end");
     app.add_option("--output", a.output, "Folder for the results; created when missing");
     app.add_option("--config", a.config, "Options of ROEVO (.ini), see config_ini/roevo.ini");
-    app.add_option("--set", a.sets, "section.key=value: one option on top of the config; may be repeated")
-        ->allow_extra_args(false);
+    addSetOption(app, a.sets);
     addFrameOptions(app, a.first, a.skip, " of each recording");
     addInputOptions(app, a.choice);
     app.add_option("--timeout", a.timeout, "Seconds after which a run is ended as a failure")

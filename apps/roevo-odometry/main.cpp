@@ -42,8 +42,7 @@ int run(int argc, char** argv) {
                    "A .rawlog file, a ROS bag or a dataset folder (layout detected)");
     app.add_option("--output", settings.output_dir, "Folder for the results; created when missing");
     app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");
-    app.add_option("--set", sets, "section.key=value: one option on top of the config; may be repeated")
-        ->allow_extra_args(false);
+    addSetOption(app, sets);
     app.add_option("--mode", mode,
                    "ct: coarse tracking only; tr: coarse and fine; ba: with local mapping (default)");
     app.add_option(

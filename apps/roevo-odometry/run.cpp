@@ -336,6 +336,11 @@ RunReport runOdometry(const RunSettings& settings) {
     if (!failure.empty())
         throw std::runtime_error(settings.input + ": " + failure + " (see " +
                                  (fs::path(settings.output_dir) / "frames.csv").string() + ")");
+    for (const std::string& name : kResults)  // what else had such a name is removed
+        if (fs::exists(fs::path(settings.output_dir) / name)) report.files.push_back(name);
+    for (const std::string& file :
+         {settings.covariances, settings.map_out, settings.simple_map, settings.rawlog_with_poses})
+        if (!file.empty()) report.files.push_back(file);
     return report;
 }
 

@@ -28,6 +28,16 @@ std::string joined(const std::vector<MapRefusal>& refusals) {
 
 }  // namespace
 
+std::string Losses::toText() const {
+    const auto times = [](std::size_t count) {
+        return count == 1 ? std::string("once") : std::to_string(count) + " times";
+    };
+    std::string text = "lost " + times(lost);
+    if (found_again > 0) text += ", found again " + times(found_again);
+    if (joined > 0) text += ", begun anew and joined later " + times(joined);
+    return found_again + joined > 0 ? text : text + ", not found again";
+}
+
 Losses RunReport::losses() const {
     Losses out;
     bool tracked = false;

@@ -21,6 +21,9 @@ struct Losses {
     std::size_t joined = 0;       ///< tracks that were begun anew and later joined to an older one
     std::size_t loops_closed = 0;
     std::size_t pieces = 0;  ///< of the trajectory; where they are relative to each other was not measured
+
+    /// "lost 3 times, found again once", for one loss at least.
+    std::string toText() const;
 };
 
 /// The map of an earlier recording that a run began with.
@@ -48,6 +51,7 @@ struct RunReport {
     std::vector<KeyframeInfo> keyframes;  ///< without those of map_in
     std::optional<LoadedMap> map_in;
     SavedMap map_out;
+    std::vector<std::string> files;  ///< that were written: names in the output folder, paths elsewhere
     std::size_t map_edges = 0, map_points = 0, semi_dense_points = 0;
     std::vector<StampedPose> camera_on_robot;  ///< T_robot_camera of the frames with a pose
     bool mounted = false;                    ///< some frame's sensor sat elsewhere than on the robot's origin

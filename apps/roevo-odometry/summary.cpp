@@ -203,11 +203,6 @@ Json groundTruthJson(const RunReport& report) {
     return json;
 }
 
-std::string times(std::size_t count) {
-    if (count == 0) return "never";
-    return count == 1 ? "once" : std::to_string(count) + " times";
-}
-
 std::string keyframes(int count) {
     return counted(static_cast<std::size_t>(count), "keyframe");
 }
@@ -222,6 +217,20 @@ void printErrors(const Evaluation& e) {
         std::printf("RPE         too short for 1 s; ");
     std::printf("%.3f cm, %.3f deg per frame (rmse)\n", 100 * e.rpe_frame.translation.rmse,
                 e.rpe_frame.rotation.rmse);
+}
+
+// In lines that fit a terminal.
+void printFiles(const std::vector<std::string>& files) {
+    constexpr std::size_t kWidth = 92;
+    std::string line;
+    for (const std::string& file : files) {
+        if (!line.empty() && line.size() + file.size() > kWidth) {
+            std::printf("            %s\n", line.c_str());
+            line.clear();
+        }
+        line += (line.empty() ? "" : "  ") + file;
+    }
+    std::printf("            %s\n", line.c_str());
 }
 
 }  // namespace
@@ -274,9 +283,7 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
         if (reason.compare(0, initialised.size(), initialised) != 0 || count > 1)
             std::printf("            %zu %s\n", count, reason.c_str());
     const Losses losses = report.losses();
-    if (losses.lost > 0)
-        std::printf("losses      lost %s, found again %s, joined later %s\n", times(losses.lost).c_str(),
-                    times(losses.found_again).c_str(), times(losses.joined).c_str());
+    if (losses.lost > 0) std::printf("losses      %s\n", losses.toText().c_str());
     if (losses.pieces > 1)
         std::printf(
             "            trajectory in %zu pieces, the join is not measured: see 'segment' in frames.csv\n",
@@ -310,6 +317,7 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
         std::printf("errors      %s\n",
                     report.ground_truth.empty() ? "no ground truth" : report.evaluation_fault.c_str());
     std::printf("files       %s\n", (std::filesystem::path(output_dir) / "").c_str());
+    printFiles(report.files);
 }
 
 void printProfile(const RunReport& report) {

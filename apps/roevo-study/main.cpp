@@ -152,8 +152,7 @@ int run(int argc, char** argv) {
         ->required();
     app.add_option("--output", output, "Folder for the results; created when missing")->required();
     app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");
-    app.add_option("--set", sets, "section.key=value: one option on top of the config; may be repeated")
-        ->allow_extra_args(false);
+    addSetOption(app, sets);
     app.add_option("--mode", mode,
                    "Of the odometry, where the experiment does not choose it: ct, tr or ba (default; "
                    "loop, sigmas and distribution: ba and tr)");

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -25,16 +24,6 @@ std::string count(std::size_t poses) {
 std::string range(const std::vector<StampedPose>& poses) {
     return count(poses.size()) + " from " + seconds(poses.front().timestamp) + " to " +
            seconds(poses.back().timestamp);
-}
-
-double closestStamps(const std::vector<StampedPose>& a, const std::vector<StampedPose>& b) {
-    double closest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
-        const double dt = a[i].timestamp - b[j].timestamp;
-        closest = std::min(closest, std::abs(dt));
-        dt < 0 ? ++i : ++j;
-    }
-    return closest;
 }
 
 double largestGap(const std::vector<StampedPose>& poses) {
@@ -72,8 +61,9 @@ std::string explainTooFew(const std::vector<StampedPose>& reference, const std::
                          : "only " + count(found) + " have") +
            " a reference within " + seconds(max_dt, 3) + " (at least 3 are needed): reference has " +
            range(reference) + " (largest gap " + seconds(largestGap(reference), 3) + "), estimate has " +
-           range(estimate) + "; the closest stamps are " + seconds(closestStamps(reference, estimate), 3) +
-           " apart" + advice(reference, estimate, found, max_dt);
+           range(estimate) + "; the closest stamps are " +
+           seconds(smallestDifference(stampsOf(reference), stampsOf(estimate)), 3) + " apart" +
+           advice(reference, estimate, found, max_dt);
 }
 
 // Of the estimate, in units of the reference's.

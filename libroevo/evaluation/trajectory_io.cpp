@@ -22,7 +22,7 @@ NamedFile splitNamedFile(const std::string& argument) {
     const std::size_t equals = argument.find('=');
     std::error_code unseen;
     if (equals == std::string::npos || std::filesystem::exists(argument, unseen)) return {"", argument};
-    if (equals == 0) throw UsageError("'" + argument + "' has no name before the '='");
+    if (equals == 0 || equals + 1 == argument.size()) throw UsageError("'" + argument + "' is not NAME=FILE");
     return {argument.substr(0, equals), argument.substr(equals + 1)};
 }
 

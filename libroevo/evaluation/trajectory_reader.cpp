@@ -76,8 +76,9 @@ class Rows {
         throw std::runtime_error(path_ + ":" + std::to_string(line_) + ": " + what);
     }
     [[noreturn]] void failAsRow(const std::string& expected) const {
+        const std::string what = "number; expected " + expected;
         for (std::size_t k = 0; k < words_.size(); ++k)
-            (void)number<double>(k);  // a word says more than a count
+            (void)number<double>(k, what.c_str());  // a word says more than a count
         fail("expected " + expected + ", found " + std::to_string(words_.size()));
     }
 

@@ -26,6 +26,12 @@ void addFrameOptions(CLI::App& app, std::size_t& first, std::size_t& skip, const
         ->check([](const std::string& word) { return faultOfCount(word, 0); }, "");
 }
 
+void addSetOption(CLI::App& app, std::vector<std::string>& settings) {
+    app.add_option("--set", settings, "One option on top of the config; for several, give --set again")
+        ->allow_extra_args(false)
+        ->option_text("SECTION.KEY=VALUE");
+}
+
 OdometryOptions collectOptions(const std::string& config_file, const std::vector<std::string>& settings,
                                const std::string& mode) {
     OdometryOptions options;

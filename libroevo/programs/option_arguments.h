@@ -14,6 +14,9 @@ namespace roevo {
 /// The options --first and --skip. @param of  which frames, for the help: " of each recording"; may be empty
 void addFrameOptions(CLI::App& app, std::size_t& first, std::size_t& skip, const std::string& of = "");
 
+/// The option --set, for collectOptions().
+void addSetOption(CLI::App& app, std::vector<std::string>& settings);
+
 /// The options in force: defaults, then the config file, then each `section.key=value`, then the mode.
 /// @param config_file, mode  may be empty
 /// @throws UsageError that names the option and its value; std::runtime_error for an unreadable file

@@ -78,7 +78,8 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* 
         // CLI11 complains of a missing option before an unknown one, yet the unknown one is mostly why it is
         // missing.
         if (const auto unknown = app.remaining(); !unknown.empty())
-            throw UsageError("unknown argument '" + unknown.front() + "'");
+            throw UsageError(unknown.front()[0] == '-' ? "unknown option '" + unknown.front() + "'"
+                                                       : "'" + unknown.front() + "' has no option before it");
         throw UsageError(e.what());
     }
     return std::nullopt;

@@ -9,7 +9,7 @@ namespace roevo {
 std::string durationText(double seconds);
 
 /// Progress of long work, on stderr: one self-updating line with the time left on a terminal, a plain line
-/// about every 10 % (or every 10 s when the total is unknown) in a log.
+/// about every 10 % (or every 10 s when it is not known how much there is) in a log.
 class Progress {
   public:
     /// @param total    number of steps, 0 when unknown
@@ -23,8 +23,8 @@ class Progress {
     /// @param fraction  share of the work done, 0 to 1, for work whose number of steps is not known
     void update(std::size_t done, double fraction = 0);
 
-    /// Ends the line. Called by the destructor when forgotten, so that an error message starts on a line of
-    /// its own.
+    /// Prints the last line, with the time taken. Without it the destructor only ends the line on a terminal,
+    /// so that an error message starts on one of its own.
     void finish();
 
   private:

@@ -106,7 +106,7 @@ void requireAll(const Values& values, const std::vector<std::string>& missing, c
         std::string text;
         for (const std::string& key : missing) text += (text.empty() ? " lacks " : ", ") + key;
         const std::string likely = misspelt(values, missing, 2);
-        throw std::runtime_error("no intrinsics: " + file + text + (likely.empty() ? "" : "; " + likely));
+        throw std::runtime_error(file + text + (likely.empty() ? "" : "; " + likely));
     }
     std::vector<std::string> absent;
     for (const std::string& key : knownKeys())

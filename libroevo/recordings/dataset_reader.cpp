@@ -280,7 +280,8 @@ bool requireInput(const std::string& input, const DatasetOptions& options) {
     if (const auto given = options.folder.options(); is_bag && !given.empty())
         throw UsageError(given[0].first + " is for folders, and " + input + " is a bag");
     const bool is_folder = fs::is_directory(input, fault);
-    if (!is_folder && !is_bag) throw std::runtime_error("not a folder: " + input);
+    if (!is_folder && !is_bag)
+        throw std::runtime_error(input + " is not a folder, nor a ROS bag (.bag, .db3, .mcap)");
     if (is_folder && !isPermitted(input, R_OK | X_OK))
         throw std::runtime_error("cannot read folder " + input + ": " + std::strerror(errno));
     return is_folder;
@@ -317,8 +318,9 @@ DatasetReader openDataset(const std::string& folder, const DatasetOptions& optio
     if (wanted != "auto")
         throw std::runtime_error("unknown dataset format '" + wanted + "' (known: auto, " + names + ")");
     const std::string better = betterFolder(folder);
-    throw std::runtime_error("no dataset recognised in " + folder + " (known layouts and what each needs: " +
-                             needs + ")" + (better.empty() ? "" : "; did you mean " + better + "?"));
+    throw std::runtime_error("no dataset recognised in " + folder +
+                             (better.empty() ? " (known layouts and what each needs: " + needs + ")"
+                                             : "; did you mean " + better + "?"));
 }
 
 std::vector<std::string> datasetFormats() {

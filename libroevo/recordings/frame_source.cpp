@@ -174,7 +174,13 @@ std::unique_ptr<FrameSource> openSource(const std::string& input, const InputCho
     if (choice.topics.any()) throw UsageError("topics are for bags, and " + input + " is none");
     if (const auto given = choice.folder.options(); !given.empty())
         throw UsageError(given[0].first + " is for folders, and " + input + " is none");
-    return std::make_unique<RawlogSource>(input, choice.sensor_label);
+    try {
+        return std::make_unique<RawlogSource>(input, choice.sensor_label);
+    } catch (const std::runtime_error& e) {
+        if (fs::path(input).extension() == ".rawlog") throw;
+        throw std::runtime_error(std::string(e.what()) +
+                                 "; inputs are .rawlog files, ROS bags (.bag, .db3, .mcap) and folders");
+    }
 }
 
 void skipFrames(FrameSource& source, std::size_t count, const std::string& input) {

@@ -18,7 +18,8 @@
         for (let i = 0; i < data.length; i += 4) n += is(data[i], data[i + 1], data[i + 2]);
         return n;
     };
-    const magenta = (r, g, b) => r > 110 && b > 110 && g < 0.6 * r, orange = (r, g, b) => r > 180 && g > 0.38 * r && g < 0.6 * r && b < 0.5 * r;
+    const magenta = (r, g, b) => r > 110 && b > 110 && g < 0.6 * r, green = (r, g, b) => g > 150 && r < 90 && b < 90;
+    const orange = (r, g, b) => r > 180 && g > 0.38 * r && g < 0.6 * r && b < 0.5 * r;
     const box = id => document.querySelector('input[data-item="' + id + '"]');
     const differing = (a, b) => count(a.map((v, i) => Math.abs(v - b[i])), (r, g, b) => r + g + b > 60);
     const mouse = (type, x, y, target) => target.dispatchEvent(new MouseEvent(type, {clientX: x, clientY: y, button: 0, bubbles: true}));
@@ -28,6 +29,7 @@
     let now = await pixels();
     found.edges = count(now, magenta);
     found.path = count(now, orange);
+    found.behind = count(now, green);
     box('edges').click();
     found.hidden = count(await pixels(), magenta);
     box('edges').click();

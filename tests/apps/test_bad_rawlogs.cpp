@@ -34,6 +34,8 @@ TEST_F(BadRawlog, NotARawlog) {
     expectError(run(folder_ / "text.rawlog"), 1, kName, {"text.rawlog", "not a rawlog"});
     test::writeFile(folder_ / "empty.rawlog", "");
     expectError(run(folder_ / "empty.rawlog"), 1, kName, {"empty.rawlog"});
+    test::writeFile(folder_ / "film.mp4", "this is no film\n");
+    expectError(run(folder_ / "film.mp4"), 1, kName, {"film.mp4", ".rawlog files", ".bag", "folders"});
 }
 
 TEST_F(BadRawlog, WithoutRangeImages) {

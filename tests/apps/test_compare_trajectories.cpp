@@ -174,7 +174,9 @@ TEST_F(CompareTrajectories, NamesMustBeFitForTablesAndFolders) {
         expectError(run({input}, more), 2, "roevo-compare", {"--trajectory", words});
     };
     expect({file}, "expected NAME=FILE");
-    expectError(run({input}, {"--trajectory", "=" + file}), 2, "roevo-compare", {"no name before the '='"});
+    expectError(run({input}, {"--trajectory", "=" + file}), 2, "roevo-compare",
+                {"'=" + file + "' is not NAME=FILE"});
+    expectError(run({input}, {"--trajectory", "a="}), 2, "roevo-compare", {"'a=' is not NAME=FILE"});
     expect({"a=" + file, "a=" + file}, "there twice");
     expect({"icp-frame=" + file}, "the name of a method");
     expect({"ROEVO TR=" + file}, "the name of a method");

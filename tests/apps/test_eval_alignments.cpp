@@ -174,7 +174,7 @@ TEST_F(EvalSeveral, FailuresAreOneLine) {
                 {"late.txt: no pose", "902.000000"});
     test::writeFile(folder_ / "far.txt", "100 0 0 0 0 0 0 1\n101 1e200 0 0 0 0 0 1\n102 0 1e200 0 0 0 0 1\n");
     expectError(eval({folder_ / "far.txt"}), 1, kName, {"far.txt: its errors are too large to be computed"});
-    expectError(eval({"=" + (folder_ / "right.txt")}), 2, kName, {"no name before"});
+    expectError(eval({"=" + (folder_ / "right.txt")}), 2, kName, {"is not NAME=FILE"});
     EXPECT_FALSE(std::filesystem::exists(folder_ / "t.csv"));
 }
 

@@ -27,6 +27,7 @@ TEST_P(EveryProgram, VersionIsNameAndNumber) {
 TEST_P(EveryProgram, WrongUsageIsExitCode2) {
     expectError(test::runProgram(GetParam(), {"--no-such-option"}), 2, GetParam(),
                 {"--no-such-option", "--help"});
+    expectError(test::runProgram(GetParam(), {"a/path"}), 2, GetParam(), {"a/path", "--help"});
     expectError(test::runProgram(GetParam(), {}), 2, GetParam(), {"required"});
 }
 

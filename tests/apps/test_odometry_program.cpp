@@ -1,4 +1,5 @@
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -78,6 +79,19 @@ TEST_F(OdometryProgram, TheSummaryNamesTheGroundTruthForReadersInAnyFolder) {
     const fs::path named = summary()["ground_truth"]["file"].get<std::string>();
     EXPECT_TRUE(named.is_absolute()) << named;
     EXPECT_TRUE(fs::equivalent(named, truth)) << named;
+}
+
+TEST_F(OdometryProgram, TheEndNamesEveryFileThatWasWritten) {
+    const std::string covariances = folder_ / "covariances.txt";
+    const auto result = runFrames(slidingRecording(5), {"--covariances", covariances});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    std::string end = result.out.substr(result.out.find("\nfiles  "));
+    std::replace(end.begin(), end.end(), '\n', ' ');
+    EXPECT_NE(end.find(" " + covariances + " "), std::string::npos) << end;
+    EXPECT_EQ(end.find("trajectory_robot.txt"), std::string::npos) << end;
+    for (const auto& file : fs::directory_iterator(output()))
+        EXPECT_NE(end.find(" " + file.path().filename().string() + " "), std::string::npos)
+            << file.path() << end;
 }
 
 TEST_F(OdometryProgram, OneIsNotSaidAsSeveral) {

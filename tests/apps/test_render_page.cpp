@@ -258,7 +258,8 @@ TEST_F(RenderPage, FailuresAreOneLineAndLeaveNoPage) {
     expectError(with(result(), {"--ground-truth", folder_ / "late.txt"}), 1, kName,
                 {"final: no pose", "900.000000"});
     expectError(with(result(), {"--trajectory", "a=" + (folder_ / "late.txt")}), 1, kName, {"a: no pose"});
-    expectError(with(result(), {"--trajectory", "=" + (folder_ / "late.txt")}), 2, kName, {"no name"});
+    expectError(with(result(), {"--trajectory", "=" + (folder_ / "late.txt")}), 2, kName,
+                {"is not NAME=FILE"});
     expectError(with(result(), {"--max-size", "0"}), 2, kName, {"--max-size"});
     expectError(with(result(), {"--layer", "edges"}), 2, kName, {"--layer", ".png"});
     expectError(test::runProgram(kName, {"--output", page()}), 2, kName, {"--scene", "--input"});

@@ -35,6 +35,17 @@ TEST(RunReport, APoseThatIsNotANumberIsAFailureThatSaysWhere) {
     }
 }
 
+TEST(RunReport, LossesReadWellOneAndMany) {
+    Losses losses;
+    losses.lost = 1;
+    EXPECT_EQ(losses.toText(), "lost once, not found again");
+    losses.found_again = 1;
+    EXPECT_EQ(losses.toText(), "lost once, found again once");
+    losses.lost = 3;
+    losses.joined = 2;
+    EXPECT_EQ(losses.toText(), "lost 3 times, found again once, begun anew and joined later 2 times");
+}
+
 TEST(RunReport, LossesAreCountedOnceEach) {
     RunReport report = trackedReport();
     const auto add = [&](FrameStatus status) -> FrameResult& {

@@ -106,6 +106,8 @@ TEST_F(TrajectoryFormats, ErrorsNameFileAndLineAndWhatWasExpected) {
     };
     const std::string k = "1 0 0 0 0 1 0 0 0 0 1 0\n", e = "5,0,0,0,1,0,0,0\n";
     expect("1 2 3\n", "t:1: expected 8 numbers (timestamp tx ty tz qx qy qz qw), 12 numbers (KITTI");
+    expect("hello\n",
+           "t:1: 'hello' is not a number; expected 8 numbers (timestamp tx ty tz qx qy qz qw), 12");
     expect(k + "1 0 0 0 0 1 0 0 0 0 1\n",
            "t:2: expected 12 numbers (KITTI: rows r r r t of a 3 x 4 matrix), found 11");
     expect(k + "1 0 0 0 0 1 0 nan 0 0 1 0\n", "t:2: 'nan' is not finite");

@@ -162,7 +162,7 @@ TEST(Rgbd2rawlogOptions, BadOutputsAndInputs) {
     expectError(convert(input.path(), input / "dir.rawlog"), 1, "rgbd2rawlog",
                 {"dir.rawlog", "it is a folder"});
     expectError(convert(input / "rgb.txt", input / "o.rawlog"), 1, "rgbd2rawlog",
-                {"rgb.txt", "not a folder"});
+                {"rgb.txt", "not a folder", ".bag"});
     expectError(convert(input.path(), "/sys/o.rawlog"), 1, "rgbd2rawlog", {"/sys/o"});  // not even root may
     expectError(convert(input.path(), input / "rgb.txt/o.rawlog"), 1, "rgbd2rawlog",
                 {"rgb.txt is not a folder"});

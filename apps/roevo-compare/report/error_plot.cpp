@@ -21,6 +21,7 @@ constexpr double kAxesFoot = 0.08, kAxesShare = (1 - kAxesFoot) / 3;  // of the 
 constexpr double kMinDrift = 1e-3;                                    // %, deg/m
 constexpr double kShortestPath = 0.1, kLongestPath = 1e4;  // m: as long as rooms and buildings need
 constexpr std::size_t kFewestPieces = 10;                  // of a path length
+constexpr double kClipAt = 5;  // times the median extent: a line of more leaves the picture of the axes
 const Figure kNothing{"", "", "No run has errors that could be drawn."};
 
 using Rows = std::vector<std::vector<double>>;
@@ -95,12 +96,12 @@ std::string ticsOf(char axis, double low, double high) {
     return std::string("set ") + axis + "tics (" + tics + ")\n";
 }
 
-// What of the errors is shown. Where a line passes through zero it would reach down for ever.
+// All errors, with some room around them.
 std::pair<double, double> rangeOf(const std::vector<Line>& lines, std::vector<double> Line::*values) {
     std::vector<double> all;
     for (const Line& line : lines) all.insert(all.end(), (line.*values).begin(), (line.*values).end());
-    const double low = std::max(percentile(all, 0.01), kMinError);
-    return {low, std::max(percentile(all, 1) * 1.3, 10 * low)};
+    const double low = percentile(all, 0);
+    return {low / 1.2, std::max(percentile(all, 1) * 1.2, 10 * low)};
 }
 
 Rows cumulative(const Line& line) {
@@ -158,6 +159,12 @@ Figure overTime(const SequenceResults& results, const Legend& legend, std::vecto
     return draw(lines, script, kWidth, kHeight, results.sequence->name + ": " + what + " over time", note);
 }
 
+// The largest of 1, 2, 5 times a power of ten up to the extent: three to five tics from -extent to extent.
+double ticStep(double extent) {
+    const double decade = std::pow(10, std::floor(std::log10(extent)));
+    return decade * (extent >= 5 * decade ? 5 : extent >= 2 * decade ? 2 : 1);
+}
+
 // The largest error along an axis, cm.
 double extentOf(const Line& line) {
     double extent = kMinError;
@@ -211,7 +218,8 @@ Figure errorFigure(const SequenceResults& results, const Legend& legend) {
 Figure angularErrorFigure(const SequenceResults& results, const Legend& legend) {
     return overTime(
         results, legend, &Line::angles, "angular error", "deg",
-        "After the alignment of the positions: a constant turn between the two cameras is part of it.");
+        "Angle between the estimated and the true orientation. A constant part means little, for the "
+        "alignment fits positions only; look at the changes.");
 }
 
 Figure axisErrorFigure(const SequenceResults& results, const Legend& legend) {
@@ -219,10 +227,12 @@ Figure axisErrorFigure(const SequenceResults& results, const Legend& legend) {
     if (lines.empty()) return kNothing;
     std::vector<double> extents;
     for (const Line& line : lines) extents.push_back(extentOf(line));
-    // Half of the lines whole, so that one that runs away does not squash them
-    const double extent = 1.1 * percentile(extents, 0.5);
+    double extent = 0;  // of all but those that would squash the others
+    for (const double each : extents)
+        if (each <= kClipAt * percentile(extents, 0.5)) extent = std::max(extent, 1.1 * each);
     std::string script = kMargins + timeRange(lines) + "set yrange " + rangeText(-extent, extent) +
-                         "set xzeroaxis lc rgb '#666666'\nset bmargin 0.4\nset multiplot\n";
+                         "set ytics " + exactNumber(ticStep(extent)) +
+                         "\nset xzeroaxis lc rgb '#666666'\nset bmargin 0.4\nset multiplot\n";
     std::string leaving;
     for (std::size_t k = 0; k < 3; ++k) {
         // The axis of time is written once, in the room of the lowest picture

@@ -14,6 +14,7 @@ constexpr std::size_t kLongestLabel = 42;                         // characters
 constexpr double kMarginByCharacter = 0.95;                       // gnuplot counts in widths of a wide one
 constexpr double kPixelsByCharacter = 6.7;                        // of a label, on the whole
 constexpr double kPixelsOfMargin = 8.4;                           // of a character of a margin
+constexpr int kRightMargin = 15;                                  // characters, for the means
 constexpr double kClipAt = 5;  // times the median bar: what is longer is cut off, so that others stay legible
 constexpr double kMarksAt = 2;       // times the longest bar: marks that lie further out are cut off, too
 constexpr double kLeastRest = 0.02;  // share of the total that is worth a piece of the bar
@@ -90,7 +91,7 @@ double rightEdge(const std::vector<Bar>& bars) {
     const double limit = kMarksAt * longest;
     for (const Bar& bar : bars)
         for (const double ms : {bar.total.p95, bar.processor}) include(ms, limit);
-    return 1.16 * longest;
+    return 1.03 * longest;
 }
 
 // In gnuplot's characters.
@@ -104,29 +105,26 @@ double leftMargin(const std::vector<Bar>& bars) {
 double drawnEnd(const Bar& bar, double end, double left_margin) {
     if (bar.total.mean <= end) return end;
     const double text = kPixelsByCharacter * static_cast<double>(countCharacters(labelOf(bar, end).text) + 1);
-    return end * std::max(0.1, 1 - text / (kWidth - kPixelsOfMargin * (left_margin + 3)));
+    return end * std::max(0.1, 1 - text / (kWidth - kPixelsOfMargin * (left_margin + kRightMargin)));
 }
 
 std::string axes(const std::vector<Bar>& bars, double end) {
     std::string tics;
     for (std::size_t i = 0; i < bars.size(); ++i)
         tics += (i == 0 ? "" : ", ") + gnuplotText(bars[i].label) + " " + std::to_string(i);
-    return "unset key\nset lmargin " + exactNumber(leftMargin(bars)) +
-           "\nset rmargin 3\nset tmargin 0.5\nset bmargin 2.6\nset border 1\n"
+    return "unset key\nset lmargin " + exactNumber(leftMargin(bars)) + "\nset rmargin " +
+           std::to_string(kRightMargin) +
+           "\nset tmargin 0.5\nset bmargin 2.6\nset border 1\n"
            "set xlabel 'time per frame [ms]' offset 0,0.4\nset grid noytics xtics\nset ytics scale 0\n"
            "set xrange [0:" +
            exactNumber(end) + "]\nset yrange [" + exactNumber(static_cast<double>(bars.size()) - 0.35) +
            ":-0.6]\nset ytics (" + tics + ")\n";
 }
 
-// The label stands behind all that is drawn of the bar, or at the edge where something lies beyond it.
+// The label stands in the margin, away from the marks, or left of the edge where something lies beyond it.
 std::string labelScript(const Bar& bar, std::size_t row, double end) {
     const BarLabel label = labelOf(bar, end);
-    double behind = std::min(bar.total.mean, end);
-    for (const double ms : {bar.total.p95, bar.processor})
-        if (isTime(ms) && ms <= end) behind = std::max(behind, ms);
-    return "set label " + gnuplotText(label.text) + " at " +
-           (label.beyond ? "graph 1, first " : "first " + exactNumber(behind) + ",") + std::to_string(row) +
+    return "set label " + gnuplotText(label.text) + " at graph 1, first " + std::to_string(row) +
            (label.beyond ? " right front" : " left offset 0.7,0 front") + " textcolor rgb '#222222'\n";
 }
 

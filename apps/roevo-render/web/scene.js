@@ -173,7 +173,7 @@ roevo.withoutOutliers = function (points) {
     if (points.length === 0) return points;
     const middle = [0, 1, 2].map(axis => roevo.quantile(points.map(p => p[axis]), 0.5));
     const distance = p => Math.hypot(p[0] - middle[0], p[1] - middle[1], p[2] - middle[2]);
-    const reach = 1.6 * roevo.quantile(points.map(distance), 0.9);
+    const reach = 3 * roevo.quantile(points.map(distance), 0.9);  // real maps reach up to 2.8 times as far
     return points.filter(p => distance(p) <= reach);
 };
 
@@ -204,16 +204,15 @@ roevo.roundLength = function (length) {
     return power * [5, 2, 1].find(n => n * power <= length * 1.000001);
 };
 
-roevo.lengthText = function (metres) {
-    const [unit, factor] = metres >= 1 ? ['m', 1] : metres >= 0.01 ? ['cm', 100] : ['mm', 1000];
-    return Number((metres * factor).toPrecision(3)) + ' ' + unit;
-};
+// Lengths are in m and errors in cm, as in all that the programs print.
+roevo.lengthText = metres => Number(metres.toPrecision(3)) + ' m';
+roevo.errorText = metres => Number((100 * metres).toPrecision(3)) + ' cm';
 
 // Lines on the ground under the points, and the size of their cells.
 roevo.grid = function (points) {
     const range = axis => [0.02, 0.98].map(share => roevo.quantile(points.map(p => p[axis]), share));
     const [x, y, z] = [0, 1, 2].map(range), cell = roevo.roundLength(Math.max(x[1] - x[0], y[1] - y[0], 0.1) / 5);
-    const low = v => (Math.floor(v / cell) - 1) * cell, high = v => (Math.ceil(v / cell) + 1) * cell;
+    const low = v => Math.floor(v / cell) * cell, high = v => Math.ceil(v / cell) * cell;
     const positions = [];
     for (let u = low(x[0]); u <= high(x[1]) + cell / 2; u += cell) positions.push(u, low(y[0]), z[0], u, high(y[1]), z[0]);
     for (let v = low(y[0]); v <= high(y[1]) + cell / 2; v += cell) positions.push(low(x[0]), v, z[0], high(x[1]), v, z[0]);

@@ -29,7 +29,7 @@
             item: add({
                 id: path.role === 'other' ? 'other' + (others + 1) : path.role, title: path.name, swatch: colour,
                 list: 'path-list', shown: path.role !== 'live',
-                figure: path.ate === null ? '' : 'ATE ' + roevo.lengthText(path.ate),
+                figure: path.ate === null ? '' : 'ATE ' + roevo.errorText(path.ate),
                 object: roevo.lines(poses.positions, roevo.evenColours(poses.count, roevo.rgb(colour), poses.count),
                                     {width: path.role === 'final' ? 2.6 : 2})
             })
@@ -77,6 +77,7 @@
         figure: 'cells of ' + roevo.lengthText(grid.cell),
         object: roevo.lines(grid.positions, roevo.evenColours(grid.positions.length / 3, [58, 68, 84], 2), {width: 1})
     });
+    const framed = content.concat(roevo.sample([grid.positions], 5000));
 
     paths.forEach((path, i) => {  // where they lie on one another the first in the list is seen
         path.item.object.material.polygonOffset = true;
@@ -148,7 +149,7 @@
     function look(name) {
         viewName = name;
         const area = freeArea(), tangent = 0.94 * Math.tan(kFieldOfView * Math.PI / 360) / innerHeight;
-        const place = roevo.standpoint(content, ...kViews[name],
+        const place = roevo.standpoint(framed, ...kViews[name],
                                        [tangent * (area.right - area.left), tangent * (area.bottom - area.top)]);
         camera.position.copy(place.position);
         controls.target.copy(place.target);
@@ -180,8 +181,8 @@
             paint.needsUpdate = true;
         }
         byId('scale').hidden = !byError;
-        byId('middle').textContent = roevo.lengthText(most / 2);
-        byId('most').textContent = roevo.lengthText(most);
+        byId('middle').textContent = roevo.errorText(most / 2);
+        byId('most').textContent = roevo.errorText(most);
         changed();
     }
 
@@ -238,7 +239,7 @@
 
     function momentText(path, i) {
         const error = path.errors ? path.errors[i] : NaN;
-        return path.times[i].toFixed(2) + ' s' + (error >= 0 ? ' · error ' + roevo.lengthText(error) : '');
+        return path.times[i].toFixed(2) + ' s' + (error >= 0 ? ' · error ' + roevo.errorText(error) : '');
     }
 
     function showMoment(i) {

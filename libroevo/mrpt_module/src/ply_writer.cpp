@@ -1,8 +1,7 @@
-#include <array>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 
+#include "input/byte_stream.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "whole_file.h"
 
@@ -22,73 +21,39 @@ constexpr char kPointProperties[] =
 constexpr char kEdgeProperties[] =
     "property float confidence\nproperty int views\nproperty uchar verdict\nproperty int edge\n";
 
-/// The bytes of one vertex, least significant first on any machine.
-class Vertex {
-  public:
-    void put(std::uint8_t value) { bytes_.at(used_++) = static_cast<char>(value); }
-    void put(std::int32_t value) { putBits(static_cast<std::uint32_t>(value)); }
-    void put(float value) {
-        std::uint32_t bits = 0;
-        std::memcpy(&bits, &value, sizeof bits);
-        putBits(bits);
-    }
-    void writeTo(std::ostream& out) {
-        out.write(bytes_.data(), static_cast<std::streamsize>(used_));
-        used_ = 0;
-    }
-
-  private:
-    void putBits(std::uint32_t bits) {
-        for (int i = 0; i < 4; i++) put(static_cast<std::uint8_t>(bits >> (8 * i) & 0xffu));
-    }
-    std::array<char, 28> bytes_{};
-    std::size_t used_ = 0;
-};
-
-void writeHeader(std::ostream& out, const std::string& comments, std::size_t count,
-                 const std::string& properties) {
-    out << "ply\nformat binary_little_endian 1.0\n"
-        << comments << "element vertex " << count << '\n'
-        << properties << "end_header\n";
+void put(ByteWriter& vertices, Eigen::Vector3f position, Rgb colour) {
+    vertices(position, colour);
 }
 
-void putPoint(Vertex& vertex, const Eigen::Vector3f& position, const Rgb& colour) {
-    for (int axis = 0; axis < 3; axis++) vertex.put(position[axis]);
-    for (const std::uint8_t channel : colour) vertex.put(channel);
+bool writePly(const std::string& file, const std::string& comments, std::size_t count,
+              const std::string& properties, const ByteWriter& vertices) {
+    std::ofstream out(file, std::ios::binary);
+    out << "ply\nformat binary_little_endian 1.0\n"
+        << comments << "element vertex " << count << '\n'
+        << properties << "end_header\n"
+        << vertices.bytes();
+    out.close();
+    return !out.fail();
 }
 
 bool writeEdges(const std::string& file, const EdgeMap& map) {
+    ByteWriter vertices;
     std::size_t count = 0;
-    for (const MapEdge& edge : map) count += edge.points.size();
-    std::ofstream out(file, std::ios::binary);
-    writeHeader(out, kEdgeComments, count, std::string(kPointProperties) + kEdgeProperties);
-    Vertex vertex;
-    std::int32_t number = -1;
+    std::int32_t number = 0;
     for (const MapEdge& edge : map) {
-        number++;
-        for (std::size_t i = 0; i < edge.points.size(); i++) {
-            putPoint(vertex, edge.points[i], edge.colours.at(i));
-            vertex.put(edge.confidence);
-            vertex.put(static_cast<std::int32_t>(edge.views));
-            vertex.put(static_cast<std::uint8_t>(edge.verdict));
-            vertex.put(number);
-            vertex.writeTo(out);
+        for (std::size_t i = 0; i < edge.points.size(); i++, count++) {
+            put(vertices, edge.points[i], edge.colours.at(i));
+            vertices(edge.confidence, edge.views, edge.verdict, number);
         }
+        number++;
     }
-    out.close();
-    return !out.fail();
+    return writePly(file, kEdgeComments, count, std::string(kPointProperties) + kEdgeProperties, vertices);
 }
 
 bool writePoints(const std::string& file, const std::vector<ColouredPoint>& points) {
-    std::ofstream out(file, std::ios::binary);
-    writeHeader(out, kPointComments, points.size(), kPointProperties);
-    Vertex vertex;
-    for (const ColouredPoint& point : points) {
-        putPoint(vertex, point.position, point.colour);
-        vertex.writeTo(out);
-    }
-    out.close();
-    return !out.fail();
+    ByteWriter vertices;
+    for (const ColouredPoint& point : points) put(vertices, point.position, point.colour);
+    return writePly(file, kPointComments, points.size(), kPointProperties, vertices);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 namespace roevo {
 namespace {
 
-constexpr float kDash = 12, kDashWidth = 1.5f,
-                kMostPieces = 4000;  // of the ground truth, in radii of the trajectory
+constexpr float kDash = 12, kDashWidth = 1.5f;  // of the ground truth, in radii of the trajectory
+constexpr float kMostPieces = 4000;             // dashes and gaps
 
 using mrpt::img::TColor;
 using Points = std::vector<Eigen::Vector3f>;
