@@ -69,10 +69,18 @@ TEST(PoseSystem, SingularGivesNoStepAndNoNan) {
     EXPECT_EQ(negative.solve().norm(), 0);
 }
 
+/// Sigmas in m and rad.
+PosePrior priorOf(const Pose& mean, double position, double orientation, double weight = 1) {
+    Vector6d variance;
+    variance << Eigen::Vector3d::Constant(position * position),
+        Eigen::Vector3d::Constant(orientation * orientation);
+    return {mean, variance.asDiagonal(), weight, {}};
+}
+
 TEST(PosePrior, AloneItBringsThePoseToItsMean) {
     std::mt19937 random(72);
     for (int i = 0; i < 50; ++i) {
-        PosePrior prior{testing::randomPose(random, 1, 0.5), 0.01, 0.02};
+        const PosePrior prior = priorOf(testing::randomPose(random, 1, 0.5), 0.01, 0.02);
         Pose pose = testing::randomPose(random, 0.2, 0.2) * prior.mean;
         for (int step = 0; step < 5; ++step) {
             PoseSystem system;
@@ -87,7 +95,7 @@ TEST(PosePrior, PullsOnlyWhereNothingElseDecides) {
     PoseSystem system;
     for (int k = 0; k < 5; ++k)
         system.hessian(k, k) = 1e9;  // five directions are seen well and are satisfied
-    PosePrior prior{Pose::Identity(), 0.05, 0.05};
+    const PosePrior prior = priorOf(Pose::Identity(), 0.05, 0.05);
     Vector6d off = Vector6d::Constant(0.01);
     ASSERT_TRUE(PriorTerm(prior).linearise({poseIncrement(off), RowMotion(), 0}, system));
     const Vector6d step = system.solve();
@@ -96,7 +104,7 @@ TEST(PosePrior, PullsOnlyWhereNothingElseDecides) {
 }
 
 TEST(PosePrior, WeighsByItsSigmasAndItsWeight) {
-    PosePrior prior{Pose::Identity(), 0.1, 0.2, 5};
+    const PosePrior prior = priorOf(Pose::Identity(), 0.1, 0.2, 5);
     PoseSystem system;
     ASSERT_TRUE(PriorTerm(prior).linearise({Pose::Identity(), RowMotion(), 0}, system));
     EXPECT_NEAR(system.hessian(0, 0), 500, 1e-9);

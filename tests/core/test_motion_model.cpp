@@ -35,6 +35,14 @@ MotionModel moving(double dt = 0.1) {
     return model;
 }
 
+double sigmaOfPosition(const PosePrior& prior) {
+    return std::sqrt(prior.covariance.topLeftCorner<3, 3>().trace() / 3);
+}
+
+double sigmaOfOrientation(const PosePrior& prior) {
+    return std::sqrt(prior.covariance.bottomRightCorner<3, 3>().trace() / 3);
+}
+
 TEST(MotionModel, PredictsConstantVelocityInTheCamerasOwnFrame) {
     const MotionModel model = moving();
     EXPECT_LT(difference(model.predict(10.1).T_reference_camera, kStart * kStep), 1e-12);
@@ -74,7 +82,7 @@ TEST(MotionModel, AnotherReferenceChangesNothingButTheNumbers) {
     EXPECT_LT(difference(after.T_reference_camera, T_new_old * before.T_reference_camera), 1e-12);
     EXPECT_LT(difference(after.T_reference_last, T_new_old * before.T_reference_last), 1e-12);
     EXPECT_LT(difference(after.prior.mean, after.T_reference_camera.inverse()), 1e-12);
-    EXPECT_EQ(after.prior.sigma_translation, before.prior.sigma_translation);
+    EXPECT_EQ(after.prior.covariance, before.prior.covariance);
     EXPECT_LT((after.shutter.earlier_velocity - before.shutter.earlier_velocity).norm(), 1e-12);
 }
 
@@ -93,7 +101,7 @@ TEST(MotionModel, UnderConstantAccelerationThePredictionErrsByWhatThePriorSays) 
         const double error =
             (prediction.T_reference_camera.translation() - truth(interval + dt).translation()).norm();
         EXPECT_NEAR(error, options.acceleration * dt * (dt + interval) / 2, 1e-9);
-        EXPECT_NEAR(prediction.prior.sigma_translation, error, 1e-9);
+        EXPECT_NEAR(sigmaOfPosition(prediction.prior), error, 1e-9);
     }
 }
 
@@ -107,14 +115,14 @@ TEST(MotionModel, UnderConstantAngularAccelerationThePredictionErrsByWhatThePrio
         const Prediction prediction = model.predict(interval + dt);
         const double error = rotationAngle(prediction.T_reference_camera.inverse() * truth(interval + dt));
         EXPECT_NEAR(error, acceleration * dt * (dt + interval) / 2, 1e-7);
-        EXPECT_NEAR(prediction.prior.sigma_rotation, error, 1e-7);
+        EXPECT_NEAR(sigmaOfOrientation(prediction.prior), error, 1e-7);
     }
 }
 
 TEST(MotionModel, NoPriorIsNarrowerThanAMillimetreAndAMilliradian) {
     const PosePrior soon = moving().predict(10.1 + 0.0005).prior;
-    EXPECT_DOUBLE_EQ(soon.sigma_translation, 1e-3);
-    EXPECT_DOUBLE_EQ(soon.sigma_rotation, 1e-3);
+    EXPECT_DOUBLE_EQ(sigmaOfPosition(soon), 1e-3);
+    EXPECT_DOUBLE_EQ(sigmaOfOrientation(soon), 1e-3);
 }
 
 TEST(MotionModel, ErrorsOfTheMeasuredPosesWidenThePrior) {
@@ -127,8 +135,44 @@ TEST(MotionModel, ErrorsOfTheMeasuredPosesWidenThePrior) {
     model.measure(2 * kStep_s, Pose(), uncertainty);
     const double by_motion = options.acceleration * kStep_s * kStep_s;
     // The last pose enters twice: as the start, and in the velocity
-    EXPECT_NEAR(model.predict(3 * kStep_s).prior.sigma_translation,
+    EXPECT_NEAR(sigmaOfPosition(model.predict(3 * kStep_s).prior),
                 std::sqrt(by_motion * by_motion + 5 * kSigma * kSigma), 1e-9);
+}
+
+// A camera that sees only upright edges does not know how high it is. The other directions need not suffer.
+TEST(MotionModel, TheDirectionThatIsNotKnownIsTheOneThatThePriorIsWideIn) {
+    constexpr double kDt = 1. / 30, kSigma = 0.05;
+    PoseUncertainty uncertainty;
+    uncertainty.independent.diagonal() << 1e-6, kSigma * kSigma, 1e-6, 1e-6, 1e-6, 1e-6;
+    const auto predicted = [&](const PoseUncertainty& measured) {
+        MotionModel model = makeModel();
+        model.anchor(0, Pose());
+        model.measure(kDt, Pose(), measured);
+        model.measure(2 * kDt, Pose(), measured);
+        return model.predict(3 * kDt).prior.covariance;
+    };
+    const Matrix6d exact = predicted({}), unsure = predicted(uncertainty);
+    EXPECT_NEAR(unsure(1, 1), exact(1, 1) + 5 * kSigma * kSigma, 1e-9);
+    for (const int k : {0, 2, 3, 4, 5}) EXPECT_NEAR(unsure(k, k), exact(k, k) + 5e-6, 1e-9) << k;
+}
+
+TEST(MotionModel, WhatWasNotKnownStaysUnknownUntilThePoseIsTheReference) {
+    constexpr double kDt = 1. / 30;
+    PoseUncertainty uncertainty;
+    uncertainty.influences = {{7, Vector6d::Unit(1)}};
+    MotionModel model = makeModel();
+    model.anchor(0, kStart);
+    model.measure(kDt, kStart * kStep, uncertainty);
+    const PoseUncertainty carried = model.predict(2 * kDt).prior.errors;
+    ASSERT_EQ(carried.influences.size(), 1U) << "what the edge does is not forgotten";
+    EXPECT_EQ(carried.influences[0].cluster, 7);
+    EXPECT_NEAR(carried.influences[0].moved.norm(), 1, 1e-9);
+    const MotionOptions likely;
+    EXPECT_NEAR(std::sqrt(carried.independent(0, 0)), likely.acceleration * kDt * kDt, 1e-9);
+    model.becomeReference();
+    const PoseUncertainty fresh = model.predict(2 * kDt).prior.errors;
+    EXPECT_TRUE(fresh.influences.empty());
+    EXPECT_LT((fresh.independent - carried.independent).norm(), 1e-12) << "the motion is as it was";
 }
 
 // The velocity between two stamps that nearly coincide was that of their errors, divided by nearly nothing.
@@ -146,7 +190,7 @@ TEST(MotionModel, TwoStampsThatNearlyCoincideAfterAnAnchorMakeNoneEither) {
     model.anchor(10, kStart);
     model.measure(10 + 1e-6, kStart * poseOf({0.001, 0, 0}, 0.001, {0, 0, 1}));
     EXPECT_LT((model.predict(10.1).T_reference_camera.translation() - kStart.translation()).norm(), 0.0011);
-    EXPECT_TRUE(std::isfinite(model.predict(10.1).prior.sigma_translation));
+    EXPECT_TRUE(model.predict(10.1).prior.covariance.allFinite());
     EXPECT_EQ(model.predict(10.1).shutter.earlier_interval, 0);
 }
 
@@ -157,18 +201,18 @@ TEST(MotionModel, AnAnchorHasNoVelocityAndAPriorAsWideAsTheLikelySpeed) {
     const MotionOptions options;
     const double dt = 0.2;
     const PosePrior prior = model.predict(11 + dt).prior;
-    EXPECT_NEAR(prior.sigma_translation, options.speed * dt + options.acceleration * dt * dt / 2, 1e-9);
-    EXPECT_NEAR(prior.sigma_rotation,
+    EXPECT_NEAR(sigmaOfPosition(prior), options.speed * dt + options.acceleration * dt * dt / 2, 1e-9);
+    EXPECT_NEAR(sigmaOfOrientation(prior),
                 (options.angular_speed_deg * dt + options.angular_acceleration_deg * dt * dt / 2) * kDegree,
                 1e-9);
 }
 
 TEST(MotionModel, AForgottenVelocityHoldsThePose) {
     MotionModel model = moving();
-    const double with_velocity = model.predict(10.2).prior.sigma_translation;
+    const double with_velocity = sigmaOfPosition(model.predict(10.2).prior);
     model.forgetVelocity();
     EXPECT_LT(difference(model.predict(10.4).T_reference_camera, kStart * kStep), 1e-12);
-    EXPECT_GT(model.predict(10.2).prior.sigma_translation, with_velocity);
+    EXPECT_GT(sigmaOfPosition(model.predict(10.2).prior), with_velocity);
 }
 
 TEST(MotionModel, PredictedPosesNeverEnter) {
@@ -180,7 +224,7 @@ TEST(MotionModel, PredictedPosesNeverEnter) {
     }
     EXPECT_EQ(difference(model.predict(10.4).T_reference_camera, untouched.predict(10.4).T_reference_camera),
               0);
-    EXPECT_EQ(model.predict(10.4).prior.sigma_translation, untouched.predict(10.4).prior.sigma_translation);
+    EXPECT_EQ(model.predict(10.4).prior.covariance, untouched.predict(10.4).prior.covariance);
     // Found again where it was last measured, 0.3 s ago: it stood still, whatever was predicted meanwhile
     model.measure(10.4, kStart * kStep);
     EXPECT_LT(difference(model.predict(10.5).T_reference_camera, kStart * kStep), 1e-12);
@@ -201,7 +245,7 @@ TEST(MotionModel, OnlyASearchLooksAroundAPoseThatWasNotMeasured) {
     EXPECT_EQ(difference(model.lastPose(), assumed), 0);
     EXPECT_EQ(difference(after.T_reference_camera, before.T_reference_camera), 0);
     EXPECT_EQ(difference(after.prior.mean, before.prior.mean), 0);
-    EXPECT_EQ(after.prior.sigma_translation, before.prior.sigma_translation);
+    EXPECT_EQ(after.prior.covariance, before.prior.covariance);
     EXPECT_EQ(difference(after.shutter.T_previous_keyframe, before.shutter.T_previous_keyframe), 0);
     model.measure(10.3, kStart);
     EXPECT_EQ(difference(model.lastPose(), kStart), 0);

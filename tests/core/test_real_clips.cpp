@@ -2,6 +2,7 @@
 // data.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -143,6 +144,43 @@ TEST(WideTurns, APoseThatFewEdgesMatchIsNotTheLastWord) {
         }
         const double rmse = evaluate(truth, odometry.trajectory()).ate.translation.rmse;
         EXPECT_LE(rmse, 0.04) << "depth weight " << depth_weight;
+    }
+}
+
+// With depth in the upper three quarters only, hardly anything but upright edges has depth, and they do not
+// tell how high the camera is. What tracking knew of that was taken to grow with every frame of the same
+// keyframe, to 2 mm; the prior followed, and the camera drifted by 15 cm (ATE 3.4 cm in tr, 4.5 in ba).
+TEST(FewEdges, WhatTheyDoNotTellIsNeitherKnownNorLost) {
+    const auto clip = testing::realClip("tum_fr3_structure_notexture_far_80", 80);
+    if (!clip) GTEST_SKIP() << "no clip tum_fr3_structure_notexture_far_80";
+    const auto truthAt = [&](double time) {
+        return std::min_element(clip->truth.begin(), clip->truth.end(),
+                                [&](const StampedPose& a, const StampedPose& b) {
+                                    return std::abs(a.timestamp - time) < std::abs(b.timestamp - time);
+                                })
+            ->T_world_camera;
+    };
+    const Pose T_start_truth = truthAt(clip->frames.front().timestamp).inverse();
+    for (const Mode mode : {Mode::kTracking, Mode::kBundleAdjustment}) {
+        OdometryOptions options;
+        options.mode = mode;
+        Odometry odometry(clip->camera, options);
+        double nees = 0;
+        for (std::size_t i = 0; i < clip->frames.size(); ++i) {
+            RgbdFrame frame = clip->frames[i];
+            frame.depth = frame.depth.clone();
+            frame.depth.rowRange(360, frame.depth.rows).setTo(0);
+            const FrameResult result = odometry.processFrame(frame);
+            ASSERT_TRUE(result.hasPose()) << i << ": " << result.reason;
+            if (i == 0) continue;
+            const Eigen::Vector3d error = result.T_world_camera.translation() -
+                                          (T_start_truth * truthAt(frame.timestamp)).translation();
+            const Eigen::Matrix3d covariance =
+                result.covariance.topLeftCorner<3, 3>() + 1e-6 * Eigen::Matrix3d::Identity();
+            nees += error.dot(covariance.inverse() * error) / 3;
+        }
+        EXPECT_LE(evaluate(clip->truth, odometry.trajectory()).ate.translation.rmse, 0.02);
+        EXPECT_LE(nees / static_cast<double>(clip->frames.size() - 1), 4);
     }
 }
 

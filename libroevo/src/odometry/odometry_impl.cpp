@@ -36,6 +36,7 @@ FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // 
         renewReference(outcome);  // Sec. VI
     // A tracked pose is what the next one is predicted from
     motion.measure(frame->timestamp(), outcome.tracking.pose.T_keyframe_camera, outcome.tracking.measured);
+    if (outcome.is_keyframe) motion.becomeReference();
     FrameResult result = report(outcome);
     if (!outcome.is_keyframe) candidate = std::move(outcome.tracking);
     return result;
@@ -104,11 +105,7 @@ Outcome Odometry::Impl::frozen(std::unique_ptr<Frame> fresh) {
     Outcome outcome;
     outcome.status = FrameStatus::kPredicted;
     outcome.tracking.fault.kind = Fault::Kind::kFrozen;
-    Vector6d sigma;
-    sigma << Eigen::Vector3d::Constant(prediction.prior.sigma_translation),
-        Eigen::Vector3d::Constant(prediction.prior.sigma_rotation);
-    outcome.tracking.pose = {
-        world.reference().id, prediction.T_reference_camera, {Matrix6d(sigma.cwiseAbs2().asDiagonal()), {}}};
+    outcome.tracking.pose = {world.reference().id, prediction.T_reference_camera, prediction.prior.errors};
     return outcome;
 }
 

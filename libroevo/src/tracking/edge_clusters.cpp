@@ -30,6 +30,25 @@ double PoseUncertainty::designEffect() const {
     return std::isfinite(effect) ? std::max(1.0, effect) : 1;
 }
 
+PoseUncertainty sum(const PoseUncertainty& first, const Matrix6d& carried, const PoseUncertainty& second) {
+    PoseUncertainty out;
+    out.independent = second.independent + carried * first.independent * carried.transpose();
+    out.influences.reserve(first.influences.size() + second.influences.size());
+    auto a = first.influences.begin();
+    auto b = second.influences.begin();
+    while (a != first.influences.end() || b != second.influences.end()) {
+        const bool of_first =
+            a != first.influences.end() && (b == second.influences.end() || a->cluster <= b->cluster);
+        const bool of_second =
+            b != second.influences.end() && (a == first.influences.end() || b->cluster <= a->cluster);
+        EdgeInfluence both{of_first ? a->cluster : b->cluster, Vector6d::Zero()};
+        if (of_first) both.moved += carried * (a++)->moved;
+        if (of_second) both.moved += (b++)->moved;
+        out.influences.push_back(both);
+    }
+    return out;
+}
+
 void EdgeClusters::start(const std::vector<std::int32_t>& cluster_of) {
     if (cluster_of_ != cluster_of) {  // another keyframe
         cluster_of_ = clusters_ = cluster_of;

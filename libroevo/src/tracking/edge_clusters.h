@@ -28,6 +28,11 @@ struct PoseUncertainty {
     double designEffect() const;
 };
 
+/// Errors of two poses, or of one in two steps, come together: those of one edge are added before anything is
+/// squared.
+/// @param carried  what errors of the first do to the whole
+PoseUncertainty sum(const PoseUncertainty& first, const Matrix6d& carried, const PoseUncertainty& second);
+
 /// What each edge adds to the normal equations of a pose. The points of an edge err together (its depth in
 /// the keyframe, its association, the lens), so that edges are what is independent, not their points.
 class EdgeClusters {

@@ -199,9 +199,9 @@ double EdgeTerm::depthAgreement() {
     return known > 0 ? static_cast<double>(agreed) / known : 1;
 }
 
-Matrix6d EdgeTerm::movedByVelocity(const RowMotion& rows, const PosePrior& prior) {
+Matrix6d EdgeTerm::movedByVelocity(const RowMotion& rows, const Matrix6d& prior_information) {
     PoseSystem system, times_time;
-    PriorTerm(prior).linearise({}, system);
+    system.hessian = prior_information;
     system.add(rows_.sum());
     scratch_.resize(matched_.projected.v.size());
     for (std::size_t i = 0; i < scratch_.size(); ++i)

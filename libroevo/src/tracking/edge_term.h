@@ -34,7 +34,8 @@ class EdgeTerm : public ResidualTerm {
     /// By how much the pose of the last linearisation changes with the velocity of its rows: an image that is
     /// read while the camera moves otherwise than was thought is taken for one from elsewhere. Uses up the
     /// linearisation. @return s, maps (linear, turn) to (t, phi)
-    Matrix6d movedByVelocity(const RowMotion& rows, const PosePrior& prior);
+    /// @param prior_information  of the pose, from elsewhere
+    Matrix6d movedByVelocity(const RowMotion& rows, const Matrix6d& prior_information);
 
     /// Edge-wise association at a given pose within `radius` px: fills matches().
     void associate(const Pose& T_current_keyframe, const RowMotion& rows, double radius);

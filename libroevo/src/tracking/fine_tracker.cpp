@@ -37,6 +37,15 @@ class ReadoutPriorTerm : public ResidualTerm {
     double mean_, information_;
 };
 
+/// The prior keeps directions solvable that no residual sees. It is no measurement: there its errors stay in
+/// the pose, those that edges did to the frame before as well, and do not shrink from frame to frame.
+PoseUncertainty withPrior(PoseUncertainty own, const PoseSystem& system, const PriorTerm& prior,
+                          const PoseUncertainty& errors) {
+    const Matrix6d inverse = system.hessian.inverse(), kept = inverse * prior.information();
+    own.independent -= kept * inverse;
+    return sum(errors, kept, own);
+}
+
 }  // namespace
 
 void FineTracker::associate(const Keyframe& keyframe, const Frame& frame, const Pose& T_current_keyframe,
@@ -83,9 +92,11 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
     if (found.complete) {
         clusters_.start(keyframe.clusters);
         for (const ResidualTerm* term : terms) term->addTo(clusters_);
-        result.uncertainty = clusters_.uncertainty(found.system, edges_.slope());
+        result.uncertainty = withPrior(clusters_.uncertainty(found.system, edges_.slope()), found.system,
+                                       likely, prior.errors);
         if (shutter.seconds_per_row != 0) {
-            const Matrix6d moved = edges_.movedByVelocity(shutter.motion(found.T_current_keyframe), prior);
+            const Matrix6d moved =
+                edges_.movedByVelocity(shutter.motion(found.T_current_keyframe), likely.information());
             result.of_rows = moved * shutter.velocity_variance.asDiagonal() * moved.transpose();
         }
     }

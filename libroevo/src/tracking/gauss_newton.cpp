@@ -1,7 +1,7 @@
 #include "tracking/gauss_newton.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "tracking/se3.h"
@@ -84,15 +84,12 @@ Eigen::Matrix<double, 7, 1> PoseSystem::solveWithReadout() const {
     return stepOf(H, g);
 }
 
+PriorTerm::PriorTerm(const PosePrior& prior)
+    : mean_(prior.mean), information_(prior.weight * prior.covariance.inverse()) {}
+
 bool PriorTerm::linearise(const Linearisation& at, PoseSystem& system) {
-    const Pose difference = at.T_current_keyframe * prior_.mean.inverse();
-    const Eigen::AngleAxisd turn(difference.linear());
-    const double position = prior_.weight / (prior_.sigma_translation * prior_.sigma_translation);
-    const double orientation = prior_.weight / (prior_.sigma_rotation * prior_.sigma_rotation);
-    system.hessian.diagonal().head<3>().array() += position;
-    system.hessian.diagonal().tail<3>().array() += orientation;
-    system.gradient.head<3>() += position * difference.translation();
-    system.gradient.tail<3>() += orientation * turn.angle() * turn.axis();
+    system.hessian += information_;
+    system.gradient += information_ * incrementOf(at.T_current_keyframe * mean_.inverse());
     return true;
 }
 

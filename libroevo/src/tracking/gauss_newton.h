@@ -14,9 +14,10 @@ namespace roevo {
 /// What is known of a pose before looking: a Gaussian about `mean`, in the left perturbation (t, phi).
 struct PosePrior {
     Pose mean = Pose::Identity();
-    double sigma_translation = 1;  ///< m
-    double sigma_rotation = 1;     ///< rad
-    double weight = 1;             ///< by how much the rest of the system overstates its information
+    Matrix6d covariance = Matrix6d::Identity();
+    double weight = 1;  ///< by how much the rest of the system overstates its information
+    /// What is not known of a pose at the mean: of the pose before it, and of the motion since.
+    PoseUncertainty errors;
 };
 
 /// What points contribute to the normal equations, laid out as the kernels want it. Keeps its memory.
@@ -99,11 +100,14 @@ class ResidualTerm {
 /// What is likely beforehand: keeps directions solvable that the edges do not see.
 class PriorTerm : public ResidualTerm {
   public:
-    explicit PriorTerm(const PosePrior& prior) : prior_(prior) {}
+    explicit PriorTerm(const PosePrior& prior);
     bool linearise(const Linearisation& at, PoseSystem& system) override;
+    /// With its weight.
+    const Matrix6d& information() const { return information_; }
 
   private:
-    PosePrior prior_;
+    Pose mean_;
+    Matrix6d information_;
 };
 
 /// Holds steps back: a prior about wherever the pose is.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tracking/relative_pose.h"
 #include "tracking/se3.h"
 
 namespace roevo {
@@ -14,7 +15,8 @@ constexpr double kLongestPrediction = 0.5;  ///< s; nobody moves on evenly for l
 constexpr double kUsual = 2.5;              ///< times the mean interval between frames: still a usual one
 constexpr double kShortestStep = 0.005,
                  kLongestStep = 0.35;    ///< s between two poses that make a velocity
-constexpr double kLeastSigma = 1e-3;     ///< m and rad, of any prior
+constexpr double kLeastSigma = 1e-3;     ///< m and rad, of any motion
+constexpr double kSearchTurn = 20;       ///< degrees, one sigma, of a camera that is searched for
 constexpr double kLongestReadout = 0.1;  ///< s
 constexpr double kLearning = 0.2;        ///< share of the newest frame in means
 
@@ -51,8 +53,9 @@ void MotionModel::begin(double timestamp) {
 
 void MotionModel::anchor(double timestamp, const Pose& T_reference_camera) {
     T_reference_last_ = T_reference_assumed_ = T_reference_camera;
-    last_ = before_ = Variance();
+    uncertainty_ = {};
     covariance_.setZero();
+    covariance_before_.setZero();
     last_timestamp_ = timestamp;
     has_last_ = true;
     interval_ = 0;
@@ -60,16 +63,16 @@ void MotionModel::anchor(double timestamp, const Pose& T_reference_camera) {
 
 void MotionModel::measure(double timestamp, const Pose& T_reference_camera,
                           const PoseUncertainty& uncertainty) {
-    const Matrix6d covariance = covariance_ = uncertainty.covariance();
     design_effect_ += kLearning * (uncertainty.designEffect() - design_effect_);
     const double interval = timestamp - last_timestamp_;
     // What moved between two stamps that nearly coincide is mostly their errors: the velocity stays
     if (interval >= kShortestStep) {
         step_ = T_reference_last_.inverse() * T_reference_camera;
         interval_ = interval <= kLongestStep ? interval : 0;
-        before_ = last_;
+        covariance_before_ = covariance_;
     }
-    last_ = {covariance.topLeftCorner<3, 3>().trace() / 3, covariance.bottomRightCorner<3, 3>().trace() / 3};
+    uncertainty_ = uncertainty;
+    covariance_ = uncertainty.covariance();
     T_reference_last_ = T_reference_assumed_ = T_reference_camera;
     last_timestamp_ = timestamp;
 }
@@ -100,27 +103,27 @@ Pose MotionModel::poseAt(double timestamp) const {
 
 PosePrior MotionModel::prior(double timestamp) const {
     const double dt = timestamp - last_timestamp_;
-    const auto sigma = [&](double acceleration, double speed, double last, double before) {
-        if (interval_ <= 0) return acceleration * dt * dt / 2 + speed * dt;
-        // A mean velocity is that of the middle of its interval: x(dt) - v dt = a dt (dt + interval) / 2
-        const double by_motion = acceleration * dt * (dt + interval_) / 2, share = dt / interval_;
-        return std::sqrt(by_motion * by_motion + (1 + share) * (1 + share) * last + share * share * before);
-    };
-    PosePrior prior;
-    prior.weight = design_effect_;
-    prior.mean = poseAt(timestamp).inverse();
-    prior.sigma_translation =
-        std::max(sigma(motion_.acceleration, motion_.speed, last_.position, before_.position), kLeastSigma);
-    prior.sigma_rotation =
-        std::max(sigma(motion_.angular_acceleration_deg * kDegree, motion_.angular_speed_deg * kDegree,
-                       last_.orientation, before_.orientation),
-                 kLeastSigma);
-    return prior;
+    const bool moving = interval_ > 0;
+    // A mean velocity is that of the middle of its interval: x(dt) - v dt = a dt (dt + interval) / 2
+    const double by_acceleration = dt * (dt + (moving ? interval_ : 0)) / 2, by_speed = moving ? 0 : dt;
+    const Matrix6d by_motion =
+        squared(motion_.acceleration * by_acceleration + motion_.speed * by_speed,
+                motion_.angular_acceleration_deg * by_acceleration + motion_.angular_speed_deg * by_speed)
+            .cwiseMax(kLeastSigma * kLeastSigma)
+            .asDiagonal();
+    const Pose mean = poseAt(timestamp);
+    const Matrix6d onward = carriedTo(T_reference_last_.inverse() * mean);
+    // The velocity errs by both poses that it is made of, the last one twice
+    const double share = moving ? dt / interval_ : 0;
+    const Matrix6d of_poses = (1 + share) * (1 + share) * covariance_ + share * share * covariance_before_;
+    return {mean.inverse(), by_motion + onward * of_poses * onward.transpose(), design_effect_,
+            sum(uncertainty_, onward, {by_motion, {}})};
 }
 
 PosePrior MotionModel::searchPrior(double timestamp) const {
     const double dt = timestamp - last_timestamp_;
-    return {T_reference_last_.inverse(), 0.1 + motion_.speed * dt, 20 * kDegree};
+    const Matrix6d wide = squared(0.1 + motion_.speed * dt, kSearchTurn).asDiagonal();
+    return {T_reference_last_.inverse(), wide, 1, {wide, {}}};
 }
 
 RollingShutter MotionModel::shutter(double timestamp) const {

@@ -41,6 +41,8 @@ class MotionModel {
     void setBrightness(const Brightness& brightness) { brightness_ = brightness; }
     /// The velocity is too old to be believed.
     void forgetVelocity() { interval_ = 0; }
+    /// The last frame is the reference now: its pose is exact.
+    void becomeReference() { uncertainty_ = {}; }
     /// Poses are relative to another keyframe from now on.
     void changeReference(const Pose& T_new_old);
     /// Of the last frame, measured or assumed.
@@ -57,11 +59,6 @@ class MotionModel {
     ReadoutEstimator& readout() { return readout_; }
 
   private:
-    /// Variances of a measured pose, per axis.
-    struct Variance {
-        double position = 0, orientation = 0;  ///< m^2, rad^2
-    };
-
     Pose poseAt(double timestamp) const;
     PosePrior prior(double timestamp) const;
     PosePrior searchPrior(double timestamp) const;
@@ -74,9 +71,10 @@ class MotionModel {
     Pose T_reference_last_ = Pose::Identity();     ///< measured
     Pose T_reference_assumed_ = Pose::Identity();  ///< or not
     Brightness brightness_;
-    Variance last_, before_;                  ///< of the last two measured poses
-    Matrix6d covariance_ = Matrix6d::Zero();  ///< of the last one
-    double design_effect_ = 1;                ///< of the poses so far
+    PoseUncertainty uncertainty_;  ///< of the last measured pose; nothing where that is the reference
+    /// Of the last two poses as they were measured, which is how far the velocity may be off.
+    Matrix6d covariance_ = Matrix6d::Zero(), covariance_before_ = Matrix6d::Zero();
+    double design_effect_ = 1;  ///< of the poses so far
     double last_timestamp_ = 0;
     std::optional<double> last_frame_;  ///< s
     double interval_before_ = 0;        ///< s

@@ -13,6 +13,13 @@ Pose poseIncrement(const Vector6d& xi) {
     return increment;
 }
 
+Vector6d incrementOf(const Pose& pose) {
+    const Eigen::AngleAxisd turn(pose.linear());
+    Vector6d xi;
+    xi << pose.translation(), turn.angle() * turn.axis();
+    return xi;
+}
+
 double rotationAngle(const Pose& pose) {
     return Eigen::AngleAxisd(pose.linear()).angle();
 }

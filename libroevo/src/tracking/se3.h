@@ -8,6 +8,9 @@ namespace roevo {
 /// poseIncrement(xi) * T.
 Pose poseIncrement(const Vector6d& xi);
 
+/// The xi that a pose is the increment of.
+Vector6d incrementOf(const Pose& pose);
+
 /// Rotation angle of a pose, radians.
 double rotationAngle(const Pose& pose);
 
