@@ -12,9 +12,8 @@
 namespace roevo {
 namespace {
 
-/// A sum of products J^T M J, whose halves differ by rounding.
-Matrix6d symmetric(const Matrix6d& hessian) {
-    return hessian.selfadjointView<Eigen::Upper>();
+Matrix6d wholeOf(const Matrix6d& upper_triangle) {
+    return upper_triangle.selfadjointView<Eigen::Upper>();
 }
 
 }  // namespace
@@ -72,23 +71,27 @@ void EdgeClusters::add(std::size_t edge, const float (&matrix)[6], const float (
     information << matrix[0], matrix[1], matrix[2],  //
         matrix[1], matrix[3], matrix[4],             //
         matrix[2], matrix[4], matrix[5];
-    Eigen::Matrix<double, 3, 6> by_pose;  // d point / d xi
-    by_pose << Eigen::Matrix3d::Identity(), -skew(point);
-    sum.hessian.noalias() += by_pose.transpose() * (information * by_pose);
-    sum.gradient.noalias() += by_pose.transpose() * Eigen::Vector3d(vector[0], vector[1], vector[2]);
+    // d point / d xi = [I, turn]
+    const Eigen::Matrix3d turn = -skew(point), by_turn = information * turn;
+    sum.hessian.topLeftCorner<3, 3>() += information;
+    sum.hessian.topRightCorner<3, 3>() += by_turn;
+    sum.hessian.bottomRightCorner<3, 3>() += turn.transpose() * by_turn;
+    const Eigen::Vector3d pull(vector[0], vector[1], vector[2]);
+    sum.gradient.head<3>() += pull;
+    sum.gradient.tail<3>() += point.cross(pull);
 }
 
 PoseUncertainty EdgeClusters::uncertainty(const PoseSystem& system, double slope) const {
     const Vector6d step = system.solve();
     Matrix6d of_edges = Matrix6d::Zero();
-    for (const Sum& edge : sums_) of_edges += symmetric(edge.hessian);
+    for (const Sum& edge : sums_) of_edges += wholeOf(edge.hessian);
     const Matrix6d by_slopes = system.hessian - (1 - slope) * of_edges;
     PoseUncertainty out;
     out.influences.reserve(sums_.size());
     for (std::size_t k = 0; k < sums_.size(); ++k) {
         const Sum& edge = sums_[k];
         if (!edge.used) continue;
-        const Matrix6d hessian = symmetric(edge.hessian);
+        const Matrix6d hessian = wholeOf(edge.hessian);
         const Vector6d at_optimum = edge.gradient + hessian * step;
         const Eigen::LLT<Matrix6d> others(by_slopes - slope * hessian);
         // Without this edge there may be no pose at all

@@ -53,7 +53,7 @@ class EdgeClusters {
   private:
     struct Sum {
         bool used = false;
-        Matrix6d hessian = Matrix6d::Zero();
+        Matrix6d hessian = Matrix6d::Zero();  ///< upper triangle
         Vector6d gradient = Vector6d::Zero();
     };
     std::vector<std::int32_t> cluster_of_;  // of each edge; what follows is made of it
