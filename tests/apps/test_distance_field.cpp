@@ -175,7 +175,7 @@ struct TwoFrames {
     }
     FineResult track(const Pose& T_start, double photometric_weight) const {
         return DistanceFieldTracker(camera, options.fine, photometric_weight)
-            .track(keyframe, frame, T_start, {T_start, 1, 1}, RollingShutter(), Brightness());
+            .track(keyframe, frame, T_start, {T_start}, RollingShutter(), Brightness());
     }
 };
 

@@ -19,7 +19,7 @@ namespace {
 using test::readFile;
 using test::runProgram;
 
-constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "955baa2b9b62608a";
+constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "8263d6df946af06f";
 
 /// FNV-1a, as 16 digits.
 std::string checksum(const std::string& bytes) {

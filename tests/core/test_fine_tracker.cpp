@@ -35,8 +35,7 @@ class FineTracking : public ::testing::Test {
     FineResult trackFrom(const Pose& start, const Pose& likely, const RollingShutter& shutter = {}) {
         FineTracker tracker(sequence_->camera, options_);
         const Pose better = tracker.chooseInitialPose(keyframe_, frame_, start, likely, shutter);
-        const FineResult found =
-            tracker.track(keyframe_, frame_, better, {likely, 1, 1}, shutter, Brightness());
+        const FineResult found = tracker.track(keyframe_, frame_, better, {likely}, shutter, Brightness());
         const Pose& pose = found.T_current_keyframe;
         FineResult assessed = tracker.assess(keyframe_, frame_, pose, shutter.motion(pose));
         assessed.converged = assessed.converged && found.converged;
@@ -105,8 +104,8 @@ TEST_F(FineTracking, ABadGuessDoesNotReplaceAGoodStart) {
 
 TEST_F(FineTracking, APoseIsAssessedByTheEdgesItWasFoundWithAsByThoseAssociatedAnew) {
     FineTracker tracker(sequence_->camera, options_), fresh(sequence_->camera, options_);
-    const Pose pose = tracker.track(keyframe_, frame_, turned(0.3) * truth_, {truth_, 1, 1}, {}, Brightness())
-                          .T_current_keyframe;
+    const Pose pose =
+        tracker.track(keyframe_, frame_, turned(0.3) * truth_, {truth_}, {}, Brightness()).T_current_keyframe;
     const FineResult own = tracker.assess(keyframe_, frame_, pose, {}),
                      anew = fresh.assess(keyframe_, frame_, pose, {});
     EXPECT_NEAR(own.inliers, anew.inliers, 0.02 * anew.inliers);
@@ -149,7 +148,7 @@ TEST_F(FineTracking, WhatAVelocityOfTheRowsMovesIsWhatTrackingWithAnotherOneFind
         (axis < 3 ? rows.velocity[axis] : rows.turn[axis - 3]) = speed;
         RollingShutter moving = RollingShutter::of(rows);
         moving.velocity_variance[axis] = 1;
-        return tracker.track(keyframe_, frame_, truth_, {truth_, 1, 1}, moving, Brightness());
+        return tracker.track(keyframe_, frame_, truth_, {truth_}, moving, Brightness());
     };
     for (int axis = 0; axis < 6; ++axis) {
         constexpr double kStep = 0.2;  // m/s, rad/s
@@ -171,7 +170,7 @@ TEST_F(FineTracking, WhatAVelocityOfTheRowsMovesIsWhatTrackingWithAnotherOneFind
     }
     shutter.velocity_variance.setOnes();
     shutter.seconds_per_row = 0;
-    EXPECT_EQ(tracker.track(keyframe_, frame_, truth_, {truth_, 1, 1}, shutter, Brightness()).of_rows,
+    EXPECT_EQ(tracker.track(keyframe_, frame_, truth_, {truth_}, shutter, Brightness()).of_rows,
               Matrix6d::Zero())
         << "all rows at once";
 }

@@ -231,7 +231,7 @@ TEST(Minimise, ASmallStepEndsItOnceItIsSettled) {
     options.depth = 2;
     for (const int settled : {1, 4}) {
         options.settled_from = settled;
-        PriorTerm place({poseIncrement(Vector6d::Constant(0.01)), 1, 1});  // reached in one step
+        PriorTerm place(priorOf(poseIncrement(Vector6d::Constant(0.01)), 1, 1));  // reached in one step
         const GaussNewtonResult result = minimise(Pose::Identity(), RollingShutter(), {&place}, options);
         EXPECT_EQ(result.iterations, settled + 1);
         EXPECT_TRUE(result.complete);

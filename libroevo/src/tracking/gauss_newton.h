@@ -17,7 +17,7 @@ struct PosePrior {
     Matrix6d covariance = Matrix6d::Identity();
     double weight = 1;  ///< by how much the rest of the system overstates its information
     /// What is not known of a pose at the mean: of the pose before it, and of the motion since.
-    PoseUncertainty errors;
+    PoseUncertainty errors = {};
 };
 
 /// What points contribute to the normal equations, laid out as the kernels want it. Keeps its memory.
