@@ -51,11 +51,11 @@ std::vector<PosedScan> posedScans(const RunReport& report, const Odometry& odome
         const auto& [timestamp, T_world_camera] = report.trajectory[i];
         PosedScan scan{timestamp, context.robotPose(timestamp, T_world_camera), {}};
         if (i > 0) {
+            const StampedPose& before = report.trajectory[i - 1];
             const Matrix6d covariance = odometry.motionCovariance(i - 1, i);
-            const Pose& mount_before = context.mountAt(report.trajectory[i - 1].timestamp);
-            if (covariance.allFinite())
-                scan.motion = robotMotion(odometry.motion(i - 1, i), covariance, mount_before,
-                                          context.mountAt(timestamp));
+            if (covariance.allFinite())  // the motion that leads from pose to pose, smoothed as these are
+                scan.motion = robotMotion(before.T_world_camera.inverse() * T_world_camera, covariance,
+                                          context.mountAt(before.timestamp), context.mountAt(timestamp));
         }
         scans.push_back(std::move(scan));
     }

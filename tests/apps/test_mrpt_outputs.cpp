@@ -164,7 +164,7 @@ TEST_F(MrptOutputsProgram, TheRawlogHasAPoseAndAMotionAtEveryScan) {
         EXPECT_EQ(motion->estimationMethod, mrpt::obs::CActionRobotMovement3D::emVisualOdometry);
         expectCovariance(motion->poseChange.cov, 0.1);
         const Pose moved = path[i - 1].T_world_camera.inverse() * path[i].T_world_camera;
-        EXPECT_TRUE(toEigen(motion->poseChange.mean).isApprox(moved, 1e-3)) << i;
+        EXPECT_TRUE(toEigen(motion->poseChange.mean).isApprox(moved, 1e-6)) << i;
     }
 }
 
