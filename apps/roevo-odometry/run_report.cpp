@@ -35,7 +35,7 @@ std::string Losses::toText() const {
     std::string text = "lost " + times(lost);
     if (found_again > 0) text += ", found again " + times(found_again);
     if (joined > 0) text += ", begun anew and joined later " + times(joined);
-    return found_again + joined > 0 ? text : text + ", not found again";
+    return to_the_end ? text + ", and at the end" : text;
 }
 
 Losses RunReport::losses() const {
@@ -53,6 +53,7 @@ Losses RunReport::losses() const {
         if (r.joined_at >= 0) ++out.joined;
         if (r.closed_at >= 0) ++out.loops_closed;
     }
+    out.to_the_end = out.lost > 0 && !tracked;
     if (localised() != nullptr) ++out.pieces;  // the map's own
     out.pieces -= std::min(out.pieces, out.joined);
     return out;

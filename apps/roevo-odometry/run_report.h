@@ -22,6 +22,8 @@ struct Losses {
     std::size_t loops_closed = 0;
     std::size_t pieces = 0;  ///< of the trajectory; where they are relative to each other was not measured
 
+    bool to_the_end = false;  ///< the last frame was lost
+
     /// "lost 3 times, found again once", for one loss at least.
     std::string toText() const;
 };

@@ -79,7 +79,7 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* 
         // missing.
         if (const auto unknown = app.remaining(); !unknown.empty())
             throw UsageError(unknown.front()[0] == '-' ? "unknown option '" + unknown.front() + "'"
-                                                       : "'" + unknown.front() + "' has no option before it");
+                                                       : "'" + unknown.front() + "' belongs to no option");
         throw UsageError(e.what());
     }
     return std::nullopt;

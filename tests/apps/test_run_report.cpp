@@ -38,7 +38,10 @@ TEST(RunReport, APoseThatIsNotANumberIsAFailureThatSaysWhere) {
 TEST(RunReport, LossesReadWellOneAndMany) {
     Losses losses;
     losses.lost = 1;
-    EXPECT_EQ(losses.toText(), "lost once, not found again");
+    EXPECT_EQ(losses.toText(), "lost once");  // and tracked on from the same keyframe
+    losses.to_the_end = true;
+    EXPECT_EQ(losses.toText(), "lost once, and at the end");
+    losses.to_the_end = false;
     losses.found_again = 1;
     EXPECT_EQ(losses.toText(), "lost once, found again once");
     losses.lost = 3;
@@ -62,7 +65,9 @@ TEST(RunReport, LossesAreCountedOnceEach) {
     add(FrameStatus::kOk);
     add(FrameStatus::kOk).found_at = 5;  // lost and found in one
     add(FrameStatus::kPredicted);
+    EXPECT_TRUE(report.losses().to_the_end);
     add(FrameStatus::kInitialised);
+    EXPECT_FALSE(report.losses().to_the_end);
     EXPECT_EQ(report.losses().lost, 3U);
     EXPECT_EQ(report.losses().found_again, 2U);
     EXPECT_EQ(report.losses().pieces, 2U);

@@ -154,6 +154,35 @@ TEST(EdgeClusters, WhatNothingObservesIsAsUncertainAsThePrior) {
     }
 }
 
+// Frame after frame of the same edges, all parallel: what they do not tell grows with the motion, and what
+// they tell does not become better by being told again.
+TEST(EdgeClusters, WhatAPriorTellsIsNotMeasured) {
+    std::mt19937 random(306);
+    constexpr int kParallel = 6, kFrames = 20;
+    constexpr double kMotion = 0.01;  // m and rad, one sigma, from frame to frame
+    Scene scene(random, kParallel);
+    for (auto& point : scene.points) point.normal = Eigen::Vector3d::UnitX();
+    scene.disturb(random, 0.01, 0.001);
+    EdgeClusters clusters;
+    PosePrior prior;
+    const Matrix6d by_motion = kMotion * kMotion * Matrix6d::Identity();
+    Matrix6d first, last;
+    for (int k = 0; k < kFrames; ++k) {
+        prior.errors.independent += by_motion;
+        prior.covariance = by_motion;  // narrow: it is to keep the pose where it is
+        PriorTerm term(prior);
+        clusters.start(numbers(kParallel));
+        PoseSystem all = scene.system(1e4, &clusters);
+        ASSERT_TRUE(term.linearise({}, all));
+        prior.errors = clusters.uncertainty(all, 1, &term);
+        last = prior.errors.covariance();
+        if (k == 0) first = last;
+    }
+    EXPECT_NEAR(last(1, 1), kFrames * kMotion * kMotion, 0.02 * kFrames * kMotion * kMotion);
+    EXPECT_GT(last(0, 0), first(0, 0)) << "the edges err alike each time";
+    EXPECT_LT(last(0, 0), 0.2 * last(1, 1)) << "and tell something";
+}
+
 TEST(EdgeClusters, WhatOneEdgeAloneTellsIsNotKnownWithoutAPrior) {
     for (const int edges : {1, 6}) {
         std::mt19937 random(305);

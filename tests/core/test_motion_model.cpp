@@ -156,6 +156,21 @@ TEST(MotionModel, TheDirectionThatIsNotKnownIsTheOneThatThePriorIsWideIn) {
     for (const int k : {0, 2, 3, 4, 5}) EXPECT_NEAR(unsure(k, k), exact(k, k) + 5e-6, 1e-9) << k;
 }
 
+TEST(MotionModel, WhatIsNotKnownTurnsWithTheCamera) {
+    constexpr double kDt = 1. / 30, kSigma = 0.05;
+    const Pose quarter = poseOf({0, 0, 0}, kPi / 2, {0, 0, 1});
+    PoseUncertainty along_x;
+    along_x.independent(0, 0) = kSigma * kSigma;
+    MotionModel model = makeModel();
+    model.anchor(0, Pose());
+    model.measure(kDt, quarter, along_x);
+    const PosePrior prior = model.predict(2 * kDt).prior;  // turned by as much again
+    for (const Matrix6d& covariance : {prior.covariance, prior.errors.covariance()}) {
+        EXPECT_GT(covariance(1, 1), kSigma * kSigma) << "what was along x is along y now";
+        EXPECT_LT(covariance(0, 0), 0.1 * kSigma * kSigma);
+    }
+}
+
 TEST(MotionModel, WhatWasNotKnownStaysUnknownUntilThePoseIsTheReference) {
     constexpr double kDt = 1. / 30;
     PoseUncertainty uncertainty;

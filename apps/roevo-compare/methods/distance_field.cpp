@@ -162,7 +162,7 @@ FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const Frame& fr
     if (result.converged) {
         clusters_.start(keyframe.clusters);
         for (const ResidualTerm* term : terms) term->addTo(clusters_);
-        result.uncertainty = clusters_.uncertainty(found.system, slope_);
+        result.uncertainty = clusters_.uncertainty(found.system, slope_, &likely);
     }
     times_.registration += millisecondsSince(begin);
     return result;

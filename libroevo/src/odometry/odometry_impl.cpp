@@ -201,9 +201,9 @@ Outcome Odometry::Impl::bridge(Tracking failed, double since_measured) {
     else
         motion.forgetVelocity();
     // A lost pose is worth little: say so, growing with time
-    const double variance = 1e-2 * kFrameRate * since_measured;
     RelativePose& pose = failed.pose;
-    pose = {world.reference().id, motion.lastPose(), {variance * Matrix6d::Identity(), {}}};
+    pose = {world.reference().id, motion.lastPose(), motion.predict(frame->timestamp()).prior.errors};
+    pose.uncertainty.independent += 1e-2 * kFrameRate * since_measured * Matrix6d::Identity();
     outcome.status = bridging ? FrameStatus::kPredicted : FrameStatus::kLost;
     if (!bridging && !beginTrack(world.trajectory().worldPose(pose), world.trajectory().worldCovariance(pose),
                                  since_measured)) {
@@ -233,6 +233,7 @@ void Odometry::Impl::renewReference(Outcome& outcome) {
         tracking.pose.uncertainty = {};
         return;
     }
+    motion.becomeReference();  // the frame before
     const Prediction prediction = motion.predict(frame->timestamp());
     Tracking again =
         tracker->trackFrom(world.reference(), *frame, prediction, tracking.pose.T_keyframe_camera);
@@ -241,6 +242,7 @@ void Odometry::Impl::renewReference(Outcome& outcome) {
     if (!again.tracked) {
         // What is seen from afar should be seen from nearby
         outcome.not_from_newest = again.fault;
+        tracking.measured = tracking.pose.uncertainty;
         tracking.doubt();
         tracking.matches = {};  // with another keyframe
         tracking.inliers = 0;

@@ -81,7 +81,8 @@ void EdgeClusters::add(std::size_t edge, const float (&matrix)[6], const float (
     sum.gradient.tail<3>() += point.cross(pull);
 }
 
-PoseUncertainty EdgeClusters::uncertainty(const PoseSystem& system, double slope) const {
+PoseUncertainty EdgeClusters::uncertainty(const PoseSystem& system, double slope,
+                                          const PriorTerm* prior) const {
     const Vector6d step = system.solve();
     Matrix6d of_edges = Matrix6d::Zero();
     for (const Sum& edge : sums_) of_edges += wholeOf(edge.hessian);
@@ -101,8 +102,14 @@ PoseUncertainty EdgeClusters::uncertainty(const PoseSystem& system, double slope
     }
     const auto used = static_cast<double>(out.influences.size());
     for (EdgeInfluence& edge : out.influences) edge.moved *= std::sqrt(std::max(1.0, used - 1) / used);
-    out.independent = system.hessian.inverse();
-    return out;
+    const Matrix6d inverse = system.hessian.inverse();
+    if (prior == nullptr) {
+        out.independent = inverse;
+        return out;
+    }
+    out.independent = inverse * (system.hessian - prior->information()) * inverse;
+    const Matrix6d kept = by_slopes.inverse() * prior->information();  // of the errors of its mean
+    return sum(prior->errors(), kept, out);
 }
 
 }  // namespace roevo

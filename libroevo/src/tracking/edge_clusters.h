@@ -7,6 +7,7 @@
 
 namespace roevo {
 
+class PriorTerm;
 struct PoseSystem;
 
 inline constexpr double kNothingKnown = 1;  ///< m and rad: sigma of a pose that nothing tells of
@@ -24,7 +25,7 @@ struct PoseUncertainty {
     std::vector<EdgeInfluence> influences;  ///< in the order of clusters, each once
 
     Matrix6d covariance() const;
-    /// How many points count as one: the covariance over that of independent points, mean of all directions.
+    /// How many errors count as one: the covariance over what is independent of it, mean of all directions.
     double designEffect() const;
 };
 
@@ -45,10 +46,14 @@ class EdgeClusters {
 
     /// Of the pose that solves the system: as of independent points, and what the pose would move by if any
     /// one edge were left out (the jackknife over clusters, which is the sandwich estimator with its
-    /// small-sample correction). What nothing but a prior tells has the prior's variance; with no prior, what
-    /// one edge alone tells is as uncertain as if nothing were known (1 m, 1 rad).
+    /// small-sample correction). With no prior, what one edge alone tells is as uncertain as if nothing were
+    /// known (1 m, 1 rad). A prior keeps directions solvable that no residual sees. It is no measurement:
+    /// there its errors stay in the pose, with what edges did to the frame before, and do not shrink from
+    /// frame to frame.
     /// @param slope  of all residuals' pull (see meanSlope()): weights alone overstate the Hessian
-    PoseUncertainty uncertainty(const PoseSystem& system, double slope) const;
+    /// @param prior  that is in the system
+    PoseUncertainty uncertainty(const PoseSystem& system, double slope,
+                                const PriorTerm* prior = nullptr) const;
 
   private:
     struct Sum {

@@ -1,6 +1,5 @@
 #include "tracking/fine_tracker.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 
 #include "tracking/se3.h"
@@ -36,15 +35,6 @@ class ReadoutPriorTerm : public ResidualTerm {
   private:
     double mean_, information_;
 };
-
-/// The prior keeps directions solvable that no residual sees. It is no measurement: there its errors stay in
-/// the pose, those that edges did to the frame before as well, and do not shrink from frame to frame.
-PoseUncertainty withPrior(PoseUncertainty own, const PoseSystem& system, const PriorTerm& prior,
-                          const PoseUncertainty& errors) {
-    const Matrix6d inverse = system.hessian.inverse(), kept = inverse * prior.information();
-    own.independent -= kept * inverse;
-    return sum(errors, kept, own);
-}
 
 }  // namespace
 
@@ -92,8 +82,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
     if (found.complete) {
         clusters_.start(keyframe.clusters);
         for (const ResidualTerm* term : terms) term->addTo(clusters_);
-        result.uncertainty = withPrior(clusters_.uncertainty(found.system, edges_.slope()), found.system,
-                                       likely, prior.errors);
+        result.uncertainty = clusters_.uncertainty(found.system, edges_.slope(), &likely);
         if (shutter.seconds_per_row != 0) {
             const Matrix6d moved =
                 edges_.movedByVelocity(shutter.motion(found.T_current_keyframe), likely.information());

@@ -85,7 +85,7 @@ Eigen::Matrix<double, 7, 1> PoseSystem::solveWithReadout() const {
 }
 
 PriorTerm::PriorTerm(const PosePrior& prior)
-    : mean_(prior.mean), information_(prior.weight * prior.covariance.inverse()) {}
+    : mean_(prior.mean), errors_(prior.errors), information_(prior.weight * prior.covariance.inverse()) {}
 
 bool PriorTerm::linearise(const Linearisation& at, PoseSystem& system) {
     system.hessian += information_;

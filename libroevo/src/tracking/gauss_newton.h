@@ -104,9 +104,11 @@ class PriorTerm : public ResidualTerm {
     bool linearise(const Linearisation& at, PoseSystem& system) override;
     /// With its weight.
     const Matrix6d& information() const { return information_; }
+    const PoseUncertainty& errors() const { return errors_; }
 
   private:
     Pose mean_;
+    PoseUncertainty errors_;
     Matrix6d information_;
 };
 

@@ -72,7 +72,7 @@ class MotionModel {
     Pose T_reference_assumed_ = Pose::Identity();  ///< or not
     Brightness brightness_;
     PoseUncertainty uncertainty_;  ///< of the last measured pose; nothing where that is the reference
-    /// Of the last two poses as they were measured, which is how far the velocity may be off.
+    /// Of the last two poses as they were measured: how far the velocity may be off, and where it starts.
     Matrix6d covariance_ = Matrix6d::Zero(), covariance_before_ = Matrix6d::Zero();
     double design_effect_ = 1;  ///< of the poses so far
     double last_timestamp_ = 0;

@@ -24,7 +24,8 @@ Matrix6d carriedTo(const Pose& T_reference_camera);
 RelativePose compose(const RelativePose& keyframe, const RelativePose& camera);
 
 /// The same pose relative to another keyframe, whose own pose against the first one is known. What edges do
-/// to both cancels; the rest of the errors adds up.
+/// to both cancels; the rest of the errors adds up, also what a prior kept of the one in the other: where
+/// edges tell little, the sum is too large.
 RelativePose changeReference(const RelativePose& pose, const RelativePose& new_keyframe, int id);
 
 }  // namespace roevo
