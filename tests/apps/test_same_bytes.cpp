@@ -19,7 +19,7 @@ namespace {
 using test::readFile;
 using test::runProgram;
 
-constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "8263d6df946af06f";
+constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "b410be4969bc9850";
 
 /// FNV-1a, as 16 digits.
 std::string checksum(const std::string& bytes) {
