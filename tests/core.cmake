@@ -8,7 +8,7 @@ roevo_test(test_core_edges
   LIBS roevo_internal)
 roevo_test(test_core_tracking
   SOURCES core/test_kernels.cpp core/test_residual_kernels.cpp core/test_photometric.cpp core/test_fine_jacobians.cpp core/test_gauss_newton.cpp
-          core/test_se3.cpp core/test_motion_model.cpp core/test_edge_association.cpp core/test_rolling_shutter.cpp core/test_motion_blur.cpp core/test_edge_points.cpp core/test_options.cpp
+          core/test_se3.cpp core/test_motion_model.cpp core/test_row_motion.cpp core/test_edge_association.cpp core/test_rolling_shutter.cpp core/test_motion_blur.cpp core/test_edge_points.cpp core/test_options.cpp
           core/test_relative_pose.cpp core/test_edge_clusters.cpp core/test_fault.cpp core/test_robust.cpp
   LIBS roevo_internal)
 # Ceres solves the bundle adjustment once more, as an independent oracle.

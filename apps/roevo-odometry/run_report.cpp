@@ -35,7 +35,7 @@ std::string Losses::toText() const {
     std::string text = "lost " + times(lost);
     if (found_again > 0) text += ", found again " + times(found_again);
     if (joined > 0) text += ", begun anew and joined later " + times(joined);
-    return to_the_end ? text + ", and at the end" : text;
+    return to_the_end ? text + (lost == 1 ? ", to the end" : ", the last time to the end") : text;
 }
 
 Losses RunReport::losses() const {

@@ -48,9 +48,7 @@ std::optional<JudgedMotion> judgeMotion(const Pose& truth, const Pose& estimate,
     const Matrix6d whole = covariance + covarianceOfTruth(truth, noise);
     if (!whole.allFinite()) return std::nullopt;
     const Pose difference = truth.inverse() * estimate;
-    const Eigen::AngleAxisd turn(difference.rotation());
-    Vector6d error;
-    error << difference.translation(), turn.angle() * turn.axis();
+    const Vector6d error = incrementOf(difference);
     const Eigen::Vector3d error_t = error.head<3>(), error_r = error.tail<3>();
     const Block covariance_t = whole.topLeftCorner<3, 3>(), covariance_r = whole.bottomRightCorner<3, 3>();
     const auto all = normalised<6>(error, whole);

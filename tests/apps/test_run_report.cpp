@@ -40,8 +40,11 @@ TEST(RunReport, LossesReadWellOneAndMany) {
     losses.lost = 1;
     EXPECT_EQ(losses.toText(), "lost once");  // and tracked on from the same keyframe
     losses.to_the_end = true;
-    EXPECT_EQ(losses.toText(), "lost once, and at the end");
+    EXPECT_EQ(losses.toText(), "lost once, to the end");
+    losses.lost = 3;
+    EXPECT_EQ(losses.toText(), "lost 3 times, the last time to the end");
     losses.to_the_end = false;
+    losses.lost = 1;
     losses.found_again = 1;
     EXPECT_EQ(losses.toText(), "lost once, found again once");
     losses.lost = 3;
