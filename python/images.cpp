@@ -91,12 +91,23 @@ cv::Mat toDepth(const py::array& array, std::optional<double> scale, const Pinho
     return toMetres(copy<std::uint16_t>(array, CV_16UC1), *scale);
 }
 
+cv::Mat toMask(const py::array& array, const PinholeCamera& camera) {
+    if (array.ndim() != 2) throw std::invalid_argument("mask must be height x width, not " + shapeOf(array));
+    const bool is_bool = holds<bool>(array);
+    if (!is_bool && !holds<std::uint8_t>(array))
+        throw py::type_error("mask must be of type bool or uint8, not " + typeOf(array));
+    checkSize(array, "mask", camera);
+    return is_bool ? copy<bool>(array, CV_8UC1) : copy<std::uint8_t>(array, CV_8UC1);
+}
+
 }  // namespace
 
 RgbdFrame toFrame(const py::object& colour, const py::object& depth, double stamp,
-                  std::optional<double> depth_scale, bool bgr, const PinholeCamera& camera) {
+                  std::optional<double> depth_scale, bool bgr, const py::object& mask,
+                  const PinholeCamera& camera) {
     RgbdFrame frame;
     frame.timestamp = stamp;
+    if (!mask.is_none()) frame.mask = toMask(toArray(mask, "mask"), camera);
     const cv::Mat image = toColour(toArray(colour, "colour"), camera);
     frame.depth = toDepth(toArray(depth, "depth"), depth_scale, camera);
     if (image.channels() == 1) {

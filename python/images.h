@@ -13,8 +13,10 @@ namespace roevo::python {
 /// @param depth        height x width: uint16 with depth_scale units per metre, or float32 in metres; 0, or
 /// what is no
 ///                     number, where unknown
+/// @param mask         None, or bool or uint8, height x width: False or 0 where RgbdFrame::mask is to be 0
 /// @throws py::type_error, std::invalid_argument in one line: which array, what it is and what was expected
 RgbdFrame toFrame(const pybind11::object& colour, const pybind11::object& depth, double stamp,
-                  std::optional<double> depth_scale, bool bgr, const PinholeCamera& camera);
+                  std::optional<double> depth_scale, bool bgr, const pybind11::object& mask,
+                  const PinholeCamera& camera);
 
 }  // namespace roevo::python

@@ -74,8 +74,8 @@ class Session {
         : odometry_(camera, options, toPose(T_world_start)) {}
 
     FrameResult process(const py::object& colour, const py::object& depth, double stamp,
-                        std::optional<double> depth_scale, bool bgr) {
-        const RgbdFrame frame = toFrame(colour, depth, stamp, depth_scale, bgr, odometry_.camera());
+                        std::optional<double> depth_scale, bool bgr, const py::object& mask) {
+        const RgbdFrame frame = toFrame(colour, depth, stamp, depth_scale, bgr, mask, odometry_.camera());
         return alone([&](Odometry& odometry) { return odometry.processFrame(frame); });
     }
 
@@ -240,12 +240,15 @@ Threads may share one: they wait for each other, and Python runs on meanwhile.)"
              "unusable.")
         .def("process", &Session::process, py::arg("colour"), py::arg("depth"), py::arg("stamp"),
              py::kw_only(), py::arg("depth_scale") = py::none(), py::arg("bgr") = false,
+             py::arg("mask") = py::none(),
              R"(Tracks one frame and returns its FrameResult.
 
 colour       uint8, height x width x 3 (RGB; BGR with bgr=True, as cv2 reads) or height x width
 depth        registered to colour, height x width: uint16 with depth_scale units per metre, or float32 in metres;
              0 or NaN where unknown
 stamp        seconds; later than that of the frame before
+mask         bool or uint8, height x width: False or 0 where something is seen that does not stand still in the
+             scene, such as the robot's own arm or a person
 Arrays may have any strides. Raises TypeError and ValueError for arrays of another type or shape, which change nothing.)")
         .def(
             "refine_all", &Session::refineAll,

@@ -13,10 +13,10 @@ target_include_directories(test_evaluation PRIVATE ${PROJECT_SOURCE_DIR}/apps)
 
 roevo_test(test_programs
   SOURCES apps/test_every_program.cpp apps/test_eval_program.cpp apps/test_render_pictures.cpp apps/test_render_program.cpp
-          apps/test_odometry_program.cpp apps/test_bad_folders.cpp apps/test_bad_rawlogs.cpp apps/test_realtime.cpp
+          apps/test_odometry_program.cpp apps/test_masks_program.cpp apps/test_bad_folders.cpp apps/test_bad_rawlogs.cpp apps/test_realtime.cpp
           apps/test_odd_rawlogs_program.cpp apps/test_scale_check.cpp apps/test_special_files.cpp
           apps/test_shown_text.cpp apps/test_limits.cpp apps/test_mrpt_outputs.cpp apps/test_threads.cpp
-  LIBS roevo_test_support roevo_evaluation roevo_mrpt roevo_internal nlohmann_json::nlohmann_json opencv_videoio)
+  LIBS roevo_test_support roevo_evaluation roevo_recordings roevo_mrpt roevo_internal nlohmann_json::nlohmann_json opencv_videoio)
 add_dependencies(test_programs roevo-odometry roevo-eval roevo-render rgbd2rawlog rawlog2rgbd rawlog-simulate
                  roevo-study)
 roevo_test(test_render_page

@@ -15,6 +15,7 @@
 #include "recordings/dataset_reader.h"
 #include "recordings/depth_scale.h"
 #include "recordings/facts.h"
+#include "recordings/masked.h"
 #include "recordings/sensor_files.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
@@ -158,9 +159,7 @@ class RawlogSource : public FrameSource {
     std::vector<std::string> notes_;
 };
 
-}  // namespace
-
-std::unique_ptr<FrameSource> openSource(const std::string& input, const InputChoice& choice) {
+std::unique_ptr<FrameSource> openUnmasked(const std::string& input, const InputChoice& choice) {
     std::error_code fault;
     const fs::file_status status = fs::status(input, fault);
     if (status.type() == fs::file_type::not_found)
@@ -181,6 +180,13 @@ std::unique_ptr<FrameSource> openSource(const std::string& input, const InputCho
         throw std::runtime_error(std::string(e.what()) +
                                  "; inputs are .rawlog files, ROS bags (.bag, .db3, .mcap) and folders");
     }
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> openSource(const std::string& input, const InputChoice& choice) {
+    std::unique_ptr<FrameSource> source = openUnmasked(input, choice);
+    return choice.mask.empty() ? std::move(source) : maskedFrames(std::move(source), choice.mask);
 }
 
 void skipFrames(FrameSource& source, std::size_t count, const std::string& input) {

@@ -5,7 +5,7 @@
 namespace roevo {
 namespace {
 
-constexpr char kSensorLabel[] = "--sensor-label";
+constexpr char kSensorLabel[] = "--sensor-label", kMask[] = "--mask";
 
 struct TopicOption {
     const char* name;
@@ -30,6 +30,11 @@ void addInputOptions(CLI::App& app, InputChoice& choice) {
     app.add_option(kSensorLabel, choice.sensor_label, "Rawlogs with several cameras: which one");
     addTopicOptions(app, choice.topics);
     addFolderOptions(app, choice.folder);
+    app.add_option(
+           kMask, choice.mask,
+           "Image of the colour camera's size, black where something is always in view that moves with "
+           "the camera, such as the robot's arm: depth there is not used")
+        ->type_name("FILE");
 }
 
 void addTopicOptions(CLI::App& app, BagTopicNames& topics) {
@@ -43,6 +48,7 @@ std::vector<std::pair<std::string, std::string>> chosenOptions(const InputChoice
     for (const TopicOption& option : kOptions)
         if (!(choice.topics.*option.topic).empty())
             out.emplace_back(option.name, choice.topics.*option.topic);
+    if (!choice.mask.empty()) out.emplace_back(kMask, choice.mask);
     for (auto& option : choice.folder.options()) out.push_back(std::move(option));
     return out;
 }

@@ -17,6 +17,7 @@ std::size_t numbersOf(Fault::Kind kind) {
     switch (kind) {
         case Kind::kColourSize:
         case Kind::kDepthSize:
+        case Kind::kMaskSize:
             return 4;
         case Kind::kDepthContradicts:
         case Kind::kGap:
@@ -35,6 +36,7 @@ std::size_t numbersOf(Fault::Kind kind) {
         case Kind::kNoColour:
         case Kind::kGreyType:
         case Kind::kDepthType:
+        case Kind::kMaskType:
         case Kind::kNoDepth:
         case Kind::kCoarseAstray:
         case Kind::kDiverged:

@@ -114,7 +114,9 @@ TEST(OdometryMapping, FinalPosesAreSmoothedAndKeyframesStayWhereTheMapHasThem) {
         const double by = distance(smooth.final_poses[i].T_world_camera, rough.final_poses[i].T_world_camera);
         moved = std::max(moved, by);
         for (const KeyframeInfo& keyframe : smooth.keyframes)
-            if (keyframe.timestamp == smooth.final_poses[i].timestamp) EXPECT_LT(by, 1e-12) << i;
+            if (keyframe.timestamp == smooth.final_poses[i].timestamp) {
+                EXPECT_LT(by, 1e-12) << i;
+            }
     }
     EXPECT_GT(moved, 1e-5);
     EXPECT_LT(moved, 0.005);

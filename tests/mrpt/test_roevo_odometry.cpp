@@ -226,6 +226,29 @@ TEST_F(RoevoOdometryTest, TheSemiDenseMapIsTheSurfaceInTheRobotsWorld) {
     EXPECT_FALSE(odometry_.getScene()->getByName(SceneNames::kSemiDense));
 }
 
+TEST_F(RoevoOdometryTest, WhatIsMaskedIsInNoMap) {
+    const cv::Size size(static_cast<int>(scan_->cameraParamsIntensity.ncols),
+                        static_cast<int>(scan_->cameraParamsIntensity.nrows));
+    cv::Mat mask = cv::Mat::zeros(size, CV_8UC1);
+    mask(cv::Rect(0, 0, size.width / 2, size.height)).setTo(255);
+    odometry_.setMask(mask);
+    mask.setTo(255);  // ours to use again
+    EXPECT_EQ(odometry_.processObservation(*scan_).status, FrameStatus::kInitialised);
+    const PinholeCamera& camera = odometry_.odometry()->camera();
+    const Pose T_keyframe_world = odometry_.odometry()->keyframes().at(0).T_world_camera.inverse();
+    std::size_t points = 0;
+    for (const MapEdge& edge : odometry_.odometry()->keyframeEdges())
+        for (const Eigen::Vector3f& point : edge.points) {
+            const Eigen::Vector3d seen = T_keyframe_world * Eigen::Vector3d(point.cast<double>());
+            EXPECT_LT(camera.fx * seen.x() / seen.z() + camera.cx, size.width / 2.);
+            ++points;
+        }
+    EXPECT_GT(points, 200U);
+    odometry_.setMask(cv::Mat::zeros(3, 3, CV_8UC1));
+    EXPECT_NE(odometry_.processObservation(*laterScan(*scan_, 0.03)).reason.find("mask is 3x3"),
+              std::string::npos);
+}
+
 TEST_F(RoevoOdometryTest, SensoryFramesAndStartPosesOfMrpt) {
     mrpt::poses::CPosePDFGaussian x0;
     x0.mean = mrpt::poses::CPose2D(3, 4, 0.5);

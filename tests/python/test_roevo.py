@@ -151,6 +151,28 @@ class Arrays(unittest.TestCase):
         self.assertEqual(results[-1].status, "ok")
         np.testing.assert_allclose(odometry.trajectory()[:, 1:4], track()[0].trajectory()[:, 1:4], atol=0.003)
 
+    def test_a_mask_leaves_out(self):
+        for kind in (bool, np.uint8):
+            mask = np.ones((240, 320), kind)
+            white, results = track(mask=mask, depth_scale=recording.depth_scale)
+            np.testing.assert_array_equal(white.trajectory(), track()[0].trajectory())
+            points = results[0].num_points
+            mask[:, 100:] = 0
+            self.assertLess(track(mask=mask, depth_scale=recording.depth_scale)[1][0].num_points, points / 2)
+
+    def test_wrong_masks_are_refused_by_name(self):
+        colour, depth, stamp = recording.frames[0]
+        odometry = roevo.Odometry(recording.camera, roevo.Options(OPTIONS))
+        for kind, message, mask in [
+            (TypeError, "mask must be a numpy array, not str", "mask.png"),
+            (TypeError, "mask must be of type bool or uint8, not float64", np.ones((240, 320))),
+            (ValueError, "mask must be height x width, not 240 x 320 x 1", np.ones((240, 320, 1), bool)),
+            (ValueError, "mask is 320 x 240, but the camera has 240 rows", np.ones((320, 240), bool)),
+        ]:
+            with self.assertRaises(kind) as raised:
+                odometry.process(colour, depth, stamp, depth_scale=5000, mask=mask)
+            self.assertIn(message, str(raised.exception))
+
     def test_wrong_ones_are_refused_by_name_and_change_nothing(self):
         colour, depth, stamp = recording.frames[0]
         cases = [

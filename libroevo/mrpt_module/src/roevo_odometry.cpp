@@ -39,7 +39,9 @@ void CRoevoOdometry::initialize(const mrpt::poses::CPose3D& robot_pose) {
 
 RgbdFrame CRoevoOdometry::convert(const CObservation3DRangeScan& scan) {
     const mrpt::system::CTimeLoggerEntry entry(profiler_, "convert");
-    return toRgbdFrame(scan);
+    RgbdFrame frame = toRgbdFrame(scan);
+    frame.mask = mask_;
+    return frame;
 }
 
 FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {

@@ -14,8 +14,9 @@ namespace roevo {
 class EdgeExtractor {
   public:
     explicit EdgeExtractor(const EdgeOptions& options) : options_(options) {}
-    /// @param mask  the pixels that the edges were made of
-    void extract(const cv::Mat& grey, OrganizedEdges& out, EdgeMask& mask);
+    /// @param mask   the pixels that the edges were made of
+    /// @param scene  CV_8UC1 of the same size: 0 where no edge is wanted; empty: wanted everywhere
+    void extract(const cv::Mat& grey, OrganizedEdges& out, EdgeMask& mask, const cv::Mat& scene = {});
 
   private:
     EdgeOptions options_;

@@ -50,6 +50,7 @@ PreparedFrame::Content FramePreparer::prepare(const RgbdFrame& images) {
         images.grey.copyTo(own.grey);
         images.depth.copyTo(own.depth);
         images.colour.copyTo(own.colour);
+        images.mask.copyTo(own.mask);
     });
 }
 

@@ -17,6 +17,9 @@ class FrontEnd {
     void process(Frame& frame);
 
   private:
+    /// Forgets the depth of what is no scene. @return the scene in the ideal image; empty: all of it
+    cv::Mat sceneOf(RgbdFrame& images) const;
+
     Undistorter undistorter_;
     EdgeExtractor extractor_;
     int levels_;

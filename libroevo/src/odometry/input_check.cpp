@@ -20,6 +20,8 @@ Fault inputFault(const RgbdFrame& frame, const PinholeCamera& camera, double las
         return Fault{kind, {image.cols, image.rows, camera.width, camera.height}};
     };
     if (!fits(frame.grey)) return sizes(Kind::kColourSize, frame.grey);
+    if (!frame.mask.empty() && frame.mask.type() != CV_8UC1) return {Kind::kMaskType, {}};
+    if (!frame.mask.empty() && !fits(frame.mask)) return sizes(Kind::kMaskSize, frame.mask);
     if (frame.depth.empty()) return {};
     if (frame.depth.type() != CV_32FC1) return {Kind::kDepthType, {}};
     if (!fits(frame.depth)) return sizes(Kind::kDepthSize, frame.depth);

@@ -27,6 +27,10 @@ std::string describe(const Fault& fault) {
             return "depth image is not 32-bit float";
         case Kind::kDepthSize:
             return "depth image is " + sizes();
+        case Kind::kMaskType:
+            return "mask is not 8-bit with one channel";
+        case Kind::kMaskSize:
+            return "mask is " + sizes();
         case Kind::kNoDepth:
             return "no depth image";
         case Kind::kFewPointsWithDepth:

@@ -17,6 +17,8 @@ struct Fault {
         kColourSize,  ///< numbers: width and height of the image, of the camera
         kDepthType,
         kDepthSize,  ///< the same
+        kMaskType,
+        kMaskSize,  ///< the same
         // of a keyframe
         kNoDepth,
         kFewPointsWithDepth,  ///< numbers: found, needed

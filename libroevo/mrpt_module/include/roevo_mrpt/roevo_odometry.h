@@ -54,6 +54,11 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
                     const mrpt::poses::CPosePDF* x0 = nullptr);
     void initialize(const mrpt::poses::CPose3D& robot_pose);
 
+    /// What is always in view and moves with the camera, such as the robot's own arm, is left out from the
+    /// next observation on. @param mask  CV_8UC1 in the colour image's pixels, 0 there, see RgbdFrame::mask;
+    /// empty: nothing
+    void setMask(const cv::Mat& mask) { mask_ = mask.clone(); }
+
     /// Tracks one observation. Observations that cannot be used come back kRejected with a reason and are
     /// logged.
     /// @return T_world_camera and its covariance are of the optical frame of the colour camera, in the
@@ -108,6 +113,7 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     std::optional<Odometry> odometry_;
     RobotContext context_;  // one mount unless the camera moves on the robot; covariances of frames
     std::optional<FrameResult> latest_;
+    cv::Mat mask_;
     mrpt::system::CTimeLogger profiler_;
 };
 

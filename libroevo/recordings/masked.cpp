@@ -1,0 +1,61 @@
+#include "recordings/masked.h"
+
+#include <opencv2/core.hpp>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "programs/text.h"
+#include "recordings/forwarding_source.h"
+#include "roevo_mrpt/image_conversions.h"
+
+namespace roevo {
+namespace {
+
+std::string sizeText(const cv::Size& size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+cv::Mat readMask(const std::string& file, const PinholeCamera& camera) {
+    cv::Mat mask = toGrey(readColourFile(file));
+    if (mask.size() != cv::Size(camera.width, camera.height))
+        throw std::runtime_error("the mask " + file + " is " + sizeText(mask.size()) +
+                                 ", the colour images are " + sizeText({camera.width, camera.height}));
+    if (cv::countNonZero(mask) == 0)
+        throw std::runtime_error("the mask " + file + " is all black, which leaves nothing of the images");
+    return mask;
+}
+
+class MaskedSource : public ForwardingSource {
+  public:
+    MaskedSource(std::unique_ptr<FrameSource> source, const std::string& mask)
+        : ForwardingSource(std::move(source)), mask_(readMask(mask, camera())), file_(mask) {}
+
+    bool next(SourceFrame& frame) override {
+        if (!ForwardingSource::next(frame)) return false;
+        if (!frame.fault.empty()) return true;
+        frame.frame.mask = mask_;
+        frame.frame.depth.setTo(0, mask_ == 0);  // for methods that do not know of masks
+        return true;
+    }
+
+    std::vector<std::string> notes() const override {
+        std::vector<std::string> notes = ForwardingSource::notes();
+        const double share =
+            1 - static_cast<double>(cv::countNonZero(mask_)) / static_cast<double>(mask_.total());
+        notes.push_back("mask " + file_ + " leaves out " + shownNumber(100 * share, 1) + " % of the image");
+        return notes;
+    }
+
+  private:
+    cv::Mat mask_;
+    std::string file_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> maskedFrames(std::unique_ptr<FrameSource> source, const std::string& mask) {
+    return std::make_unique<MaskedSource>(std::move(source), mask);
+}
+
+}  // namespace roevo
