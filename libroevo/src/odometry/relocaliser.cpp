@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::size_t kCandidates = 5;  ///< keyframes whose points are compared
 constexpr std::size_t kRegistered = 3;  ///< of them, those whose edges are
-constexpr std::size_t kPoints = 200;    ///< kept of a keyframe, the most distinct ones
 // Poses that are further apart are different places
 constexpr double kSamePlace = 0.3;               ///< m
 constexpr double kSameDirection = 15 * kDegree;  ///< rad
@@ -88,7 +87,6 @@ Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<
     KnownPlace& place = out.place;
     const cv::Mat& grey = frame->pyramid.level(0);
     describer_.describe(keyframe.edges, grey, place.points);
-    if (place.points.size() > kPoints) place.points.resize(kPoints);
     place.points.shrink_to_fit();
     place.edges = PackedKeyframe(toMapKeyframe(keyframe, colours, ideal_, options_.mapping.max_points));
     place.median_depth = keyframe.median_depth;
@@ -185,7 +183,6 @@ std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajecto
     const EdgePoints3D edges = lifted(frame);
     if (edges.size() == 0) return std::nullopt;
     describer_.describe(edges, frame.pyramid.level(0), points_);
-    if (points_.size() > kPoints) points_.resize(kPoints);
     const std::vector<Alike> alike = lookUp(points_, -1, [](int) { return true; });
     const auto found = surest(registered(alike, frame, edges, RowMotion()), trajectory, whereabouts);
     if (!found || !found->sure) return std::nullopt;
