@@ -33,7 +33,7 @@ void addInputOptions(CLI::App& app, InputChoice& choice) {
     app.add_option(
            kMask, choice.mask,
            "Image of the colour camera's size, black where something is always in view that moves with "
-           "the camera, such as the robot's arm: depth there is not used")
+           "the camera, such as the robot's arm: nothing there is used")
         ->type_name("FILE");
 }
 

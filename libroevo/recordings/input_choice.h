@@ -18,7 +18,7 @@ struct InputChoice {
     std::string sensor_label;  ///< rawlogs: only this sensor; empty: the first with range images
     BagTopicNames topics;      ///< bags: those that are not to be found by themselves
     FolderChoice folder;       ///< folders: what is not in them, or wrong there
-    std::string mask;          ///< image file: where it is black, depth is not used (recordings/masked.h)
+    std::string mask;          ///< image file: where it is black, nothing is used (recordings/masked.h)
 };
 
 /// The options --sensor-label, --mask and those of addTopicOptions() and addFolderOptions().
