@@ -21,9 +21,11 @@ cv::Mat readMask(const std::string& file, const PinholeCamera& camera) {
     if (mask.size() != cv::Size(camera.width, camera.height))
         throw std::runtime_error("the mask " + file + " is " + sizeText(mask.size()) +
                                  ", the colour images are " + sizeText({camera.width, camera.height}));
-    if (cv::countNonZero(mask) == 0)
+    double brightest = 0;
+    cv::minMaxLoc(mask, nullptr, &brightest);
+    if (brightest == 0)
         throw std::runtime_error("the mask " + file + " is all black, which leaves nothing of the images");
-    return mask;
+    return mask > brightest / 2;  // of 0 and 1, too; black is not quite 0 in a JPEG
 }
 
 class MaskedSource : public ForwardingSource {

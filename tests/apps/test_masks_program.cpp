@@ -9,6 +9,7 @@ namespace {
 
 using test::expectError;
 using test::OdometryProgram;
+using test::readFile;
 using test::slidingRecording;
 using test::TumFrame;
 
@@ -48,6 +49,18 @@ TEST_F(MaskOption, LeavesTheRobotsArmOut) {
     EXPECT_GT(misled, 0.02) << "else the arm is no test";
     EXPECT_LT(error(), 0.005);
     EXPECT_NE(result.out.find("mask.png leaves out 18.6 % of the image"), std::string::npos) << result.out;
+}
+
+TEST_F(MaskOption, BlackIsBlackInAJpegAndWhiteMayBeOne) {
+    ASSERT_EQ(runFrames(withArm(12), {"--mask", armMask()}).exit_code, 0);
+    const std::string trajectory = readFile(output() + "/trajectory.txt");
+    cv::Mat ones(240, 320, CV_8UC1, cv::Scalar(1)), nearly(240, 320, CV_8UC1, cv::Scalar(251));
+    ones(kArm).setTo(0);
+    nearly(kArm).setTo(4);
+    for (const cv::Mat& other : {ones, nearly}) {
+        ASSERT_EQ(run(folder_ / "recording", {"--mask", mask(other)}).exit_code, 0);
+        EXPECT_EQ(readFile(output() + "/trajectory.txt"), trajectory);
+    }
 }
 
 TEST_F(MaskOption, OtherMethodsGetNoDepthThere) {
