@@ -19,28 +19,18 @@ roevo_test(test_core_mapping
           core/test_local_mapper.cpp core/test_packed_keyframe.cpp core/test_pose_graph.cpp
           core/test_window_posterior.cpp core/test_refine_all.cpp
   LIBS roevo_internal Ceres::ceres)
-# One ctest entry per suite, since the cases of a suite share a rendered sequence.
 add_executable(test_core_odometry core/test_trajectory.cpp core/test_motion_smoother.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp core/test_odometry_accuracy.cpp core/test_odometry_status.cpp core/test_frame_depth.cpp core/test_masks.cpp core/test_prepared_frames.cpp
                core/test_odometry_covariance.cpp core/test_odometry_semi_dense.cpp core/test_tracker_overrides.cpp)
 target_link_libraries(test_core_odometry PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-foreach(suite Trajectory KeyframeChanges FineTracking OdometryAccuracy OdometryStatus FrameDepth PreparedFrames OdometryCovariance OdometrySemiDense TrackerOverrides)
-  add_test(NAME ${suite} COMMAND test_core_odometry --gtest_filter=${suite}.*)
-  set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
-endforeach()
+roevo_suites(test_core_odometry Trajectory KeyframeChanges FineTracking OdometryAccuracy OdometryStatus FrameDepth Masks PreparedFrames OdometryCovariance OdometrySemiDense TrackerOverrides)
 add_executable(test_core_mapped_runs core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp
                core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp core/test_relocalisation.cpp core/test_loop_closing.cpp
                core/test_kidnapping.cpp)
 target_link_libraries(test_core_mapped_runs PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-foreach(suite OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout Relocalisation LoopClosing Kidnapping)
-  add_test(NAME ${suite} COMMAND test_core_mapped_runs --gtest_filter=*${suite}.*)
-  set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
-endforeach()
+roevo_suites(test_core_mapped_runs OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout Relocalisation LoopClosing Kidnapping)
 add_executable(test_core_map_file core/test_map_file.cpp)
 target_link_libraries(test_core_map_file PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-foreach(suite MapFile MapFileErrors)
-  add_test(NAME ${suite} COMMAND test_core_map_file --gtest_filter=*${suite}.*)
-  set_tests_properties(${suite} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT})
-endforeach()
+roevo_suites(test_core_map_file MapFile MapFileErrors)
 roevo_test(test_core_sequences
   SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp core/test_shadow_edges.cpp core/test_option_extremes.cpp
   LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets)

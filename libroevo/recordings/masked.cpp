@@ -31,26 +31,29 @@ cv::Mat readMask(const std::string& file, const PinholeCamera& camera) {
 class MaskedSource : public ForwardingSource {
   public:
     MaskedSource(std::unique_ptr<FrameSource> source, const std::string& mask)
-        : ForwardingSource(std::move(source)), mask_(readMask(mask, camera())), file_(mask) {}
+        : ForwardingSource(std::move(source)),
+          mask_(readMask(mask, camera())),
+          left_out_(mask_ == 0),
+          file_(mask) {}
 
     bool next(SourceFrame& frame) override {
         if (!ForwardingSource::next(frame)) return false;
         if (!frame.fault.empty()) return true;
         frame.frame.mask = mask_;
-        frame.frame.depth.setTo(0, mask_ == 0);  // for methods that do not know of masks
+        frame.frame.depth.setTo(0, left_out_);  // for methods that do not know of masks
         return true;
     }
 
     std::vector<std::string> notes() const override {
         std::vector<std::string> notes = ForwardingSource::notes();
         const double share =
-            1 - static_cast<double>(cv::countNonZero(mask_)) / static_cast<double>(mask_.total());
+            static_cast<double>(cv::countNonZero(left_out_)) / static_cast<double>(left_out_.total());
         notes.push_back("mask " + file_ + " leaves out " + shownNumber(100 * share, 1) + " % of the image");
         return notes;
     }
 
   private:
-    cv::Mat mask_;
+    cv::Mat mask_, left_out_;
     std::string file_;
 };
 

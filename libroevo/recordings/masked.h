@@ -7,9 +7,7 @@
 namespace roevo {
 
 /// The same frames with a mask (see RgbdFrame::mask), and without depth where it is black.
-/// @param mask  image file of the colour camera's size, in its pixels: what is darker than half of its
-/// brightest
-///              pixel is left out
+/// @param mask  image file in the colour camera's pixels. Black is what is darker than half of its brightest.
 /// @throws std::runtime_error when it cannot be read, has another size or leaves nothing
 std::unique_ptr<FrameSource> maskedFrames(std::unique_ptr<FrameSource> source, const std::string& mask);
 

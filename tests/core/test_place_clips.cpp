@@ -81,7 +81,7 @@ class PlaceClips : public ::testing::Test {
             const EdgeRegistration edges = registrar.registerEdges(
                 other.keyframe, view.frame, view.keyframe.edges, points->T_candidate_query.inverse());
             const Likeness likeness = describer.compare(other.points, edges.T_frame_keyframe,
-                                                        view.frame.pyramid.level(0), view.frame.images.depth);
+                                                        view.frame.pyramid.level(0), view.frame.images);
             if (evidenceOf(*points, edges, likeness) < Evidence::kStrong) continue;
             if (likeness.share() <= best.likeness) continue;
             best = {candidate.id, likeness.share(), edges.T_frame_keyframe};

@@ -193,7 +193,7 @@ class PlaceLikeness : public ::testing::Test {
   protected:
     PlaceLikeness() : place_(viewOf(images_)->points) {}
     Likeness compare(const RgbdFrame& frame, const Pose& T_frame_place = Pose()) {
-        return PlaceDescriber(squareCamera(400)).compare(place_, T_frame_place, frame.grey, frame.depth);
+        return PlaceDescriber(squareCamera(400)).compare(place_, T_frame_place, frame.grey, frame);
     }
     RgbdFrame images_ = boxes(400, 1.5);
     PlacePoints place_;
@@ -229,6 +229,15 @@ TEST_F(PlaceLikeness, WhatIsHiddenSaysNothing) {
     hidden.depth(cv::Rect(0, 0, 160, 400)).setTo(0.7);
     EXPECT_LT(compare(hidden).visible, 0.8 * compare(images_).visible);
     EXPECT_GT(compare(hidden).share(), 0.9);
+    RgbdFrame masked = images_;
+    masked.grey = hidden.grey.clone();
+    masked.grey(cv::Rect(0, 0, 200, 400)).setTo(128);
+    EXPECT_LT(compare(masked).share(), 0.7);
+    masked.mask = cv::Mat(400, 400, CV_8UC1, cv::Scalar(255));
+    masked.mask(cv::Rect(0, 0, 240, 400)).setTo(0);
+    EXPECT_LT(compare(masked).visible, 0.8 * compare(images_).visible);
+    EXPECT_GT(compare(masked).visible, 20);
+    EXPECT_GT(compare(masked).share(), 0.9);
     Pose turned;
     turned.setRotation(Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitY())));
     EXPECT_EQ(compare(images_, turned).visible, 0) << "behind the camera";

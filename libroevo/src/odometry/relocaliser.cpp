@@ -71,6 +71,7 @@ void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<
     if (end > 0 || hasOthers(own)) {
         seen->edges = frame.edges;
         seen->images.depth = frame.images.depth.clone();
+        seen->images.mask = frame.images.mask.clone();
     }
     seen->pyramid.build(frame.pyramid.level(0).clone(), 1);
     const auto launch = threadCount(options_.threads) > 1 ? std::launch::async : std::launch::deferred;
@@ -138,7 +139,7 @@ std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& 
     collect();
     const PlacePoints& points = places_[static_cast<std::size_t>(keyframe.id)].points;
     const Likeness likeness =
-        describer_.compare(points, found.T_frame_keyframe, frame.pyramid.level(0), frame.images.depth);
+        describer_.compare(points, found.T_frame_keyframe, frame.pyramid.level(0), frame.images);
     if (!confirms(found, likeness)) return std::nullopt;
     return found.T_frame_keyframe.inverse();
 }
@@ -217,7 +218,7 @@ std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<
         if (!found.held) continue;
         const Likeness likeness =
             describer_.compare(places_[static_cast<std::size_t>(id)].points, found.T_frame_keyframe,
-                               frame.pyramid.level(0), frame.images.depth);
+                               frame.pyramid.level(0), frame.images);
         const Evidence evidence = evidenceOf(of_points, found, likeness);
         if (evidence == Evidence::kNone) continue;
         RelativePose pose{id, found.T_frame_keyframe.inverse(), {found.covariance, {}}};

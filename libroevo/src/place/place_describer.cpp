@@ -74,7 +74,8 @@ double PlaceDescriber::patchRadius(double depth) const {
 }
 
 Likeness PlaceDescriber::compare(const PlacePoints& place, const Pose& T_frame_place, const cv::Mat& grey,
-                                 const cv::Mat& depth) {
+                                 const RgbdFrame& images) {
+    const cv::Mat &depth = images.depth, &mask = images.mask;
     cv::integral(grey, integral_, CV_32S);
     const double roll = rollOf(T_frame_place);
     Likeness out;
@@ -91,6 +92,7 @@ Likeness PlaceDescriber::compare(const PlacePoints& place, const Pose& T_frame_p
                   v = std::clamp(nearestInteger(seen.y()), 0, depth.rows - 1);
         const auto there = static_cast<double>(depth.at<float>(v, u));
         if (there > 0 && there < kHidden * p.z()) continue;
+        if (!mask.empty() && mask.at<std::uint8_t>(v, u) == 0) continue;
         ++out.visible;
         const double angle = static_cast<double>(point.normal_angle) + roll;
         const Descriptor found = describePatch(pixel, {std::cos(angle), std::sin(angle)}, radius);

@@ -6,6 +6,7 @@
 
 #include "place/place_points.h"
 #include "roevo/camera/pinhole_camera.h"
+#include "roevo/camera/rgbd_frame.h"
 #include "roevo/types.h"
 #include "tracking/edge_points.h"
 
@@ -35,10 +36,11 @@ class PlaceDescriber {
 
     /// Looks in an image for what surrounds the points of a place. No edges need to be found there, so that
     /// blur costs little, and what is missing tells as much as what is there.
-    /// @param grey   as for describe()
-    /// @param depth  m, of the same frame, as seen through the lens
+    /// @param grey    as for describe()
+    /// @param images  of the same frame, as seen through the lens: what is nearer there or masked hides
+    /// points
     Likeness compare(const PlacePoints& place, const Pose& T_frame_place, const cv::Mat& grey,
-                     const cv::Mat& depth);
+                     const RgbdFrame& images);
 
   private:
     struct Corner {
