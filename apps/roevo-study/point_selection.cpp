@@ -118,12 +118,12 @@ std::vector<cv::Point> selectCannyPixels(const Gradient& gradient, const EdgeOpt
 EdgePoints3D liftPixels(const std::vector<cv::Point>& pixels, const Gradient& gradient, const cv::Mat& depth,
                         const PinholeCamera& camera, const RowMotion& rows, const EdgeOptions& edge_options,
                         const SensorOptions& sensor) {
+    const ForegroundDepth foreground(depth, edge_options, sensor);
     EdgePoints3D out;
     out.image.clear();
     for (const cv::Point& pixel : pixels) {
         const Eigen::Vector2d raw = camera.distortPixel(Eigen::Vector2d(pixel.x, pixel.y));
-        const float z = foregroundDepth(depth, static_cast<float>(raw.x()), static_cast<float>(raw.y()),
-                                        edge_options, sensor);
+        const float z = foreground.at(static_cast<float>(raw.x()), static_cast<float>(raw.y()));
         if (z == 0) continue;
         out.image.addPoint(static_cast<float>(pixel.x), static_cast<float>(pixel.y), 1, 0,
                            gradient.magnitude.at<float>(pixel) / 8);

@@ -14,7 +14,7 @@ namespace {
 const PinholeCamera kCamera{100, 80, 90, 90, 49.5, 39.5, {}};
 
 float at(const cv::Mat& depth, float u, float v) {
-    return foregroundDepth(depth, u, v, EdgeOptions(), SensorOptions());
+    return ForegroundDepth(depth, EdgeOptions(), SensorOptions()).at(u, v);
 }
 
 TEST(EdgeDepth, OccludingStepGivesTheForegroundOnBothSides) {
@@ -128,6 +128,60 @@ TEST(EdgeDepth, InvalidNeighboursDoNotMatter) {
     depth.at<float>(41, 50) = 0;
     depth.at<float>(41, 51) = -3;
     EXPECT_FLOAT_EQ(at(depth, 50, 40), 1.25F);
+}
+
+/// Only every n-th pixel of every n-th row has a depth.
+cv::Mat everyNth(const cv::Mat& depth, int n, int first) {
+    cv::Mat sparse(depth.size(), CV_32FC1, cv::Scalar(0));
+    for (int v = first; v < depth.rows; v += n)
+        for (int u = first; u < depth.cols; u += n) sparse.at<float>(v, u) = depth.at<float>(v, u);
+    return sparse;
+}
+
+TEST(EdgeDepth, SparseDepthIsLookedForInWiderSquares) {
+    cv::Mat depth(80, 100, CV_32FC1);
+    const auto slanted = [](float u, float v) { return 1 / (0.5F - 1e-3F * (u - 50) + 5e-4F * (v - 40)); };
+    for (int v = 0; v < 80; ++v)
+        for (int u = 0; u < 100; ++u)
+            depth.at<float>(v, u) = slanted(static_cast<float>(u), static_cast<float>(v));
+    for (const int n : {2, 3, 4}) {
+        for (int first = 0; first < n; ++first) {
+            const cv::Mat sparse = everyNth(depth, n, first);
+            for (float u = 40; u < 50; u += 0.7F) {
+                const float v = 38 + 0.4F * (u - 40);
+                EXPECT_NEAR(at(sparse, u, v), slanted(u, v), n < 4 ? 1e-5F : 3e-3F)
+                    << n << " " << first << " " << u;
+            }
+        }
+    }
+}
+
+TEST(EdgeDepth, SparseDepthOfAStepIsThatOfTheForeground) {
+    cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(3.0F));
+    depth.colRange(0, 50).setTo(1.5F);
+    for (int first = 0; first < 4; ++first) {
+        const cv::Mat sparse = everyNth(depth, 4, first);
+        for (const float u : {48.0F, 49.0F, 50.0F}) EXPECT_FLOAT_EQ(at(sparse, u, 40.3F), 1.5F) << u;
+        EXPECT_FLOAT_EQ(at(sparse, 60, 40), 3);
+        for (const float u : {0.0F, 99.0F}) EXPECT_GT(at(sparse, u, 0), 0) << u;
+        EXPECT_EQ(at(sparse, -20, 40), 0);
+        EXPECT_EQ(at(sparse, 1e9F, -1e9F), 0);
+    }
+}
+
+TEST(EdgeDepth, HolesInDenseDepthDoNotWidenTheSquares) {
+    std::mt19937 random(55);
+    std::bernoulli_distribution known(0.6);
+    cv::Mat depth(80, 100, CV_32FC1, cv::Scalar(2.0F));
+    depth.col(55).setTo(1);
+    for (int v = 0; v < 80; ++v)
+        for (int u = 0; u < 100; ++u)
+            if (!known(random)) depth.at<float>(v, u) = 0;
+    for (int v = 30; v < 40; ++v) EXPECT_FLOAT_EQ(at(depth, 52, static_cast<float>(v)), 2) << v;
+    depth.setTo(0);
+    depth(cv::Rect(60, 50, 20, 20)).setTo(1);  // a scrap of it
+    EXPECT_FLOAT_EQ(at(depth, 61, 55), 1);
+    EXPECT_EQ(at(depth, 57, 55), 0);
 }
 
 TEST(EdgeDepth, BordersAndOutsideAreSafe) {

@@ -156,13 +156,16 @@ TEST(EdgeKernels, NormalsAreOnTheSideOfTheGradient) {
 /// What depthPatch() finds, the same by every table.
 pixels::DepthPatch patchOf(const Floats& depth, std::ptrdiff_t stride, int size,
                            const pixels::DepthLimits& limits, double u, double v) {
-    Floats offsets;
-    for (int k = 0; k < 8; ++k) offsets.push_back(static_cast<float>(k - size / 2));
+    Floats columns, rows;
+    for (int k = 0; k < 8; ++k) {
+        columns.push_back(static_cast<float>(k - size / 2));
+        rows.push_back(2 * columns.back());
+    }
     std::vector<pixels::DepthPatch> found;
     for (const auto* table : tables()) {
         found.emplace_back();
-        table->depthPatch({depth.data(), stride, size, offsets.data()}, limits, static_cast<float>(u),
-                          static_cast<float>(v), found.back());
+        table->depthPatch({depth.data(), stride, size, columns.data(), rows.data()}, limits,
+                          static_cast<float>(u), static_cast<float>(v), found.back());
         EXPECT_EQ(std::memcmp(&found.front(), &found.back(), sizeof found.front()), 0) << table->name;
     }
     return found.front();
@@ -191,7 +194,7 @@ TEST(EdgeKernels, PlaneOfInverseDepthsIsTheLeastSquaresOne) {
                 if (x >= size || y >= size || !(z >= kLimits.near && z <= kLimits.far)) continue;
                 A.conservativeResize(A.rows() + 1, 3);
                 q.conservativeResize(q.rows() + 1);
-                A.bottomRows(1) << 1, x - size / 2 - u, y - size / 2 - v;
+                A.bottomRows(1) << 1, x - size / 2 - u, 2 * (y - size / 2) - v;
                 q.tail(1) << 1 / static_cast<double>(z);
             }
         }

@@ -56,10 +56,10 @@ class EdgeSidesTest : public testing::Test {
         return seen;
     }
     std::vector<float> patches(const PinholeCamera& lens = kCamera) const {
+        const ForegroundDepth foreground(depth_, EdgeOptions(), SensorOptions());
         std::vector<float> z;
         for (const Eigen::Vector2d& p : pixels(lens))
-            z.push_back(foregroundDepth(depth_, static_cast<float>(p.x()), static_cast<float>(p.y()),
-                                        EdgeOptions(), SensorOptions()));
+            z.push_back(foreground.at(static_cast<float>(p.x()), static_cast<float>(p.y())));
         return z;
     }
     void correct(std::vector<float>& z, const PinholeCamera& lens = kCamera) {

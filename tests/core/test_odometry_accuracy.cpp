@@ -24,7 +24,7 @@ const Sequence& room() {
 }
 
 void expectAllOk(const TrackedRun& run) {
-    ASSERT_EQ(run.results.front().status, FrameStatus::kInitialised);
+    ASSERT_EQ(run.results.front().status, FrameStatus::kInitialised) << run.results.front().reason;
     for (std::size_t i = 1; i < run.results.size(); ++i) {
         EXPECT_EQ(run.results[i].status, FrameStatus::kOk) << "frame " << i << ": " << run.results[i].reason;
     }
@@ -41,6 +41,20 @@ TEST(OdometryAccuracy, WithoutNoiseTheErrorIsAFewMillimetres) {
                        std::to_string(1000 * positionError(run, room())));
         EXPECT_LT(positionError(run, room()), mode == Mode::kTracking ? 0.003 : 0.006) << toString(mode);
     }
+}
+
+TEST(OdometryAccuracy, ADepthInEverySixteenthPixelIsEnough) {
+    Sequence sparse = room();
+    for (RgbdFrame& frame : sparse.frames) {
+        const cv::Mat dense = frame.depth;
+        frame.depth = cv::Mat(dense.size(), CV_32FC1, cv::Scalar(0));
+        for (int v = 1; v < dense.rows; v += 4)
+            for (int u = 2; u < dense.cols; u += 4) frame.depth.at<float>(v, u) = dense.at<float>(v, u);
+    }
+    const TrackedRun run = track(sparse);
+    expectAllOk(run);
+    RecordProperty("mm", std::to_string(1000 * positionError(run, sparse)));
+    EXPECT_LT(positionError(run, sparse), 0.005);
 }
 
 TEST(OdometryAccuracy, TheSameImageAgainDoesNotMoveThePose) {

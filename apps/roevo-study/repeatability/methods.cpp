@@ -27,11 +27,11 @@ CornerTracks::CornerTracks(const FeatureFrame& reference, const PinholeCamera& c
                            const OdometryOptions& options) {
     std::vector<cv::Point2f> corners;
     cv::goodFeaturesToTrack(reference.grey, corners, kCorners, kQuality, kApart);
+    const ForegroundDepth foreground(reference.depth, options.edges, options.sensor);
     for (const cv::Point2f& corner : corners) {
         Eigen::Vector2d pixel(corner.x, corner.y);
         if (camera.isDistorted()) pixel = camera.distortPixel(pixel);
-        const float depth = foregroundDepth(reference.depth, static_cast<float>(pixel.x()),
-                                            static_cast<float>(pixel.y()), options.edges, options.sensor);
+        const float depth = foreground.at(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
         if (!(depth > 0)) continue;
         points_.push_back(camera.backProject(corner.x, corner.y, depth));
         positions_.emplace_back(corner);

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 #include "indexing.h"
 #include "pixels/nearest.h"
-#include "pixels/pixel_kernels.h"
 
 namespace roevo {
 namespace {
 
 constexpr int kMost = pixels::kMostPatch;
+constexpr int kMostSparse = 7;     ///< px, radius of a square where few depths are known
 constexpr int kMinForeground = 3;  ///< fewer near pixels are speckle
 constexpr std::array<float, 2 * kMost + 1> kSteps = {-7, -6, -5, -4, -3, -2, -1, 0, 1, 2, 3, 4, 5, 6, 7};
 
@@ -25,41 +26,129 @@ float depthAtEdge(const pixels::DepthPatch& patch, const pixels::DepthLimits& li
                       std::min(patch.farthest + range, limits.far));
 }
 
-}  // namespace
-
-float foregroundDepth(const cv::Mat& depth, float u, float v, const EdgeOptions& edges,
-                      const SensorOptions& sensor) {
-    const int radius = edges.depth_patch_radius, half = std::min(radius, kMost / 2), size = 2 * half + 1;
-    const int x = nearestInteger(static_cast<double>(u)), y = nearestInteger(static_cast<double>(v));
-    const pixels::DepthLimits limits{static_cast<float>(sensor.min_depth),
-                                     static_cast<float>(sensor.depth_limit),
-                                     1 + static_cast<float>(edges.depth_jump), kMinForeground};
-    const int left = x - radius, top = y - radius;
-    pixels::DepthSquare square{nullptr, static_cast<std::ptrdiff_t>(depth.step1()), size,
-                               kSteps.data() + kMost - half};
-    std::array<float, kMost + 1> offsets{};
-    std::array<float, kMost*(kMost + 1)> samples;
-    if (radius == half && left >= 0 && top >= 0 && left + kMost < depth.cols && top + size <= depth.rows) {
-        square.depth = depth.ptr<float>(top) + left;
-    } else {  // across a border, or of a large square only some pixels
-        samples.fill(0);
-        const auto offset = [&](int k) { return (k - half) * radius / half; };
-        for (int r = 0; r < size; ++r) {
-            const int row = y + offset(r);
-            at(offsets, r) = static_cast<float>(offset(r));
-            for (int c = 0; c < size; ++c) {
-                const int column = x + offset(c);
-                if (row >= 0 && row < depth.rows && column >= 0 && column < depth.cols)
-                    at(samples, r * (kMost + 1) + c) = depth.at<float>(row, column);
+/// Around known depths, the share of depths that are known; 1 where none is.
+double densityOf(const cv::Mat& depth) {
+    constexpr int kLooks = 2000, kEnoughFound = 40, kReach = 5;
+    std::minstd_rand random;  // known depths may lie in a grid
+    int found = 0, looked_at = 0, known = 0;
+    for (int k = 0; k < kLooks && found < kEnoughFound && !depth.empty(); ++k) {
+        const int row = static_cast<int>(random() % static_cast<unsigned>(depth.rows));
+        const int column = static_cast<int>(random() % static_cast<unsigned>(depth.cols));
+        if (!(depth.at<float>(row, column) > 0)) continue;
+        ++found;
+        for (int v = std::max(0, row - kReach); v <= std::min(row + kReach, depth.rows - 1); ++v) {
+            for (int u = std::max(0, column - kReach); u <= std::min(column + kReach, depth.cols - 1); ++u) {
+                ++looked_at;
+                known += depth.at<float>(v, u) > 0 ? 1 : 0;
             }
         }
-        square.offsets = offsets.data();
-        square.depth = samples.data();
-        square.stride = kMost + 1;
     }
+    return found > 0 ? static_cast<double>(known) / looked_at : 1;
+}
+
+/// Radius of squares that hold enough known depths on both sides of an edge, px; 0 where depth is not sparse.
+int sparseRadius(double density) {
+    constexpr double kSparse = 0.35, kEnough = 16;
+    if (density > kSparse) return 0;
+    return std::min(kMostSparse, static_cast<int>(std::ceil((std::sqrt(kEnough / density) - 1) / 2)));
+}
+
+}  // namespace
+
+/// The rows (columns) of a square that are looked at.
+struct ForegroundDepth::Offsets {
+    std::array<int, kMost> from_centre{};  // px
+    int count = 0;
+
+    /// Those that are set of the first ones, at most kMost that are spread over all.
+    static Offsets known(const std::array<bool, 2 * kMostSparse + 1>& is_known, int radius) {
+        std::array<int, 2 * kMostSparse + 1> all{};
+        int number = 0;
+        for (int k = 0; k <= 2 * radius; ++k)
+            if (roevo::at(is_known, k)) roevo::at(all, number++) = k - radius;
+        Offsets some;
+        some.count = std::min(number, kMost);
+        for (int k = 0; k < some.count; ++k)
+            roevo::at(some.from_centre, k) = roevo::at(all, k * number / some.count);
+        return some;
+    }
+    static Offsets spread(int radius) {
+        Offsets some;
+        const int half = std::min(radius, kMost / 2);
+        some.count = 2 * half + 1;
+        for (int k = 0; k < some.count; ++k) roevo::at(some.from_centre, k) = (k - half) * radius / half;
+        return some;
+    }
+};
+
+/// What the kernel looks at where it cannot look at the image itself.
+struct ForegroundDepth::Copy {
+    std::array<float, kMost*(kMost + 1)> depths{};
+    std::array<float, kMost + 1> rows{}, columns{};
+};
+
+ForegroundDepth::ForegroundDepth(const cv::Mat& depth, const EdgeOptions& edges, const SensorOptions& sensor)
+    : depth_(depth),
+      limits_{static_cast<float>(sensor.min_depth), static_cast<float>(sensor.depth_limit),
+              1 + static_cast<float>(edges.depth_jump), kMinForeground},
+      radius_(edges.depth_patch_radius) {
+    const int needed = sparseRadius(densityOf(depth));
+    sparse_ = needed > 0;
+    if (sparse_) radius_ = std::min(std::max(needed, radius_), kMostSparse);
+}
+
+void ForegroundDepth::lookForKnown(int x, int y, Offsets& rows, Offsets& columns) const {
+    std::array<bool, 2 * kMostSparse + 1> row_known{}, column_known{};
+    const int top = std::max(-radius_, -y), bottom = std::min(radius_, depth_.rows - 1 - y);
+    const int left = std::max(-radius_, -x), right = std::min(radius_, depth_.cols - 1 - x);
+    for (int v = top; v <= bottom; ++v) {
+        const float* const row = depth_.ptr<float>(y + v);
+        for (int u = left; u <= right; ++u) {
+            if (!(row[x + u] > 0)) continue;
+            roevo::at(row_known, v + radius_) = roevo::at(column_known, u + radius_) = true;
+        }
+    }
+    rows = Offsets::known(row_known, radius_);
+    columns = Offsets::known(column_known, radius_);
+}
+
+/// Across a border, of a large square only some pixels, or where few are known.
+pixels::DepthSquare ForegroundDepth::copy(int x, int y, Copy& to) const {
+    Offsets rows = Offsets::spread(radius_), columns = rows;
+    if (sparse_) lookForKnown(x, y, rows, columns);
+    for (int c = 0; c < columns.count; ++c)
+        roevo::at(to.columns, c) = static_cast<float>(roevo::at(columns.from_centre, c));
+    for (int r = 0; r < rows.count; ++r) {
+        const int v = roevo::at(rows.from_centre, r), row = y + v;
+        roevo::at(to.rows, r) = static_cast<float>(v);
+        for (int c = 0; c < columns.count; ++c) {
+            const int column = x + roevo::at(columns.from_centre, c);
+            if (row >= 0 && row < depth_.rows && column >= 0 && column < depth_.cols)
+                roevo::at(to.depths, r * (kMost + 1) + c) = depth_.at<float>(row, column);
+        }
+    }
+    return {to.depths.data(), kMost + 1, std::max(rows.count, columns.count), to.columns.data(),
+            to.rows.data()};
+}
+
+float ForegroundDepth::at(float u, float v) const {
+    const int x = nearestInteger(static_cast<double>(u)), y = nearestInteger(static_cast<double>(v));
+    const int size = 2 * radius_ + 1, left = x - radius_, top = y - radius_;
+    const bool is_inside = left >= 0 && top >= 0 && left + kMost < depth_.cols && top + size <= depth_.rows;
     pixels::DepthPatch patch;
-    pixels::best().depthPatch(square, limits, u - static_cast<float>(x), v - static_cast<float>(y), patch);
-    return patch.count > 0 ? depthAtEdge(patch, limits) : 0;
+    const auto look = [&](const pixels::DepthSquare& square) {
+        pixels::best().depthPatch(square, limits_, u - static_cast<float>(x), v - static_cast<float>(y),
+                                  patch);
+    };
+    if (!sparse_ && size <= kMost && is_inside) {
+        const float* const offsets = kSteps.data() + kMost - radius_;
+        look({depth_.ptr<float>(top) + left, static_cast<std::ptrdiff_t>(depth_.step1()), size, offsets,
+              offsets});
+    } else {
+        Copy copied;
+        look(copy(x, y, copied));
+    }
+    return patch.count > 0 ? depthAtEdge(patch, limits_) : 0;
 }
 
 }  // namespace roevo

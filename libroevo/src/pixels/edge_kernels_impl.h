@@ -221,10 +221,10 @@ void depthPatch(const DepthSquare& square, const DepthLimits& limits, float u, f
     } while (true);
     // Sums of columns first; inverse depths relative to the nearest one, which keeps them small
     const float base = 1 / out.nearest;
-    const Lanes x = load(square.offsets);
+    const Lanes x = load(square.columns);
     Lanes count{}, y1{}, y2{}, q{}, yq{};
     for (int r = 0; r < size; ++r) {
-        const float y = square.offsets[r];
+        const float y = square.rows[r];
         const IntLanes own = (rows[r] >= out.nearest) & (rows[r] <= out.farthest);
         const Lanes inverse = own ? 1 / rows[r] - base : Lanes{};
         count += own ? splat(1) : Lanes{};

@@ -40,10 +40,10 @@ constexpr int kMostPatch = 7;  ///< px, side of the squares that depthPatch() lo
 
 /// A square of depths, eight columns of which can be read.
 struct DepthSquare {
-    const float* depth;     ///< m, its first one
-    std::ptrdiff_t stride;  ///< of its rows, in depths
-    int size;               ///< odd, at most kMostPatch
-    const float* offsets;   ///< eight: of its columns and of its rows from its centre, px
+    const float* depth;           ///< m, its first one
+    std::ptrdiff_t stride;        ///< of its rows, in depths
+    int size;                     ///< odd, at most kMostPatch
+    const float *columns, *rows;  ///< eight each: their offsets from its centre, px
 };
 
 struct DepthLimits {

@@ -70,6 +70,7 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
                        const RowMotion& rows, const EdgeOptions& edge_options, const SensorOptions& sensor) {
     const double scale = std::max(1.0, camera.pixelScale());
     const auto jump = static_cast<float>(edge_options.depth_jump);
+    const ForegroundDepth foreground(depth, edge_options, sensor);
     const auto most_gap = static_cast<std::size_t>(std::lround(3 * scale));  // points without depth
     const auto least_piece = static_cast<std::size_t>(std::lround(5 * scale));
     EdgePoints3D out;
@@ -85,8 +86,8 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
         for (std::size_t i = own.first; i < own.end; ++i) {
             const Eigen::Vector2d pixel = camera.distortPixel({edges.x[i], edges.y[i]});
             depths.pixels.push_back(pixel);
-            depths.patches.push_back(foregroundDepth(depth, static_cast<float>(pixel.x()),
-                                                     static_cast<float>(pixel.y()), edge_options, sensor));
+            depths.patches.push_back(
+                foreground.at(static_cast<float>(pixel.x()), static_cast<float>(pixel.y())));
         }
         depths.z = depths.patches;
         if (edge_options.two_sided_depth)

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edges/edge_depth.h"
 #include "tracking/motion_blur.h"
 #include "tracking/robust.h"
 #include "tracking/se3.h"
@@ -34,7 +33,10 @@ EdgeTerm::EdgeTerm(const PinholeCamera& camera, const OdometryOptions& options)
 void EdgeTerm::look(const Keyframe& keyframe, const Frame& frame) {
     const bool is_other =
         frame_ != &frame || looked_at_ != frame.timestamp() || current_depth_.size() != frame.edges.size();
-    if (is_other) current_depth_.assign(frame.edges.size(), kUnknown);
+    if (is_other) {
+        current_depth_.assign(frame.edges.size(), kUnknown);
+        foreground_ = ForegroundDepth(frame.images.depth, edge_options_, sensor_);
+    }
     if (is_other || keyframe_ != &keyframe) associated_within_ = 0;
     looked_at_ = frame.timestamp();
     keyframe_ = &keyframe;
@@ -216,8 +218,7 @@ float EdgeTerm::currentDepth(std::size_t point) {
     float& measured = current_depth_[point];
     if (measured != kUnknown) return measured;
     const Eigen::Vector2d pixel = camera_.distortPixel({frame_->edges.x[point], frame_->edges.y[point]});
-    measured = foregroundDepth(frame_->images.depth, static_cast<float>(pixel.x()),
-                               static_cast<float>(pixel.y()), edge_options_, sensor_);
+    measured = foreground_.at(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     return measured;
 }
 

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "edges/edge_depth.h"
 #include "tracking/edge_association.h"
 #include "tracking/frame.h"
 #include "tracking/gauss_newton.h"
@@ -102,6 +103,7 @@ class EdgeTerm : public ResidualTerm {
     Points3 moved_;  // matched points at another read-out time
     // of the matches, padded; sharpness: information across an edge as a share of what it would be at rest
     std::vector<float> residual_, sharpness_, weight_, depth_residual_, depth_weight_;
+    ForegroundDepth foreground_;        // of the frame
     std::vector<float> current_depth_;  // of the frame's points, m
     std::vector<float> scratch_;
     InformationRows rows_;
