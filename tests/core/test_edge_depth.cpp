@@ -182,6 +182,8 @@ TEST(EdgeDepth, HolesInDenseDepthDoNotWidenTheSquares) {
     depth(cv::Rect(60, 50, 20, 20)).setTo(1);  // a scrap of it
     EXPECT_FLOAT_EQ(at(depth, 61, 55), 1);
     EXPECT_EQ(at(depth, 57, 55), 0);
+    EXPECT_EQ(at(cv::Mat(), 50, 40), 0);
+    EXPECT_EQ(ForegroundDepth().at(50, 40), 0);
 }
 
 TEST(EdgeDepth, BordersAndOutsideAreSafe) {

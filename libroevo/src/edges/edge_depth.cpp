@@ -60,7 +60,7 @@ struct ForegroundDepth::Offsets {
     std::array<int, kMost> from_centre{};  // px
     int count = 0;
 
-    /// Those that are set of the first ones, at most kMost that are spread over all.
+    /// Of those that are known, at most kMost, spread over all.
     static Offsets known(const std::array<bool, 2 * kMostSparse + 1>& is_known, int radius) {
         std::array<int, 2 * kMostSparse + 1> all{};
         int number = 0;
@@ -72,6 +72,7 @@ struct ForegroundDepth::Offsets {
             roevo::at(some.from_centre, k) = roevo::at(all, k * number / some.count);
         return some;
     }
+    /// At most kMost, spread over a square of this radius.
     static Offsets spread(int radius) {
         Offsets some;
         const int half = std::min(radius, kMost / 2);
@@ -132,6 +133,7 @@ pixels::DepthSquare ForegroundDepth::copy(int x, int y, Copy& to) const {
 }
 
 float ForegroundDepth::at(float u, float v) const {
+    if (depth_.empty()) return 0;
     const int x = nearestInteger(static_cast<double>(u)), y = nearestInteger(static_cast<double>(v));
     const int size = 2 * radius_ + 1, left = x - radius_, top = y - radius_;
     const bool is_inside = left >= 0 && top >= 0 && left + kMost < depth_.cols && top + size <= depth_.rows;

@@ -42,7 +42,7 @@ constexpr int kMostPatch = 7;  ///< px, side of the squares that depthPatch() lo
 struct DepthSquare {
     const float* depth;           ///< m, its first one
     std::ptrdiff_t stride;        ///< of its rows, in depths
-    int size;                     ///< odd, at most kMostPatch
+    int size;                     ///< at most kMostPatch
     const float *columns, *rows;  ///< eight each: their offsets from its centre, px
 };
 
