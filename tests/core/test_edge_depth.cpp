@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "core/support/sparse_depth.h"
 #include "edges/edge_depth.h"
 #include "roevo/camera/pinhole_camera.h"
 
@@ -12,6 +13,8 @@ namespace roevo {
 namespace {
 
 const PinholeCamera kCamera{100, 80, 90, 90, 49.5, 39.5, {}};
+
+using testing::everyNth;
 
 float at(const cv::Mat& depth, float u, float v) {
     return ForegroundDepth(depth, EdgeOptions(), SensorOptions()).at(u, v);
@@ -128,14 +131,6 @@ TEST(EdgeDepth, InvalidNeighboursDoNotMatter) {
     depth.at<float>(41, 50) = 0;
     depth.at<float>(41, 51) = -3;
     EXPECT_FLOAT_EQ(at(depth, 50, 40), 1.25F);
-}
-
-/// Only every n-th pixel of every n-th row has a depth.
-cv::Mat everyNth(const cv::Mat& depth, int n, int first) {
-    cv::Mat sparse(depth.size(), CV_32FC1, cv::Scalar(0));
-    for (int v = first; v < depth.rows; v += n)
-        for (int u = first; u < depth.cols; u += n) sparse.at<float>(v, u) = depth.at<float>(v, u);
-    return sparse;
 }
 
 TEST(EdgeDepth, SparseDepthIsLookedForInWiderSquares) {

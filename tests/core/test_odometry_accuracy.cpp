@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/support/simulated.h"
+#include "core/support/sparse_depth.h"
 #include "tracking/se3.h"
 
 namespace roevo {
@@ -45,12 +46,7 @@ TEST(OdometryAccuracy, WithoutNoiseTheErrorIsAFewMillimetres) {
 
 TEST(OdometryAccuracy, ADepthInEverySixteenthPixelIsEnough) {
     Sequence sparse = room();
-    for (RgbdFrame& frame : sparse.frames) {
-        const cv::Mat dense = frame.depth;
-        frame.depth = cv::Mat(dense.size(), CV_32FC1, cv::Scalar(0));
-        for (int v = 1; v < dense.rows; v += 4)
-            for (int u = 2; u < dense.cols; u += 4) frame.depth.at<float>(v, u) = dense.at<float>(v, u);
-    }
+    for (RgbdFrame& frame : sparse.frames) frame.depth = testing::everyNth(frame.depth, 4, 1);
     const TrackedRun run = track(sparse);
     expectAllOk(run);
     RecordProperty("mm", std::to_string(1000 * positionError(run, sparse)));

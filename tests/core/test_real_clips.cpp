@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/support/real_clip.h"
+#include "core/support/sparse_depth.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/trajectory_io.h"
 #include "recordings/dataset_reader.h"
@@ -101,11 +102,7 @@ TEST_P(SparseDepth, IsAboutAsGoodAsDense) {
     for (const int n : {4, 8}) {
         Odometry odometry(clip->camera, OdometryOptions());
         for (RgbdFrame frame : clip->frames) {
-            const cv::Mat dense = frame.depth;
-            frame.depth = cv::Mat(dense.size(), CV_32FC1, cv::Scalar(0));
-            for (int v = n / 2; v < dense.rows; v += n)
-                for (int u = n / 2; u < dense.cols; u += n)
-                    frame.depth.at<float>(v, u) = dense.at<float>(v, u);
+            frame.depth = testing::everyNth(frame.depth, n, n / 2);
             const FrameResult result = odometry.processFrame(frame);
             EXPECT_TRUE(result.status == FrameStatus::kOk || result.status == FrameStatus::kInitialised)
                 << result.reason;
