@@ -46,8 +46,8 @@ struct EdgeOptions {
     int min_length = 10;             ///< shortest organized edge, px
     int tangent_span = 4;  ///< tangents are taken between the points this many places before and after
     int depth_patch_radius =
-        2;  ///< foreground depth is looked for in a square of this radius, px; sparse depth in wider ones
-    double depth_jump = 0.03;     ///< relative depth step that separates foreground from background
+        2;                     ///< foreground depth is looked for in such a square, px (sparse: a wider one)
+    double depth_jump = 0.03;  ///< relative depth step that separates foreground from background
     bool two_sided_depth = true;  ///< keyframe depths corrected by the surfaces on both sides of each edge
 };
 
