@@ -44,10 +44,9 @@ struct EdgeOptions {
     double min_high_threshold = 24;  ///< floor of the high threshold, Sobel units (8 per grey level of ramp)
     double angle_deg = 20;           ///< oriented BFS: largest angle between neighbouring gradients
     int min_length = 10;             ///< shortest organized edge, px
-    int tangent_span = 4;  ///< tangents are taken between the points this many places before and after
-    int depth_patch_radius =
-        2;                     ///< foreground depth is looked for in such a square, px (sparse: a wider one)
-    double depth_jump = 0.03;  ///< relative depth step that separates foreground from background
+    int tangent_span = 4;         ///< tangents are taken between the points this many places before and after
+    int depth_patch_radius = 2;   ///< of the square of foreground depths, px; wider if sparse
+    double depth_jump = 0.03;     ///< relative depth step that separates foreground from background
     bool two_sided_depth = true;  ///< keyframe depths corrected by the surfaces on both sides of each edge
 };
 
