@@ -58,6 +58,33 @@ TEST_P(LearnedReadout, IsNoneWhereAllRowsAreReadAtOnce) {
     EXPECT_NEAR(learn(sequence, OdometryOptions()).readout, 0, 0.002);
 }
 
+// Where a camera was in a gap, and how fast, nobody knows: the mean velocity of the gap, taken for that of the
+// rows at its end, taught that they were all read at once.
+TEST(LearnedReadoutBesideGaps, IsNotUnlearned) {
+    simulator::SimulationOptions simulation = testing::smallRoom();
+    simulation.rolling_shutter = kReadout;
+    const testing::Sequence sequence = testing::simulate(simulation, 50);
+    // Again and again the camera goes back six frames while nobody looks
+    testing::Sequence jumping;
+    jumping.camera = sequence.camera;
+    constexpr std::size_t kTogether = 12, kBack = 6;
+    constexpr double kGap = 0.3;  // s
+    double late = 0;
+    for (std::size_t first = 0; first + kTogether <= sequence.frames.size(); first += kTogether - kBack) {
+        for (std::size_t i = first; i < first + kTogether; ++i) {
+            jumping.frames.push_back(sequence.frames[i]);
+            jumping.truth.push_back(sequence.truth[i]);
+            jumping.frames.back().timestamp += late;
+            jumping.truth.back().timestamp += late;
+        }
+        late += kGap;
+    }
+    OdometryOptions options;
+    options.sensor.readout_sigma = 0.1;     // so that the few frames decide
+    options.keyframe.max_rotation_deg = 2;  // so that keyframes begin at the end of gaps
+    EXPECT_NEAR(learn(jumping, options).readout, kReadout, 0.007);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, LearnedReadout, ::testing::Values("livingroom", "corridor"),
                          [](const auto& scene) { return scene.param; });
 

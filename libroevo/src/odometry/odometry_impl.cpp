@@ -28,6 +28,8 @@ FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // 
     if (tracking.lost()) return report(findAgain(std::move(tracking), prediction.since_measured));
 
     lost_frames = 0;
+    // The mean velocity of a gap says nothing of how the camera moves at its end
+    if (prediction.blind) tracking.rows = motion.stillRows();
     learn(tracking, prediction);
     if (!lost.empty()) trackBack(tracking);
     Outcome outcome;
@@ -262,7 +264,7 @@ void Odometry::Impl::learn(const Tracking& tracking, const Prediction& predictio
     if (!reference.row_motion.known())
         reference.setRowMotion(
             motion.firstRows(frame->timestamp() - reference.timestamp, tracking.pose.T_keyframe_camera));
-    else
+    else if (!prediction.blind)
         tracker->learnReadout(reference, *frame, tracking, prediction.shutter, motion.readout());
 }
 
