@@ -24,7 +24,7 @@ struct SensorOptions {
     double depth_noise_floor = 1e-3;  ///< s0 of it, m: what does not grow with depth
     double depth_scale_sigma = 0.01;  ///< one sigma of a share by which all depths, and so all ways, may err
     bool estimate_readout = true;     ///< learn the read-out time from the images; else it is readout_time
-    double readout_sigma = 0.02;      ///< how far from 0 the learned read-out time may well be, s, one sigma
+    double readout_sigma = 0.01;      ///< how far from 0 the learned read-out time may well be, s, one sigma
     double readout_memory = 0.995;    ///< share of what was learned that is kept from frame to frame
     double readout_time = 0;     ///< time from the first to the last row of a rolling shutter, s (0: global)
     double blur_time = 0.0035;   ///< one sigma of when an edge was seen (exposure, stamps), s; 0: sharp
