@@ -58,8 +58,8 @@ TEST_P(LearnedReadout, IsNoneWhereAllRowsAreReadAtOnce) {
     EXPECT_NEAR(learn(sequence, OdometryOptions()).readout, 0, 0.002);
 }
 
-// Where a camera was in a gap, and how fast, nobody knows: the mean velocity of the gap, taken for that of the
-// rows at its end, taught that they were all read at once.
+// Where a camera was in a gap, and how fast, nobody knows: the mean velocity of the gap, taken for that of
+// the rows at its end, taught that they were all read at once.
 TEST(LearnedReadoutBesideGaps, IsNotUnlearned) {
     simulator::SimulationOptions simulation = testing::smallRoom();
     simulation.rolling_shutter = kReadout;
