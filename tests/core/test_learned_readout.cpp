@@ -64,7 +64,7 @@ TEST(LearnedReadoutBesideGaps, IsNotUnlearned) {
     simulator::SimulationOptions simulation = testing::smallRoom();
     simulation.rolling_shutter = kReadout;
     const testing::Sequence sequence = testing::simulate(simulation, 50);
-    // Again and again the camera goes back six frames while nobody looks
+    // Again and again the camera goes back while nobody looks, and six frames come once more
     testing::Sequence jumping;
     jumping.camera = sequence.camera;
     constexpr std::size_t kTogether = 12, kBack = 6;

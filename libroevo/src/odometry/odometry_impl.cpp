@@ -28,8 +28,6 @@ FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // 
     if (tracking.lost()) return report(findAgain(std::move(tracking), prediction.since_measured));
 
     lost_frames = 0;
-    // The mean velocity of a gap says nothing of how the camera moves at its end
-    if (prediction.blind) tracking.rows = motion.stillRows();
     learn(tracking, prediction);
     if (!lost.empty()) trackBack(tracking);
     Outcome outcome;
@@ -257,8 +255,10 @@ void Odometry::Impl::renewReference(Outcome& outcome) {
 }
 
 /// What a tracked frame tells besides its pose.
-void Odometry::Impl::learn(const Tracking& tracking, const Prediction& prediction) {
+void Odometry::Impl::learn(Tracking& tracking, const Prediction& prediction) {
     motion.setBrightness(tracking.brightness);
+    // The mean velocity of a gap says nothing of how the camera moves at its end
+    if (prediction.blind) tracking.rows = motion.stillRows();
     auto& reference = world.reference();
     reference.count(tracking.matches.visible, tracking.found);
     if (!reference.row_motion.known())

@@ -55,7 +55,7 @@ struct Odometry::Impl {
     Outcome findAgain(Tracking failed, double since_measured);
     Outcome bridge(Tracking failed, double since_measured);
     void renewReference(Outcome& outcome);
-    void learn(const Tracking& tracking, const Prediction& prediction);
+    void learn(Tracking& tracking, const Prediction& prediction);
     void trackBack(const Tracking& tracking);
     Fault beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for = 0);
     Fault promote(const Frame& promoted, const Tracking& tracked);
