@@ -37,7 +37,8 @@ class Realtime : public test::OdometryProgram {
         }
         EXPECT_EQ(summary()["dropped_frames"], dropped);
         EXPECT_EQ(summary()["frames"]["total"], rows().size());
-        const std::string line = "dropped     " + std::to_string(dropped) + " frames";
+        const std::string line =
+            "dropped     " + std::to_string(dropped) + (dropped == 1 ? " frame " : " frames ");
         EXPECT_EQ(result.out.find(line) != std::string::npos, dropped > 0) << result.out;
         for (const char* name : {"/trajectory.txt", "/trajectory_live.txt"})
             EXPECT_EQ(readTumTrajectory(output() + name).size(), with_pose) << name;
