@@ -32,7 +32,7 @@ add_executable(test_core_map_file core/test_map_file.cpp)
 target_link_libraries(test_core_map_file PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
 roevo_suites(test_core_map_file MapFile MapFileErrors)
 roevo_test(test_core_sequences
-  SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp core/test_shadow_edges.cpp core/test_option_extremes.cpp
+  SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp core/test_wide_baseline.cpp core/test_shadow_edges.cpp core/test_option_extremes.cpp
   LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets)
 roevo_test(test_core_place
   SOURCES core/test_place_describer.cpp core/test_place_matches.cpp core/test_place_index.cpp core/test_place_verifier.cpp

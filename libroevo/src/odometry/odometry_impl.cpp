@@ -23,15 +23,15 @@ FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // 
     if (isFrozen(*prepared.frame)) return report(frozen(std::move(prepared.frame)));
     take(std::move(prepared.frame));
     if (world.empty()) return report(start());
-    const Prediction prediction = motion.predict(frame->timestamp());
-    Tracking tracking = track(prediction);  // Sec. V
-    if (tracking.lost()) return report(findAgain(std::move(tracking), prediction.since_measured));
+    Outcome outcome;
+    Prediction prediction = motion.predict(frame->timestamp());
+    outcome.tracking = track(prediction);  // Sec. V
+    if (outcome.tracking.lost()) trackFromNearer(outcome, prediction);
+    if (outcome.tracking.lost()) return report(findAgain(std::move(outcome), prediction.since_measured));
 
     lost_frames = 0;
-    learn(tracking, prediction);
-    if (!lost.empty()) trackBack(tracking);
-    Outcome outcome;
-    outcome.tracking = std::move(tracking);
+    learn(outcome.tracking, prediction);
+    if (!lost.empty()) trackBack(outcome.tracking);
     if (keyframeIsDue(world.reference(), outcome.tracking, options.keyframe))
         renewReference(outcome);  // Sec. VI
     // A tracked pose is what the next one is predicted from
@@ -71,6 +71,19 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
     if (tracking.tracked && in_doubt && options.loss.recognise)
         tracking = confirmed(world.reference(), std::move(tracking), prediction);
     return tracking;
+}
+
+/// Where the reference does not lead to this frame, the one before may, which was still tracked: it becomes
+/// the reference.
+void Odometry::Impl::trackFromNearer(Outcome& outcome, Prediction& prediction) {
+    if (!candidate || promote(*frame_before, *candidate)) return;
+    outcome.new_keyframe = true;
+    motion.becomeReference();
+    prediction = motion.predict(frame->timestamp());
+    Tracking nearer = track(prediction);
+    nearer.ms_coarse += outcome.tracking.ms_coarse;
+    nearer.ms_fine += outcome.tracking.ms_fine;
+    outcome.tracking = std::move(nearer);
 }
 
 /// Another pose that matches clearly more edges, if there is one.
@@ -140,7 +153,7 @@ Tracking Odometry::Impl::confirmed(const Keyframe& keyframe, Tracking tracking,
                                           : Fault{Fault::Kind::kUnconfirmed, {gap_ms}});
         return tracking;
     }
-    Tracking again = tracker->trackFrom(keyframe, *frame, prediction, *pose);
+    Tracking again = tracker->trackFrom(keyframe, *frame, prediction, pose->T_keyframe_camera);
     again.searched = tracking.searched || prediction.blind;
     again.ms_coarse += tracking.ms_coarse;
     again.ms_fine += tracking.ms_fine;
@@ -182,16 +195,30 @@ std::optional<RelativePose> Odometry::Impl::trackFromPrevious() {
     return tracking.pose;
 }
 
-/// Where tracking lost the camera, a keyframe that it has seen before may tell where it is.
-Outcome Odometry::Impl::findAgain(Tracking failed, double since_measured) {
-    auto pose = world.find(*frame, {world.reference().id, motion.lastPose(), {}}, since_measured);
-    if (!pose) pose = trackFromPrevious();
-    if (auto found = pose ? anchorAt(*pose, failed) : std::nullopt) return *found;
-    return bridge(std::move(failed), since_measured);
+/// Which of two frames is the keyframe decides much: where none leads to this frame, it may lead back to the
+/// last one that was tracked.
+std::optional<RelativePose> Odometry::Impl::trackFromHere() {
+    if (!options.loss.recognise || !frame_before) return std::nullopt;
+    const auto here = world.outside(*frame, motion.stillRows(), *tracker);
+    if (!here) return std::nullopt;
+    MotionModel backwards = startingHere(Pose::Identity());
+    backwards.expect(-frame_before->timestamp());
+    const Tracking back = tracker->track(*here, *frame_before, backwards.predict(-frame_before->timestamp()));
+    if (back.lost()) return std::nullopt;
+    return world.confirm(world.reference(), *frame,
+                         motion.measuredPose() * back.pose.T_keyframe_camera.inverse());
 }
 
-Outcome Odometry::Impl::bridge(Tracking failed, double since_measured) {
-    Outcome outcome;
+/// Where tracking lost the camera, a keyframe that it has seen before may tell where it is.
+Outcome Odometry::Impl::findAgain(Outcome outcome, double since_measured) {
+    auto pose = world.find(*frame, {world.reference().id, motion.lastPose(), {}}, since_measured);
+    if (!pose) pose = trackFromPrevious();
+    if (!pose) pose = trackFromHere();
+    if (auto found = pose ? anchorAt(*pose, outcome.tracking) : std::nullopt) return *found;
+    return bridge(std::move(outcome), since_measured);
+}
+
+Outcome Odometry::Impl::bridge(Outcome outcome, double since_measured) {
     outcome.lost_frames = ++lost_frames;
     candidate.reset();
     if (lost_frames == 1) lost_since = frame->timestamp();
@@ -201,7 +228,7 @@ Outcome Odometry::Impl::bridge(Tracking failed, double since_measured) {
     else
         motion.forgetVelocity();
     // A lost pose is worth little: say so, growing with time
-    RelativePose& pose = failed.pose;
+    RelativePose& pose = outcome.tracking.pose;
     pose = {world.reference().id, motion.lastPose(), motion.predict(frame->timestamp()).prior.errors};
     pose.uncertainty.independent += 1e-2 * kFrameRate * since_measured * Matrix6d::Identity();
     outcome.status = bridging ? FrameStatus::kPredicted : FrameStatus::kLost;
@@ -212,7 +239,6 @@ Outcome Odometry::Impl::bridge(Tracking failed, double since_measured) {
         lost_frames = 0;
         pose = {world.reference().id, Pose::Identity(), {}};
     }
-    outcome.tracking = std::move(failed);
     return outcome;
 }
 
@@ -268,11 +294,17 @@ void Odometry::Impl::learn(Tracking& tracking, const Prediction& prediction) {
         tracker->learnReadout(reference, *frame, tracking, prediction.shutter, motion.readout());
 }
 
-/// Frames in which the camera was lost are tracked once more from where it was found, backwards in time.
-void Odometry::Impl::trackBack(const Tracking& tracking) {
+/// Backwards in time, from a pose of this frame.
+MotionModel Odometry::Impl::startingHere(const Pose& T_keyframe_camera) const {
     MotionModel backwards(options.motion, options.sensor, camera.height);
     backwards.expect(-frame->timestamp());
-    backwards.anchor(-frame->timestamp(), tracking.pose.T_keyframe_camera);
+    backwards.anchor(-frame->timestamp(), T_keyframe_camera);
+    return backwards;
+}
+
+/// Frames in which the camera was lost are tracked once more from where it was found, backwards in time.
+void Odometry::Impl::trackBack(const Tracking& tracking) {
+    MotionModel backwards = startingHere(tracking.pose.T_keyframe_camera);
     if (measured) {  // the frame before, in which the camera was found
         backwards.expect(-frame_before->timestamp());
         backwards.measure(-frame_before->timestamp(), motion.lastPose());

@@ -26,6 +26,14 @@ constexpr double kLeastMatched = 0.25;
 constexpr double kViewsDiffer = 0.01;         ///< m
 constexpr double kViewsTurn = 0.5 * kDegree;  ///< rad
 
+RelativePose poseOf(const EdgeRegistration& found, int keyframe) {
+    RelativePose pose{keyframe, found.T_frame_keyframe.inverse(), {found.covariance, {}}};
+    auto variances = pose.uncertainty.independent.diagonal().array();
+    variances.head<3>() += kViewsDiffer * kViewsDiffer;
+    variances.tail<3>() += kViewsTurn * kViewsTurn;
+    return pose;
+}
+
 bool hasOthers(const std::vector<bool>& own) {
     return std::find(own.begin(), own.end(), false) != own.end();
 }
@@ -130,8 +138,8 @@ EdgePoints3D Relocaliser::lifted(const Frame& frame) const {
     return liftEdges(frame.edges, frame.images.depth, camera_, RowMotion(), options_.edges, options_.sensor);
 }
 
-std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& frame,
-                                         const Pose& T_keyframe_camera) {
+std::optional<RelativePose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& frame,
+                                                 const Pose& T_keyframe_camera) {
     const EdgePoints3D edges = lifted(frame);
     if (edges.size() == 0) return std::nullopt;
     const EdgeRegistration found =
@@ -141,7 +149,7 @@ std::optional<Pose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& 
     const Likeness likeness =
         describer_.compare(points, found.T_frame_keyframe, frame.pyramid.level(0), frame.images);
     if (!confirms(found, likeness)) return std::nullopt;
-    return found.T_frame_keyframe.inverse();
+    return poseOf(found, keyframe.id);
 }
 
 std::vector<RelativePose> Relocaliser::resembled(const Trajectory& trajectory,
@@ -221,12 +229,8 @@ std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<
                                frame.pyramid.level(0), frame.images);
         const Evidence evidence = evidenceOf(of_points, found, likeness);
         if (evidence == Evidence::kNone) continue;
-        RelativePose pose{id, found.T_frame_keyframe.inverse(), {found.covariance, {}}};
-        auto variances = pose.uncertainty.independent.diagonal().array();
-        variances.head<3>() += kViewsDiffer * kViewsDiffer;
-        variances.tail<3>() += kViewsTurn * kViewsTurn;
         const double matched = std::min(found.keyframe_matched, found.frame_matched);
-        recognised.push_back({pose, evidence, likeness.share(), matched});
+        recognised.push_back({poseOf(found, id), evidence, likeness.share(), matched});
     }
     return recognised;
 }

@@ -88,8 +88,8 @@ class Relocaliser {
 
     /// The pose about this one that the edges of keyframe and frame, their depths and their surroundings
     /// agree on, if they do (see confirms()).
-    [[nodiscard]] std::optional<Pose> confirm(const Keyframe& keyframe, const Frame& frame,
-                                              const Pose& T_keyframe_camera);
+    [[nodiscard]] std::optional<RelativePose> confirm(const Keyframe& keyframe, const Frame& frame,
+                                                      const Pose& T_keyframe_camera);
 
   private:
     struct Recognition {

@@ -138,6 +138,16 @@ void World::weakenPseudoEdges() {
     reference_->weaken(pseudo_clusters_.among(reference_->clusters), options_.mapping.pseudo_weight);
 }
 
+std::unique_ptr<Keyframe> World::outside(const Frame& frame, const RowMotion& rows,
+                                         const Tracker& tracker) const {
+    auto fresh = std::make_unique<Keyframe>();
+    if (makeKeyframe(frame, rows, options_.fine.min_inliers, camera_, options_, tracker, *fresh))
+        return nullptr;
+    std::int32_t next = 0;
+    numberEdges(*fresh, nullptr, {}, next);
+    return fresh;
+}
+
 Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker& tracker,
                         const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {
     auto fresh = std::make_unique<Keyframe>();

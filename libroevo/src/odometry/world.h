@@ -59,6 +59,9 @@ class World {
     /// All that was changed since this was asked last.
     WorldChange changes() { return std::exchange(change_, {}); }
 
+    /// A frame as a keyframe of its own, which stays outside of the world. Null where it cannot be one.
+    [[nodiscard]] std::unique_ptr<Keyframe> outside(const Frame& frame, const RowMotion& rows,
+                                                    const Tracker& tracker) const;
     /// A frame becomes the reference: the first, or one after a loss.
     /// @param lost_for  s, since the camera's pose was known: so far may it have come
     Fault beginTrack(const Frame& frame, const RowMotion& rows, const Tracker& tracker,
@@ -75,8 +78,8 @@ class World {
     /// is none.
     [[nodiscard]] const Keyframe* previous(Pose& T_previous_reference);
     /// The pose against a keyframe that edges agree on with nothing known of the motion, if they do.
-    [[nodiscard]] std::optional<Pose> confirm(const Keyframe& keyframe, const Frame& frame,
-                                              const Pose& T_keyframe_camera) {
+    [[nodiscard]] std::optional<RelativePose> confirm(const Keyframe& keyframe, const Frame& frame,
+                                                      const Pose& T_keyframe_camera) {
         return relocaliser_.confirm(keyframe, frame, T_keyframe_camera);
     }
     /// See Odometry::refineAll().

@@ -45,6 +45,8 @@ class MotionModel {
     void becomeReference() { uncertainty_ = {}; }
     /// Poses are relative to another keyframe from now on.
     void changeReference(const Pose& T_new_old);
+    /// The last one that was measured.
+    const Pose& measuredPose() const { return T_reference_last_; }
     /// Of the last frame, measured or assumed.
     const Pose& lastPose() const { return T_reference_assumed_; }
 

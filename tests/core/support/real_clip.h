@@ -1,6 +1,7 @@
 #pragma once
 /// Frames of a real clip held in memory.
 
+#include <algorithm>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -29,6 +30,15 @@ inline std::optional<RealFrames> realClip(const std::string& name, std::size_t c
     clip.truth = readTumTrajectory(reader.groundTruthPath());
     for (std::size_t i = 0; i < std::min(count, reader.size()); ++i)
         clip.frames.push_back(reader.readFrame(i));
+    return clip;
+}
+
+/// The same backwards in time.
+inline RealFrames reversed(RealFrames clip) {
+    std::reverse(clip.frames.begin(), clip.frames.end());
+    std::reverse(clip.truth.begin(), clip.truth.end());
+    for (RgbdFrame& frame : clip.frames) frame.timestamp *= -1;
+    for (StampedPose& pose : clip.truth) pose.timestamp *= -1;
     return clip;
 }
 
