@@ -12,7 +12,7 @@
 namespace roevo {
 namespace {
 
-constexpr double kFactors[] = {0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 2.8, 4};  // of Otsu's threshold
+constexpr double kFactors[] = {0.5, 0.7, 1, 1.5, 2, 2.8, 4, 5.6, 8};  // of otsuThreshold()
 constexpr double kReference = 1;
 constexpr double kLowRatio = 0.5;  // of the low threshold to the high one, as in the paper
 constexpr double kNoFloor = 1;     // Sobel units: the factor alone is to decide
@@ -67,7 +67,7 @@ double medianRatio(const std::vector<std::vector<Row>>& rows, std::size_t factor
 
 Row trackAt(const StudyInput& input, double factor) {
     OdometryOptions options = input.options;
-    options.edges.canny_high_factor = factor;
+    options.edges.canny_factor = factor;
     options.edges.canny_low_ratio = kLowRatio;
     options.edges.min_high_threshold = kNoFloor;
     options.mapping.semi_dense_points = 0;  // costs time and moves no pose
@@ -135,7 +135,7 @@ void plot(StudyReport& report, const std::string& folder, const std::vector<doub
           double configured, const std::vector<std::string>& names,
           const std::vector<std::vector<Row>>& rows) {
     const std::string script =
-        "set logscale xy\nset xrange [0.22:4.5]\nset xtics (0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 2.8, 4)\n"
+        "set logscale xy\nset xrange [0.45:9]\nset xtics (0.5, 0.7, 1, 1.5, 2, 2.8, 4, 5.6, 8)\n"
         "set ytics (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)\n"
         "set xlabel 'high threshold / Otsu threshold'\nset tmargin at screen 0.9\nset bmargin at screen "
         "0.15\n"
@@ -156,7 +156,7 @@ void plot(StudyReport& report, const std::string& folder, const std::vector<doub
 
 StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std::string& folder) {
     StudyReport report;
-    const double configured = inputs.front().options.edges.canny_high_factor;
+    const double configured = inputs.front().options.edges.canny_factor;
     const std::vector<double> factors = factorsWith(configured);
     CsvTable table({"recording", "mode", "factor", "configured", "ate_m", "ate_ratio",
                     "rpe_translation_m_per_s", "rpe_translation_ratio", "rpe_rotation_deg_per_s",

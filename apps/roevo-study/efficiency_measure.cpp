@@ -51,7 +51,7 @@ class FeatureProcessing {
         times[kDetect] = timed([&] {
             computeGradient(image, options_.blur_sigma, gradient_);
             const double high = std::max(options_.min_high_threshold,
-                                         options_.canny_high_factor * otsuThreshold(gradient_.magnitude));
+                                         options_.canny_factor * otsuThreshold(gradient_.magnitude));
             canny(gradient_, options_.canny_low_ratio * high, high, mask_);
         });
         times[kField] = timed([&] { field_.build(mask_.mask); });

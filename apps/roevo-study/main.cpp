@@ -24,7 +24,7 @@ constexpr char kFooter[] =
     "  roevo-study --experiment all --input rgbd_dataset_freiburg1_desk rgbd_dataset_freiburg2_desk --output "
     "out --first 300\n"
     "Experiments (name: what is varied; what is measured; files):\n"
-    "  canny          the threshold of edge detection, 0.25 to 4 times Otsu's; error of the trajectory; "
+    "  canny          the threshold of edge detection, 0.5 to 8 times Otsu's; error of the trajectory; "
     "canny.*\n"
     "  depth-weight   how far points are trusted, w_s(d) of the paper's Eq. (20); curves, error of the "
     "trajectory;\n"

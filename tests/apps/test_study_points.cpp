@@ -42,7 +42,7 @@ TEST(PointSelection, DsoSpreadsOverTheImageAndCannyDoesNot) {
         for (int x = 0; x < image.cols; ++x) {
             const bool square = (x / 12 + y / 12) % 2 == 0, stripe = y / 20 % 2 == 0;
             image.at<std::uint8_t>(y, x) =
-                static_cast<std::uint8_t>(x < 160 ? (square ? 220 : 20) : (stripe ? 110 : 130));
+                static_cast<std::uint8_t>(x < 160 ? (square ? 220 : 20) : (stripe ? 115 : 125));
         }
     }
     const Gradient gradient = gradientOf(image);

@@ -66,7 +66,7 @@ double number(const Row& row, const std::string& column) {
 
 TEST_F(StudyProgram, CannyThreshold) {
     write(6);
-    const ProgramResult result = run("canny", {"--set", "edges.canny_high_factor=0.6", "--mode", "tr"});
+    const ProgramResult result = run("canny", {"--set", "edges.canny_factor=0.6", "--mode", "tr"});
     ASSERT_EQ(result.exit_code, 0) << result.all();
     EXPECT_EQ(result.out.find("canny"), 0u) << result.out;
     const auto rows = table("canny.csv");
@@ -84,7 +84,7 @@ TEST_F(StudyProgram, CannyThreshold) {
         }
         EXPECT_EQ(row.at("rpe_translation_ratio"), "") << "the recording is shorter than a second";
     }
-    EXPECT_EQ(factors, (std::vector<double>{0.25, 0.35, 0.5, 0.6, 0.7, 1, 1.4, 2, 2.8, 4}));
+    EXPECT_EQ(factors, (std::vector<double>{0.5, 0.6, 0.7, 1, 1.5, 2, 2.8, 4, 5.6, 8}));
     EXPECT_GT(number(rows.front(), "points_per_frame"), number(rows.back(), "points_per_frame"));
     expectPlot("canny.svg");
     EXPECT_NE(index().find("    roevo-study --experiment canny --input "), std::string::npos) << index();
@@ -274,8 +274,7 @@ TEST_F(StudyProgram, WrongUsage) {
     expectError(run("colour"), 2, kName, {"'colour'", "canny", "depth-weight", "repeatability", "all"});
     expectError(run("--input"), 2, kName, {"--experiment", "there is no '--input'", "known are canny"});
     expectError(run("canny", {"--first", "2"}), 2, kName, {"--first 2", "at least 3"});
-    expectError(run("canny", {"--set", "edges.canny_high_factor=100"}), 2, kName,
-                {"canny_high_factor", "100"});
+    expectError(run("canny", {"--set", "edges.canny_factor=100"}), 2, kName, {"canny_factor", "100"});
     expectError(run("canny", {"--mode", "fast"}), 2, kName, {"--mode", "fast"});
     expectError(run("canny", {"--input", folder_ / "recording", "--ground-truth", "x"}), 2, kName,
                 {"--ground-truth", "2"});

@@ -33,8 +33,8 @@ std::vector<Image> imagesOf(const std::string& clip) {
         Image image;
         image.grey = cv::imread(file, cv::IMREAD_GRAYSCALE);
         computeGradient(image.grey, options.blur_sigma, gradient);
-        image.high = std::max(options.min_high_threshold,
-                              options.canny_high_factor * otsuThreshold(gradient.magnitude));
+        image.high =
+            std::max(options.min_high_threshold, options.canny_factor * otsuThreshold(gradient.magnitude));
         image.low = options.canny_low_ratio * image.high;
         images.push_back(image);
     }

@@ -28,7 +28,7 @@ Room makeRoom() {
     const RgbdFrame& first = room.frames.front();
     computeGradient(first.grey, options.edges.blur_sigma, room.gradient);
     room.high = std::max(options.edges.min_high_threshold,
-                         options.edges.canny_high_factor * otsuThreshold(room.gradient.magnitude));
+                         options.edges.canny_factor * otsuThreshold(room.gradient.magnitude));
     room.low = options.edges.canny_low_ratio * room.high;
     canny(room.gradient, room.low, room.high, room.raw_mask);
     EdgeMask mask;

@@ -1,6 +1,7 @@
 // Frames whose depth is missing, scarce, damaged or contradicts what the keyframe has.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <opencv2/core.hpp>
 
@@ -44,6 +45,9 @@ TEST_F(FrameDepth, AfterAGapAPoseIsConfirmedByDepthOrSaidToBePredicted) {
 TEST_F(FrameDepth, AScrapOfDepthMakesNoKeyframe) {
     OdometryOptions options;
     options.keyframe.max_rotation_deg = 0.3;
+    Odometry undisturbed(room().camera, options, room().start());
+    double worst = 0;  // with all depth
+    for (int i = 0; i < 20; ++i) worst = std::max(worst, errorAt(undisturbed.processFrame(frameAt(i)), i));
     odometry_ = Odometry(room().camera, options, room().start());
     for (int i = 0; i < 20; ++i) {
         RgbdFrame frame = frameAt(i);
@@ -55,7 +59,7 @@ TEST_F(FrameDepth, AScrapOfDepthMakesNoKeyframe) {
         }
         const FrameResult result = feed(frame);
         EXPECT_EQ(result.status, i == 0 ? FrameStatus::kInitialised : FrameStatus::kOk) << i;
-        EXPECT_LT(errorAt(result, i), 0.006) << i;
+        EXPECT_LT(errorAt(result, i), 1.1 * worst) << i;
         EXPECT_FALSE(scrap && result.new_keyframe) << i;
         EXPECT_TRUE(i != 16 || result.new_keyframe) << "due since long";
         if (i == 12) {

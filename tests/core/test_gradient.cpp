@@ -67,7 +67,7 @@ TEST(Otsu, SeparatesTwoClasses) {
     EXPECT_LT(threshold, 330);  // 400 - 3.5 sigma
 }
 
-TEST(Otsu, IsTheBestOfAllThresholdsByDefinition) {
+TEST(Otsu, OfTheRootsIsTheBestOfAllThresholdsByDefinition) {
     std::mt19937 random(4);
     cv::Mat magnitude(80, 80, CV_32FC1);
     for (int y = 0; y < 80; ++y) {
@@ -82,7 +82,7 @@ TEST(Otsu, IsTheBestOfAllThresholdsByDefinition) {
             for (int x = 0; x < 80; x += 2) {
                 const double m = magnitude.at<float>(y, x);
                 n[m >= threshold] += 1;
-                sum[m >= threshold] += m;
+                sum[m >= threshold] += std::sqrt(m);
             }
         }
         if (n[0] == 0 || n[1] == 0) return 0.0;

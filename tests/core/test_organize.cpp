@@ -158,7 +158,7 @@ TEST(Organize, StrengthIsGreyLevelsPerPixel) {
     OrganizedEdges edges;
     EdgeOptions options;
     options.min_high_threshold = 16;
-    options.canny_high_factor = 0.5;
+    options.canny_factor = 0.5;
     EdgeMask mask;
     EdgeExtractor(options).extract(image, edges, mask);
     for (const float strength : edges.strength) EXPECT_NEAR(strength, 12, 0.8);

@@ -39,7 +39,7 @@ struct SensorOptions {
 
 struct EdgeOptions {
     double blur_sigma = 0;           ///< Gaussian blur before the Sobel filter, px (0: none)
-    double canny_high_factor = 0.7;  ///< high threshold = factor x Otsu
+    double canny_factor = 1.5;       ///< high threshold = factor x Otsu's (of the magnitudes' square roots)
     double canny_low_ratio = 0.5;    ///< low threshold = ratio x high
     double min_high_threshold = 24;  ///< floor of the high threshold, Sobel units (8 per grey level of ramp)
     double angle_deg = 20;           ///< oriented BFS: largest angle between neighbouring gradients

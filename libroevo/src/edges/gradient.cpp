@@ -29,26 +29,26 @@ void computeGradient(const cv::Mat& grey, double blur_sigma, Gradient& out) {
 }
 
 double otsuThreshold(const cv::Mat& magnitude) {
-    constexpr float kBinWidth = 4;
-    constexpr int kBins = 362;  // 4 * 255 * sqrt(2) / kBinWidth, rounded up
+    constexpr int kBins = 1443;  // 4 * 255 * sqrt(2), rounded up
     std::array<int, kBins> histogram{};
     std::vector<std::int32_t> bins(static_cast<std::size_t>(magnitude.cols + 1) / 2);
     for (int y = 0; y < magnitude.rows; y += 2) {
         const auto* row = magnitude.ptr<float>(y);
         for (std::size_t i = 0; i < bins.size(); ++i)  // apart, so that the compiler makes vectors of it
-            bins[i] = static_cast<std::int32_t>(std::min<float>(kBins - 1, row[2 * i] / kBinWidth));
+            bins[i] = static_cast<std::int32_t>(std::min<float>(kBins - 1, row[2 * i]));
         for (const std::int32_t bin : bins) ++at(histogram, bin);
     }
+    const auto rootOf = [](int bin) { return std::sqrt(bin + 0.5); };
     double total = 0, sum = 0;
     for (int i = 0; i < kBins; ++i) {
         total += at(histogram, i);
-        sum += static_cast<double>(i) * at(histogram, i);
+        sum += rootOf(i) * at(histogram, i);
     }
     double below = 0, sum_below = 0, best_variance = -1;
     int best = 0;
     for (int i = 0; i < kBins; ++i) {
         below += at(histogram, i);
-        sum_below += static_cast<double>(i) * at(histogram, i);
+        sum_below += rootOf(i) * at(histogram, i);
         const double above = total - below;
         if (below == 0 || above == 0) continue;
         const double difference = sum_below / below - (sum - sum_below) / above;
@@ -58,7 +58,7 @@ double otsuThreshold(const cv::Mat& magnitude) {
             best = i;
         }
     }
-    return static_cast<double>(best + 1) * static_cast<double>(kBinWidth);
+    return best + 1;
 }
 
 }  // namespace roevo

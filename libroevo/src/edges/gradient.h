@@ -21,7 +21,8 @@ struct Gradient {
 /// @param blur_sigma  Gaussian blur before the filter, px; 0 for none
 void computeGradient(const cv::Mat& grey, double blur_sigma, Gradient& out);
 
-/// Otsu's threshold of the gradient magnitude (Sobel units), over every second pixel of every second row.
+/// Threshold of the gradient magnitude (Sobel units): Otsu's, of the square roots of the magnitudes, which a
+/// few strong edges move less than the magnitudes'. Over every second pixel of every second row.
 double otsuThreshold(const cv::Mat& magnitude);
 
 }  // namespace roevo

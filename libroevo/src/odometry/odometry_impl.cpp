@@ -76,7 +76,7 @@ Tracking Odometry::Impl::track(const Prediction& prediction) {
 /// Where the reference does not lead to this frame, the one before may, which was still tracked: it becomes
 /// the reference.
 void Odometry::Impl::trackFromNearer(Outcome& outcome, Prediction& prediction) {
-    if (!candidate || promote(*frame_before, *candidate)) return;
+    if (!candidate || frame->edges.numEdges() == 0 || promote(*frame_before, *candidate)) return;
     outcome.new_keyframe = true;
     motion.becomeReference();
     prediction = motion.predict(frame->timestamp());
