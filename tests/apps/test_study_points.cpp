@@ -40,9 +40,10 @@ TEST(PointSelection, DsoSpreadsOverTheImageAndCannyDoesNot) {
     cv::Mat image(240, 320, CV_8UC1);
     for (int y = 0; y < image.rows; ++y) {
         for (int x = 0; x < image.cols; ++x) {
-            const bool square = (x / 12 + y / 12) % 2 == 0, stripe = y / 20 % 2 == 0;
+            const int square = (x / 6 + y / 6) % 2 == 0 ? 220 : 20, stripe = y / 20 % 2 == 0 ? 110 : 130;
+            const int apart = 120;  // else a stripe is one edge with the square that it meets
             image.at<std::uint8_t>(y, x) =
-                static_cast<std::uint8_t>(x < 160 ? (square ? 220 : 20) : (stripe ? 115 : 125));
+                static_cast<std::uint8_t>(x < 160 ? square : (x < 176 ? apart : stripe));
         }
     }
     const Gradient gradient = gradientOf(image);
