@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 
 #include "core/support/real_clip.h"
 #include "evaluation/evaluate.h"
@@ -72,6 +73,10 @@ struct Jump {
     std::size_t before, missing, every;
     int most_lost, least_right;
 };
+
+std::ostream& operator<<(std::ostream& out, const Jump& jump) {
+    return out << jump.missing << " frames of " << jump.name;
+}
 
 class Jumps : public ::testing::TestWithParam<Jump> {};
 

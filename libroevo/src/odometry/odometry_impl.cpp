@@ -251,8 +251,8 @@ void Odometry::Impl::renewReference(Outcome& outcome) {
     const bool takes_over = sees_less && candidate && candidate->matchedRatio() > tracking.matchedRatio();
     const RelativePose promoted = takes_over ? candidate->pose : tracking.pose;
     outcome.no_keyframe = takes_over ? promote(*frame_before, *candidate) : promote(*frame, tracking);
-    outcome.new_keyframe = !outcome.no_keyframe;
     if (outcome.no_keyframe) return;
+    outcome.new_keyframe = true;
     tracking.pose = changeReference(tracking.pose, promoted, world.reference().id);
     outcome.is_keyframe = !takes_over;
     if (outcome.is_keyframe) {
