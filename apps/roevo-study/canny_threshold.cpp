@@ -1,5 +1,5 @@
 // Error of the trajectory under different Canny thresholds, relative to that at Otsu's (the paper's Fig.
-// "Trajectory errors under different Canny thresholds").
+// "Trajectory errors under different Canny thresholds"; there Otsu's of the magnitudes, here of their roots).
 #include <algorithm>
 #include <cmath>
 #include <limits>
