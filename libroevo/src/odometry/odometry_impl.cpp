@@ -314,7 +314,7 @@ void Odometry::Impl::trackBack(const Tracking& tracking) {
         backwards.expect(-before.timestamp());
         Prediction prediction = backwards.predict(-before.timestamp());
         if (prediction.blind) continue;
-        prediction.shutter.seconds_per_row = -motion.secondsPerRow();  // time and velocity are negative
+        prediction.shutter.rows.seconds_per_row = -motion.secondsPerRow();  // time and velocity are negative
         const Tracking again = tracker->track(world.reference(), before, prediction);
         if (again.lost() || again.depth_fault) continue;
         backwards.measure(-before.timestamp(), again.pose.T_keyframe_camera, again.measured);
@@ -341,8 +341,7 @@ Fault Odometry::Impl::promote(const Frame& promoted, const Tracking& tracked) {
 
 FrameResult Odometry::Impl::report(const Outcome& outcome) {
     const Tracking& tracking = outcome.tracking;
-    const auto change = world.changes();
-    FrameResult result;
+    FrameResult result = world.changes();
     result.timestamp = last_timestamp;
     result.status = outcome.status;
     result.num_edges = frame->edges.numEdges();
@@ -358,7 +357,13 @@ FrameResult Odometry::Impl::report(const Outcome& outcome) {
     world.addFrame(result.timestamp, tracking.pose, is_measured);
     result.T_world_camera = world.trajectory().worldPose(tracking.pose);
     result.covariance = world.covariance(tracking.pose);
-    fill(result, outcome, change);
+    result.reason = describe(outcome, result);
+    result.new_keyframe = outcome.new_keyframe;
+    result.found_at = outcome.found_at;
+    result.matched_ratio = tracking.matchedRatio();
+    result.inliers = tracking.inliers;
+    result.ms.coarse = tracking.ms_coarse;
+    result.ms.fine = tracking.ms_fine;
     return result;
 }
 

@@ -28,7 +28,7 @@ std::string whatBecame(const Outcome& outcome) {
 
 }  // namespace
 
-std::string describe(const Outcome& outcome, const WorldChange& change) {
+std::string describe(const Outcome& outcome, const FrameResult& change) {
     std::string text = whatBecame(outcome);
     const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
     if (outcome.tracking.tracked && outcome.tracking.depth_fault)
@@ -48,25 +48,6 @@ FrameResult rejected(double timestamp, const Fault& fault) {
     result.timestamp = timestamp;
     result.reason = describe(fault);
     return result;
-}
-
-void fill(FrameResult& result, const Outcome& outcome, const WorldChange& change) {
-    const Tracking& tracking = outcome.tracking;
-    result.reason = describe(outcome, change);
-    result.new_keyframe = outcome.new_keyframe;
-    result.found_at = outcome.found_at;
-    result.joined_at = change.joined_at;
-    result.closed_at = change.closed_at;
-    result.matched_ratio = tracking.matchedRatio();
-    result.inliers = tracking.inliers;
-    result.map_correction = change.moved;
-    result.map_turn = change.turned;
-    result.map_refusals = change.refusals;
-    result.ms.coarse = tracking.ms_coarse;
-    result.ms.fine = tracking.ms_fine;
-    result.ms.mapping = change.mapping_ms;
-    result.ms.mapping_cpu = change.mapping_cpu_ms;
-    result.ms.waiting = change.waiting_ms;
 }
 
 }  // namespace roevo

@@ -1,7 +1,6 @@
 #pragma once
 #include "roevo/frame_result.h"
 #include "tracking/tracker.h"
-#include "world.h"
 
 namespace roevo {
 
@@ -21,10 +20,8 @@ struct Outcome {
 
 /// The reason of a frame's status, and what became of the world, in words: the one place where they are
 /// made.
-std::string describe(const Outcome& outcome, const WorldChange& change);
-
-/// What a frame's result says of both: all but its pose and what was seen in its images.
-void fill(FrameResult& result, const Outcome& outcome, const WorldChange& change);
+/// @param change  see World::changes()
+std::string describe(const Outcome& outcome, const FrameResult& change);
 
 /// A frame that is not processed.
 FrameResult rejected(double timestamp, const Fault& fault);

@@ -167,20 +167,10 @@ std::vector<RelativePose> Relocaliser::resembled(const Trajectory& trajectory,
     return poses;
 }
 
-std::optional<RecognisedPlace> Relocaliser::recognised(const Trajectory& trajectory,
+std::optional<RecognisedPlace> Relocaliser::recognised(Among tracks, const Trajectory& trajectory,
                                                        const Whereabouts& whereabouts) {
-    return newestAmong(newest_.alike, trajectory, whereabouts);
-}
-
-std::optional<RecognisedPlace> Relocaliser::recognisedElsewhere(const Trajectory& trajectory,
-                                                                const Whereabouts& whereabouts) {
     collect();
-    return newestAmong(newest_.elsewhere, trajectory, whereabouts);
-}
-
-std::optional<RecognisedPlace> Relocaliser::newestAmong(const std::vector<Alike>& alike,
-                                                        const Trajectory& trajectory,
-                                                        const Whereabouts& whereabouts) {
+    const std::vector<Alike>& alike = tracks == Among::kOwnTrack ? newest_.alike : newest_.elsewhere;
     if (alike.empty()) return std::nullopt;
     return surest(registered(alike, *newest_.frame, newest_.edges, places_.back().row_motion), trajectory,
                   whereabouts);

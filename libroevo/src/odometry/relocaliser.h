@@ -36,6 +36,9 @@ struct KnownPlace {
     RowMotion row_motion;
 };
 
+/// Keyframes, as seen from the newest one.
+enum class Among { kOwnTrack, kOtherTracks };
+
 /// The place that a frame shows, as far as one look tells.
 struct RecognisedPlace {
     RelativePose pose;
@@ -74,12 +77,9 @@ class Relocaliser {
     /// @param whereabouts  of the newest: places of its own track that are out of reach are twins
     [[nodiscard]] std::vector<RelativePose> resembled(const Trajectory& trajectory,
                                                       const Whereabouts& whereabouts);
-    /// The place of its own track that the newest keyframe shows; after resembled().
-    [[nodiscard]] std::optional<RecognisedPlace> recognised(const Trajectory& trajectory,
+    /// The place that the newest keyframe shows; among its own track after resembled(). Waits for the thread.
+    [[nodiscard]] std::optional<RecognisedPlace> recognised(Among tracks, const Trajectory& trajectory,
                                                             const Whereabouts& whereabouts);
-    /// The place of another track that it shows. Waits for the thread.
-    [[nodiscard]] std::optional<RecognisedPlace> recognisedElsewhere(const Trajectory& trajectory,
-                                                                     const Whereabouts& whereabouts);
 
     /// The keyframe that the frame shows for sure, and its pose relative to that.
     /// @param trajectory  with the keyframes
@@ -113,8 +113,6 @@ class Relocaliser {
                               const std::function<bool(int)>& wanted);
     std::vector<Recognition> registered(const std::vector<Alike>& alike, const Frame& frame,
                                         const EdgePoints3D& edges, const RowMotion& rows);
-    std::optional<RecognisedPlace> newestAmong(const std::vector<Alike>& alike, const Trajectory& trajectory,
-                                               const Whereabouts& whereabouts);
     void collect();
     Keyframe unpacked(int id) const;
     EdgePoints3D lifted(const Frame& frame) const;

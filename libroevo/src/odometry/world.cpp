@@ -1,6 +1,5 @@
 #include "world.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
@@ -111,7 +110,7 @@ EdgeMap World::inThisWorld(EdgeMap edges) const {
 void World::advance(double timestamp, double seconds_per_row) {
     timestamp_ = timestamp;
     seconds_per_row_ = seconds_per_row;
-    for (const MapUpdate& update : mapper_->due(timestamp, change_.waiting_ms)) takeUpdate(update);
+    for (const MapUpdate& update : mapper_->due(timestamp, change_.ms.waiting)) takeUpdate(update);
     if (recognising_ && timestamp >= recognised_at_) recognise();
     if (reference_) reference_->setRowMotion(reference_->row_motion.at(seconds_per_row));
 }
@@ -119,17 +118,17 @@ void World::advance(double timestamp, double seconds_per_row) {
 /// Adds how far the camera has moved with the keyframes.
 void World::noteMotion(const Pose& before) {
     const Pose after = trajectory_.lastPose();
-    change_.moved += (after.translation() - before.translation()).norm();
-    change_.turned += rotationAngle(after * before.inverse());
+    change_.map_correction += (after.translation() - before.translation()).norm();
+    change_.map_turn += rotationAngle(after * before.inverse());
 }
 
 void World::takeUpdate(const MapUpdate& update) {
     const Pose before = trajectory_.lastPose();
     trajectory_.apply(update);
     noteMotion(before);
-    change_.mapping_ms += update.milliseconds;
-    change_.mapping_cpu_ms += update.cpu_milliseconds;
-    change_.refusals.insert(change_.refusals.end(), update.refusals.begin(), update.refusals.end());
+    change_.ms.mapping += update.milliseconds;
+    change_.ms.mapping_cpu += update.cpu_milliseconds;
+    change_.map_refusals.insert(change_.map_refusals.end(), update.refusals.begin(), update.refusals.end());
     pseudo_clusters_.judge(update.verdicts, update.clusters);
     weakenPseudoEdges();
 }
@@ -229,11 +228,8 @@ Reach World::misplacementOf(int keyframe) const {
 
 Reach World::driftOf(int keyframe) const {
     const Matrix6d drift = trajectory_.drift(trajectory_.beginOfTrack(keyframe), keyframe);
-    const auto most = [](const Eigen::Matrix3d& covariance) {
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
-        return kDriftSigmas * std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
-    };
-    return {most(drift.topLeftCorner<3, 3>()), most(drift.bottomRightCorner<3, 3>())};
+    return {kDriftSigmas * worstSigma(drift.topLeftCorner<3, 3>()),
+            kDriftSigmas * worstSigma(drift.bottomRightCorner<3, 3>())};
 }
 
 Matrix6d World::covariance(const RelativePose& pose) const {
@@ -279,7 +275,7 @@ void World::recognise() {
             drifted = true;
     }
     if (!drifted) return;
-    const auto place = relocaliser_.recognised(trajectory_, near);
+    const auto place = relocaliser_.recognised(Among::kOwnTrack, trajectory_, near);
     if (place && !isWithinReach(place->pose)) closeLoop({newest.keyframe, *place});
 }
 
@@ -292,7 +288,7 @@ bool World::isWithinReach(const RelativePose& pose) const {
 
 /// A track that was begun after a loss is moved to where its newest keyframe is recognised.
 bool World::joinElsewhere(const Whereabouts& near) {
-    const auto place = relocaliser_.recognisedElsewhere(trajectory_, near);
+    const auto place = relocaliser_.recognised(Among::kOtherTracks, trajectory_, near);
     if (!place) return false;
     const Look newest{reference_->id, *place};
     const auto before = agreeingLook(newest, kJoinTolerance);
@@ -351,9 +347,9 @@ std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& 
 
 std::vector<MapRefusal> World::refineAll() {
     if (!reference_) return {};
-    std::vector<MapRefusal> before = std::exchange(change_.refusals, {});
+    std::vector<MapRefusal> before = std::exchange(change_.map_refusals, {});
     for (const MapUpdate& update : mapper_->refineAll()) takeUpdate(update);
-    return std::exchange(change_.refusals, std::move(before));
+    return std::exchange(change_.map_refusals, std::move(before));
 }
 
 Trajectory World::finalTrajectory() const {

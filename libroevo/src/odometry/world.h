@@ -13,14 +13,6 @@
 
 namespace roevo {
 
-/// What became of the keyframes before a frame was tracked, or while it was.
-struct WorldChange {
-    double moved = 0, turned = 0;                               ///< m, rad: the camera, with the keyframes
-    double mapping_ms = 0, mapping_cpu_ms = 0, waiting_ms = 0;  ///< see StageTimes
-    std::vector<MapRefusal> refusals;
-    int joined_at = -1, closed_at = -1;  ///< see FrameResult
-};
-
 /// Where the camera has been: the keyframe that is tracked against, and with all that were, the trajectory,
 /// the map and what their places look like. It alone puts the world together; tracking knows one keyframe.
 class World {
@@ -56,8 +48,8 @@ class World {
     /// Brings everything to the time of a frame: map updates and recognised places that are due take effect.
     /// @param seconds_per_row  read-out time as known by now
     void advance(double timestamp, double seconds_per_row);
-    /// All that was changed since this was asked last.
-    WorldChange changes() { return std::exchange(change_, {}); }
+    /// What became of the keyframes since this was asked last, as the next frame's result has it.
+    FrameResult changes() { return std::exchange(change_, {}); }
 
     /// A frame as a keyframe of its own, which stays outside of the world. Null where it cannot be one.
     [[nodiscard]] std::unique_ptr<Keyframe> outside(const Frame& frame, const RowMotion& rows,
@@ -139,7 +131,7 @@ class World {
     double recognised_at_ = 0;            // s; when the place of the newest keyframe is to be known
     bool recognising_ = false;            // it is not known yet
     std::optional<Look> look_;            // that a second one must agree with
-    WorldChange change_;
+    FrameResult change_;
 };
 
 }  // namespace roevo

@@ -1,12 +1,12 @@
 #include "place/edge_registration.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "tracking/camera_scale.h"
 #include "tracking/fine_tracker.h"
+#include "tracking/relative_pose.h"
 
 namespace roevo {
 namespace {
@@ -27,11 +27,6 @@ OdometryOptions widened(OdometryOptions options, double scale, bool thinned) {
     options.fine.search_radius = std::max(options.fine.search_radius, kSearchRadius * scale);
     options.fine.max_iterations = std::max(options.fine.max_iterations, kMostIterations);
     return options;
-}
-
-double worstSigma(const Eigen::Matrix3d& covariance) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
-    return std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
 }
 
 }  // namespace
@@ -55,7 +50,7 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     loop.still = kStill;
     loop.relaxation = kOverRelaxation;
     loop.relaxed_from = term_.narrowed();
-    const GaussNewtonResult found = minimise(T_start, RollingShutter::of(rows), {&term_}, loop);
+    const GaussNewtonResult found = minimise(T_start, RollingShutter{rows}, {&term_}, loop);
     if (!found.complete || !found.T_current_keyframe.isFinite()) return out;
     out.T_frame_keyframe = found.T_current_keyframe;
     clusters_.start(keyframe.clusters);

@@ -1,8 +1,17 @@
 #include "tracking/relative_pose.h"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
 #include "tracking/se3.h"
 
 namespace roevo {
+
+double worstSigma(const Eigen::Matrix3d& covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
+}
 
 Matrix6d turnedBy(const Eigen::Matrix3d& R) {
     Matrix6d both = Matrix6d::Zero();

@@ -13,6 +13,9 @@ struct RelativePose {
     Matrix6d covariance() const { return uncertainty.covariance(); }
 };
 
+/// One sigma along the axis that is known least.
+double worstSigma(const Eigen::Matrix3d& covariance);
+
 /// What turns errors of position and of orientation to other axes.
 Matrix6d turnedBy(const Eigen::Matrix3d& R);
 
