@@ -1,11 +1,13 @@
 // Jacobians of fine tracking (the paper's appendix) against numeric differences, through the code that the
-// tracker uses: liftInformation and the accumulate kernel.
+// tracker uses: the kernels liftEdges and accumulate.
 #include <gtest/gtest.h>
+
+#include <array>
 
 #include "core/support/random_pose.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "tracking/gauss_newton.h"
-#include "tracking/photometric.h"
+#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
@@ -14,30 +16,32 @@ using testing::uniform;
 
 const PinholeCamera kCamera{640, 480, 517.3, 530.1, 318.6, 255.3, {}};
 
-/// One point in one block of lanes, the rest carries nothing.
-class OnePoint {
-  public:
-    OnePoint(const Eigen::Vector3d& p, const float matrix[6], const float vector[3]) {
-        x_[0] = static_cast<float>(p.x());
-        y_[0] = static_cast<float>(p.y());
-        z_[0] = static_cast<float>(p.z());
-        for (int k = 0; k < 6; ++k) matrix_[k][0] = matrix[k];
-        for (int k = 0; k < 3; ++k) vector_[k][0] = vector[k];
-    }
-    PoseSystem system() {
-        kernels::InformationArrays rows{x_, y_, z_, {}, {}};
-        for (int k = 0; k < 6; ++k) rows.matrix[k] = matrix_[k];
-        for (int k = 0; k < 3; ++k) rows.vector[k] = vector_[k];
-        kernels::NormalEquations equations;
-        kernels::best().accumulate(rows, kernels::kLanes, equations);
-        PoseSystem system;
-        system.add(equations);
-        return system;
-    }
-
-  private:
-    float x_[8] = {}, y_[8] = {}, z_[8] = {}, matrix_[6][8] = {}, vector_[3][8] = {};
-};
+/// What one match, of a point in the camera with an edge of this normal, adds to the system with these
+/// residuals.
+PoseSystem systemOf(const Eigen::Vector3d& point, const Eigen::Vector2d& normal, double tangent_residual,
+                    double tangent_weight, double depth_residual, double depth_weight) {
+    using Lanes = std::array<float, kernels::kLanes>;
+    const auto lanes = [](double value) {
+        Lanes all{};
+        all.fill(static_cast<float>(value));
+        return all;
+    };
+    const auto first = [](double value) {  // the rest carries nothing
+        return Lanes{static_cast<float>(value)};
+    };
+    const Lanes x = lanes(point.x()), y = lanes(point.y()), z = lanes(point.z()), nx = lanes(normal.x()),
+                ny = lanes(normal.y()), residual = lanes(tangent_residual), weight = first(tangent_weight),
+                depth = lanes(depth_residual), of_depth = first(depth_weight);
+    const std::array<std::int32_t, kernels::kLanes> current{};
+    InformationRows rows;
+    kernels::best().liftEdges({x.data(), y.data(), z.data(), nullptr, nullptr, current.data()},
+                              {nullptr, nullptr, nx.data(), ny.data(), nullptr, nullptr}, weight.data(),
+                              residual.data(), of_depth.data(), depth.data(), kernels::kLanes,
+                              static_cast<float>(kCamera.fx), static_cast<float>(kCamera.fy), rows.arrays(1));
+    PoseSystem system;
+    system.add(rows.sum());
+    return system;
+}
 
 template <class Residual>
 Vector6d numericJacobian(const Pose& pose, Residual&& residual) {
@@ -72,20 +76,13 @@ TEST(FineJacobians, PointToTangentResidualIsDifferentiatedRight) {
             return normal.dot(kCamera.project(at * in_keyframe) - seen);
         };
         const double r = residual(pose);
-        float matrix[6], vector[3];
-        const auto nx = static_cast<float>(normal.x()), ny = static_cast<float>(normal.y()),
-                   e = static_cast<float>(r);
-        liftInformation(static_cast<float>(in_camera.x()), static_cast<float>(in_camera.y()),
-                        static_cast<float>(in_camera.z()), static_cast<float>(kCamera.fx),
-                        static_cast<float>(kCamera.fy), nx * nx, nx * ny, ny * ny, nx * e, ny * e, matrix,
-                        vector);
-        expectNear(OnePoint(in_camera, matrix, vector).system(), numericJacobian(pose, residual), r);
+        expectNear(systemOf(in_camera, normal, r, 1, 0, 0), numericJacobian(pose, residual), r);
     }
 }
 
 TEST(FineJacobians, DepthResidualIsDifferentiatedRight) {
     std::mt19937 random(102);
-    const float matrix[6] = {0, 0, 0, 0, 0, 1};  // along the optical axis only
+    constexpr double kHardly = 1e-30;  // depths of outliers do not count
     for (int i = 0; i < 200; ++i) {
         const Pose pose = testing::randomPose(random, 0.5, 0.4);
         const Eigen::Vector3d in_camera(uniform(random, -2, 2), uniform(random, -2, 2),
@@ -94,8 +91,7 @@ TEST(FineJacobians, DepthResidualIsDifferentiatedRight) {
         const double measured = in_camera.z() + uniform(random, -0.1, 0.1);
         const auto residual = [&](const Pose& at) { return (at * in_keyframe).z() - measured; };
         const double r = residual(pose);
-        const float vector[3] = {0, 0, static_cast<float>(r)};
-        expectNear(OnePoint(in_camera, matrix, vector).system(), numericJacobian(pose, residual), r);
+        expectNear(systemOf(in_camera, {1, 0}, 0, kHardly, r, 1), numericJacobian(pose, residual), r);
     }
 }
 
@@ -117,13 +113,8 @@ TEST(FineJacobians, GaussNewtonOnThemConverges) {
         PoseSystem system;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Eigen::Vector3d p = pose * points[i];
-            const auto r = static_cast<float>(normals[i].dot(kCamera.project(p) - seen[i]));
-            const auto nx = static_cast<float>(normals[i].x()), ny = static_cast<float>(normals[i].y());
-            float matrix[6], vector[3];
-            liftInformation(static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()),
-                            static_cast<float>(kCamera.fx), static_cast<float>(kCamera.fy), nx * nx, nx * ny,
-                            ny * ny, nx * r, ny * r, matrix, vector);
-            const PoseSystem one = OnePoint(p, matrix, vector).system();
+            const double r = normals[i].dot(kCamera.project(p) - seen[i]);
+            const PoseSystem one = systemOf(p, normals[i], r, 1, 0, 0);
             system.hessian += one.hessian;
             system.gradient += one.gradient;
         }

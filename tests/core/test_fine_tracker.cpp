@@ -148,12 +148,12 @@ TEST_F(FineTracking, WhatAVelocityOfTheRowsMovesIsWhatTrackingWithAnotherOneFind
     options_.fine.photometric_weight = 0;  // edges only
     FineTracker tracker(sequence_->camera, options_);
     RollingShutter shutter;
-    shutter.seconds_per_row = 0.015 / sequence_->camera.height;
-    shutter.reference_row = sequence_->camera.height / 2.;
+    shutter.rows.seconds_per_row = 0.015 / sequence_->camera.height;
+    shutter.rows.reference_row = sequence_->camera.height / 2.;
     const auto track = [&](int axis, double speed) {
         RowMotion rows = shutter.motion(truth_);
         (axis < 3 ? rows.velocity[axis] : rows.turn[axis - 3]) = speed;
-        RollingShutter moving = RollingShutter::of(rows);
+        RollingShutter moving{rows};
         moving.velocity_variance[axis] = 1;
         return tracker.track(keyframe_, frame_, truth_, {truth_}, moving, Brightness());
     };
@@ -176,7 +176,7 @@ TEST_F(FineTracking, WhatAVelocityOfTheRowsMovesIsWhatTrackingWithAnotherOneFind
             << axis << ": in another direction";
     }
     shutter.velocity_variance.setOnes();
-    shutter.seconds_per_row = 0;
+    shutter.rows.seconds_per_row = 0;
     EXPECT_EQ(tracker.track(keyframe_, frame_, truth_, {truth_}, shutter, Brightness()).of_rows,
               Matrix6d::Zero())
         << "all rows at once";

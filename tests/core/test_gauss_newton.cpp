@@ -253,7 +253,7 @@ TEST(Minimise, RowsMoveAsTheShutterSaysOfThePose) {
         std::vector<double> speeds;
     } rows;
     RollingShutter shutter;
-    shutter.seconds_per_row = 1e-5;
+    shutter.rows.seconds_per_row = 1e-5;
     shutter.since_previous = 0.1;
     const GaussNewtonResult result = minimise(Pose::Identity(), shutter, {&rows}, steps(2));
     ASSERT_EQ(rows.speeds.size(), 2U);
@@ -305,7 +305,7 @@ TEST(Minimise, AFreeReadoutTimeIsFoundAlongWithThePose) {
     constexpr double kReadout = 3e-5;  // s per row
     LinearInBoth term(pose, kReadout);
     RollingShutter shutter;
-    shutter.seconds_per_row = 1e-5;
+    shutter.rows.seconds_per_row = 1e-5;
     GaussNewtonOptions options = steps(15);
     options.still = 0;
     options.free_readout = true;
@@ -316,7 +316,7 @@ TEST(Minimise, AFreeReadoutTimeIsFoundAlongWithThePose) {
     // Where it is not free it stays, and the pose is off for it
     options.free_readout = false;
     const GaussNewtonResult held = minimise(Pose::Identity(), shutter, {&term}, options);
-    EXPECT_EQ(held.seconds_per_row, shutter.seconds_per_row);
+    EXPECT_EQ(held.seconds_per_row, shutter.rows.seconds_per_row);
     EXPECT_GT((held.T_current_keyframe.matrix() - poseIncrement(pose).matrix()).norm(), 1e-6);
 }
 

@@ -62,7 +62,7 @@ TEST(MotionModel, AnotherReferenceChangesNothingButTheNumbers) {
     EXPECT_LT(difference(after.T_reference_last, T_new_old * before.T_reference_last), 1e-12);
     EXPECT_LT(difference(after.prior.mean, after.T_reference_camera.inverse()), 1e-12);
     EXPECT_EQ(after.prior.covariance, before.prior.covariance);
-    EXPECT_LT((after.shutter.earlier_velocity - before.shutter.earlier_velocity).norm(), 1e-12);
+    EXPECT_LT((after.shutter.rows.velocity - before.shutter.rows.velocity).norm(), 1e-12);
 }
 
 // A mean velocity is that of the middle of its interval. The prior that took it for the velocity at the end

@@ -25,6 +25,11 @@ Floats randomFloats(std::mt19937& random, double low, double high, std::size_t c
     return values;
 }
 
+/// Of the pull of a residual of the t-distribution with five degrees of freedom, as a share of its weight.
+float slopeAt(float squared) {
+    return (5 - squared) / (5 + squared);
+}
+
 /// Matched points, some of them behind the camera, with an edge point of an image each.
 struct Scene {
     std::mt19937 random{7};
@@ -178,7 +183,7 @@ TEST_P(ResidualKernels, WeightsAreStudentsAndOutliersHaveNone) {
         EXPECT_NEAR(found.weight[i], expected, 1e-5F * expected) << i;
         inliers += fits ? 1 : 0;
         weights += static_cast<double>(expected);
-        if (fits) slopes += static_cast<double>(expected * studentSlope(squared));
+        if (fits) slopes += static_cast<double>(expected * slopeAt(squared));
     }
     EXPECT_EQ(found.inliers, inliers);
     EXPECT_GT(inliers, 50);
@@ -335,7 +340,7 @@ TEST_P(ResidualKernels, PatchesAreWeighedSummedAndLifted) {
         const Patch& patch = s.patches[i];
         const auto w = static_cast<double>(expected);
         weights += w;
-        slopes += w * static_cast<double>(studentSlope(squared));
+        slopes += w * static_cast<double>(slopeAt(squared));
         reference += w * static_cast<double>(patch.sum);
         squares += w * static_cast<double>(patch.sum_squared);
         image += w * static_cast<double>(residual.current);
@@ -347,15 +352,17 @@ TEST_P(ResidualKernels, PatchesAreWeighedSummedAndLifted) {
         const Eigen::Matrix2f M = 1.25F * 1.25F * 0.5F * expected * A * G * A.transpose();
         const Eigen::Vector2f v =
             1.25F * 0.5F * expected * A * Eigen::Vector2f(residual.gradient_u, residual.gradient_v);
-        float matrix[6], vector[3];
-        liftInformation(s.x[i], s.y[i], s.z[i], kFx, kFy, M(0, 0), M(0, 1), M(1, 1), v[0], v[1], matrix,
-                        vector);
-        float size = 1;
-        for (const float value : matrix) size = std::max(size, std::abs(value));
-        for (int k = 0; k < 6; ++k)
-            EXPECT_NEAR(s.rows.matrix[k][i], matrix[k], 2e-5F * size) << i << ' ' << k;
-        for (int k = 0; k < 3; ++k)
-            EXPECT_NEAR(s.rows.vector[k][i], vector[k], 2e-5F * (1 + v.norm() * kFx / s.z[i] * 10)) << i;
+        Eigen::Matrix<float, 2, 3> P;
+        P << kFx / s.z[i], 0, -kFx * s.x[i] / (s.z[i] * s.z[i]), 0, kFy / s.z[i],
+            -kFy * s.y[i] / (s.z[i] * s.z[i]);
+        const Eigen::Matrix3f matrix = P.transpose() * M * P;
+        const Eigen::Vector3f vector = P.transpose() * v;
+        const float size = std::max(1.0F, matrix.cwiseAbs().maxCoeff());
+        for (int r = 0, k = 0; r < 3; ++r) {
+            EXPECT_NEAR(s.rows.vector[r][i], vector[r], 2e-5F * (1 + v.norm() * kFx / s.z[i] * 10)) << i;
+            for (int c = r; c < 3; ++c, ++k)
+                EXPECT_NEAR(s.rows.matrix[k][i], matrix(r, c), 2e-5F * size) << i << ' ' << k;
+        }
     }
     EXPECT_NEAR(s.fit.weights, weights, 1e-5 * weights);
     EXPECT_NEAR(s.fit.slopes, slopes, 1e-5 * weights);

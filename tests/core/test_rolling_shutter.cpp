@@ -187,8 +187,8 @@ TEST(RollingShutter, MotionIsTheCamerasVelocityInItsOwnFrame) {
         T_previous_current.translation() = T_previous_current.linear() * velocity * dt;
         const Pose T_world_current = T_world_previous * T_previous_current;
         RollingShutter shutter;
-        shutter.seconds_per_row = 1e-4;
-        shutter.reference_row = 100;
+        shutter.rows.seconds_per_row = 1e-4;
+        shutter.rows.reference_row = 100;
         shutter.T_previous_keyframe = T_world_previous.inverse() * T_world_keyframe;
         shutter.since_previous = dt;
         const RowMotion rows = shutter.motion(T_world_current.inverse() * T_world_keyframe);
@@ -209,8 +209,8 @@ TEST(RollingShutter, PosesFromTheFirstRowsAloneComeToRest) {
     double angle = 0.01, before = -0.01;
     for (int frame = 0; frame < 30; ++frame) {
         RollingShutter shutter;
-        shutter.seconds_per_row = kReadout / 480;
-        shutter.reference_row = 239.5;
+        shutter.rows.seconds_per_row = kReadout / 480;
+        shutter.rows.reference_row = 239.5;
         const auto turned = [](double by) {
             Pose pose = Pose::Identity();
             pose.setRotation(Eigen::AngleAxisd(by, Eigen::Vector3d::UnitX()).toRotationMatrix());
@@ -218,7 +218,7 @@ TEST(RollingShutter, PosesFromTheFirstRowsAloneComeToRest) {
         };
         shutter.T_previous_keyframe = turned(angle).inverse();
         shutter.since_previous = shutter.earlier_interval = kDt;
-        shutter.earlier_turn.x() = (angle - before) / kDt;
+        shutter.rows.turn.x() = (angle - before) / kDt;
         // What the first row sees of the turn; linear in it
         const auto seen = [&](double turn) {
             const RowMotion rows = shutter.motion(turned(turn).inverse());

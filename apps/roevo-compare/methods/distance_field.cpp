@@ -43,6 +43,23 @@ class FieldTerm : public ResidualTerm {
     const FineOptions& options_;
 };
 
+/// Information that a residual in the image, of these slopes, has of the point that is projected there,
+/// carried to three dimensions through the projection's Jacobian (Eq. (24)).
+void lift(const kernels::InformationArrays& out, std::size_t k, const PinholeCamera& camera,
+          const Eigen::Vector3d& point, const Eigen::Vector2d& slopes, double residual, double weight) {
+    const double x = point.x(), y = point.y(), z = point.z(), u = slopes.x() * camera.fx / z,
+                 v = slopes.y() * camera.fy / z;
+    const double by_point[3] = {u, v, -(u * x + v * y) / z};
+    out.x[k] = static_cast<float>(x);
+    out.y[k] = static_cast<float>(y);
+    out.z[k] = static_cast<float>(z);
+    for (int r = 0, m = 0; r < 3; ++r) {
+        out.vector[r][k] = static_cast<float>(weight * residual * by_point[r]);
+        for (int c = r; c < 3; ++c, ++m)
+            out.matrix[m][k] = static_cast<float>(weight * by_point[r] * by_point[c]);
+    }
+}
+
 double millisecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
@@ -96,26 +113,20 @@ PoseSystem DistanceFieldTracker::linearise(const Keyframe& keyframe, const Dista
     scale_ = robustScale(magnitudes_);
     const auto inverse = static_cast<float>(1 / (scale_ * scale_));
     const auto chi2 = static_cast<float>(options_.chi2);
-    rows_.reset(near_.size());
+    const kernels::InformationArrays out = rows_.arrays(near_.size());
     double weights = 0, slopes = 0;
-    const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
-    for (std::size_t k = 0; k < near_.size(); ++k) {
-        const std::size_t i = near_[k];
-        const float r = residual_[k], squared = r * r * inverse;
-        if (squared > chi2) {
-            rows_.leaveOut(k);
-            continue;
+    for (std::size_t k = 0; k < kernels::paddedSize(near_.size()); ++k) {
+        const std::size_t j = std::min(k, near_.size() - 1), i = near_[j];
+        const float r = residual_[j], squared = r * r * inverse;
+        float w = 0;  // outliers and the padding contribute nothing
+        if (k < near_.size() && squared <= chi2) {
+            ++inliers_;
+            w = studentWeight(edges.weight[i] * inverse, squared);
+            weights += static_cast<double>(w);
+            slopes += static_cast<double>(w * (kStudentNu - squared) / (kStudentNu + squared));
         }
-        ++inliers_;
-        const float w = studentWeight(edges.weight[i] * inverse, squared);
-        weights += static_cast<double>(w);
-        slopes += static_cast<double>(w * studentSlope(squared));
-        const float du = gradient_u_[k], dv = gradient_v_[k];
-        float matrix[6], vector[3];
-        const float x = projected_.x[i], y = projected_.y[i], z = projected_.z[i];
-        liftInformation(x, y, z, fx, fy, w * du * du, w * du * dv, w * dv * dv, w * du * r, w * dv * r,
-                        matrix, vector);
-        rows_.set(k, matrix, vector, x, y, z);
+        lift(out, k, camera, projected_.at(i), Eigen::Vector2f(gradient_u_[j], gradient_v_[j]).cast<double>(),
+             static_cast<double>(r), static_cast<double>(w));
     }
     slope_ = meanSlope(slopes, weights);
     system.add(rows_.sum());

@@ -83,7 +83,7 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
         clusters_.start(keyframe.clusters);
         for (const ResidualTerm* term : terms) term->addTo(clusters_);
         result.uncertainty = clusters_.uncertainty(found.system, edges_.slope(), &likely);
-        if (shutter.seconds_per_row != 0) {
+        if (shutter.rows.seconds_per_row != 0) {
             const Matrix6d moved =
                 edges_.movedByVelocity(shutter.motion(found.T_current_keyframe), likely.information());
             result.of_rows = moved * shutter.velocity_variance.asDiagonal() * moved.transpose();
@@ -114,7 +114,7 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
                                      const EdgeMatches& matches, const RollingShutter& shutter,
                                      const Frame& frame, ReadoutEstimator& estimator) {
     edges_.startReadout(keyframe, frame, matches);
-    ReadoutPriorTerm about(shutter.seconds_per_row, kFreedom / ideal_.height);
+    ReadoutPriorTerm about(shutter.rows.seconds_per_row, kFreedom / ideal_.height);
     const auto linearisedAt = [&](const Pose& pose, const RollingShutter& rows, PoseSystem& system) {
         system.hessian.diagonal().array() += kCaution * 1e-6;
         return edges_.linearise({pose, rows.motion(pose), 0}, system);
@@ -132,12 +132,12 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
     loop.free_readout = true;
     const GaussNewtonResult found = minimise(T_current_keyframe, shutter, {&edges_, &about}, loop);
     RollingShutter learned = shutter;
-    learned.seconds_per_row = found.seconds_per_row;
+    learned.rows.seconds_per_row = found.seconds_per_row;
     PoseSystem last;
     if (!found.complete || !linearisedAt(found.T_current_keyframe, learned, last)) return;
     // As they would be with no read-out time
-    last.gradient -= last.readout_mixed * learned.seconds_per_row;
-    last.readout_gradient -= last.readout_hessian * learned.seconds_per_row;
+    last.gradient -= last.readout_mixed * learned.rows.seconds_per_row;
+    last.readout_gradient -= last.readout_hessian * learned.rows.seconds_per_row;
     estimator.add(last / kCaution, kFrameRate * shutter.since_previous);
 }
 

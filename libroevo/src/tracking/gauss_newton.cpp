@@ -22,11 +22,6 @@ Eigen::Matrix<double, kSize, 1> stepOf(const Eigen::Matrix<double, kSize, kSize>
 
 }  // namespace
 
-void InformationRows::reset(std::size_t count) {
-    arrays(count);
-    for (std::size_t i = count; i < points_.size(); ++i) leaveOut(i);
-}
-
 kernels::InformationArrays InformationRows::arrays(std::size_t count) {
     const std::size_t padded = kernels::paddedSize(count);
     for (auto* array : {&points_.x, &points_.y, &points_.z}) array->resize(padded);
@@ -126,7 +121,7 @@ GaussNewtonResult minimise(const Pose& T_start, RollingShutter shutter,
         if (options.free_readout) {
             const Eigen::Matrix<double, 7, 1> whole = factor * system.solveWithReadout();
             step = whole.head<6>();
-            shutter.seconds_per_row += whole[6];
+            shutter.rows.seconds_per_row += whole[6];
         } else {
             step = factor * system.solve();
         }
@@ -137,7 +132,7 @@ GaussNewtonResult minimise(const Pose& T_start, RollingShutter shutter,
         if (motion < options.still && iteration >= options.settled_from) break;
     }
     if (!options.keep_best) result.T_current_keyframe = T;
-    result.seconds_per_row = shutter.seconds_per_row;
+    result.seconds_per_row = shutter.rows.seconds_per_row;
     return result;
 }
 

@@ -23,19 +23,8 @@ struct PosePrior {
 /// What points contribute to the normal equations, laid out as the kernels want it. Keeps its memory.
 class InformationRows {
   public:
-    /// Room for `count` points, each of which is to be set or left out.
-    void reset(std::size_t count);
-    /// @param matrix,vector  as in kernels::InformationArrays, of a point at (x, y, z), m
-    void set(std::size_t point, const float (&matrix)[6], const float (&vector)[3], float x, float y,
-             float z) {
-        for (int a = 0; a < 6; ++a) matrix_[a][point] = matrix[a];
-        for (int a = 0; a < 3; ++a) vector_[a][point] = vector[a];
-        points_.set(point, x, y, z);
-    }
-    /// Room for `count` points that a kernel writes, and the padding.
+    /// Room for `count` points and the padding, all of which are to be written.
     kernels::InformationArrays arrays(std::size_t count);
-    /// It contributes nothing.
-    void leaveOut(std::size_t point) { set(point, {}, {}, 0, 0, 0); }
     kernels::NormalEquations sum();
     /// Multiplies what each point contributes by a factor of its own (padded).
     void scale(const std::vector<float>& factors);

@@ -111,7 +111,7 @@ struct CameraMotion {
     float to_sigmas_x, to_sigmas_y;
 };
 
-/// Sums of weights, and of these times studentSlope().
+/// Sums of weights, and of what meanSlope() takes.
 struct Fit {
     double weights, slopes;
 };

@@ -128,8 +128,7 @@ PosePrior MotionModel::searchPrior(double timestamp) const {
 
 RollingShutter MotionModel::shutter(double timestamp) const {
     RollingShutter shutter;
-    shutter.seconds_per_row = secondsPerRow();
-    shutter.reference_row = stillRows().reference_row;
+    shutter.rows = stillRows().at(secondsPerRow());
     const double dt = timestamp - last_timestamp_;
     const bool known = has_last_ && dt >= kShortestStep && dt <= kLongestStep;
     // A mean velocity is that of half the time ago
@@ -141,8 +140,8 @@ RollingShutter MotionModel::shutter(double timestamp) const {
         shutter.since_previous = dt;
         if (interval_ > 0) {
             const Velocity earlier = velocityOf(step_, interval_);
-            shutter.earlier_turn = earlier.turn;
-            shutter.earlier_velocity = earlier.linear;
+            shutter.rows.turn = earlier.turn;
+            shutter.rows.velocity = earlier.linear;
             shutter.earlier_interval = interval_;
             shutter.gain = velocityGain(dt);
         }
@@ -161,8 +160,7 @@ Matrix6d MotionModel::velocityGain(double dt) const {
 }
 
 RowMotion MotionModel::firstRows(double interval, const Pose& T_keyframe_next) const {
-    RowMotion rows = stillRows();
-    rows.seconds_per_row = secondsPerRow();
+    RowMotion rows = stillRows().at(secondsPerRow());
     if (!(interval > 0 && interval <= kLongestStep)) return rows;
     const Velocity velocity = velocityOf(T_keyframe_next, interval);
     rows.turn = velocity.turn;

@@ -118,21 +118,4 @@ class PhotometricTerm : public ResidualTerm {
     std::function<std::size_t()> counted_;
 };
 
-/// Image-plane information (2x2 symmetric m00 m01 m11 and vector v0 v1, pixels) of a point carried to three
-/// dimensions through the projection's Jacobian (Eq. (24)): writes P^T M P (xx xy xz yy yz zz) and P^T v.
-inline void liftInformation(float x, float y, float z, float fx, float fy, float m00, float m01, float m11,
-                            float v0, float v1, float matrix[6], float vector[3]) {
-    const float a = fx / z, b = fy / z, c = -a * x / z, d = -b * y / z;  // P = [a 0 c; 0 b d]
-    const float t0 = m00 * c + m01 * d, t1 = m01 * c + m11 * d;
-    matrix[0] = a * a * m00;
-    matrix[1] = a * b * m01;
-    matrix[2] = a * t0;
-    matrix[3] = b * b * m11;
-    matrix[4] = b * t1;
-    matrix[5] = c * t0 + d * t1;
-    vector[0] = a * v0;
-    vector[1] = b * v1;
-    vector[2] = c * v0 + d * v1;
-}
-
 }  // namespace roevo

@@ -60,15 +60,9 @@ Scalar studentWeight(Scalar weight, Scalar squared, Scalar variance = 1) {
     return weight * (kStudentNu + 1) / (kStudentNu * variance + squared);
 }
 
-/// How fast a residual's pull grows with it, as a share of its weight: 1 where residuals are small, negative
-/// where the t-distribution lets go of one.
-/// @param squared  residual over its spread, squared
-template <typename Scalar>
-Scalar studentSlope(Scalar squared) {
-    return (kStudentNu - squared) / (kStudentNu + squared);
-}
-
-/// Mean slope of residuals by their weights, from the sums of both; 1 where there are none.
+/// How fast the pull of residuals grows with them, as a share of their weights: 1 where they are small, less
+/// where the t-distribution lets go of some. Of none it is 1.
+/// @param slopes  sum of weight (nu - squared) / (nu + squared), squared residuals over their spread
 inline double meanSlope(double slopes, double weights) {
     constexpr double kLeastSlope = 0.2;
     return weights > 0 ? std::max(slopes / weights, kLeastSlope) : 1;

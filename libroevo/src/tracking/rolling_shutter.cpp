@@ -36,38 +36,19 @@ void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vecto
 }
 
 RowMotion RollingShutter::motion(const Pose& T_current_keyframe) const {
-    RowMotion rows;
-    rows.reference_row = reference_row;
-    rows.seconds_per_row = seconds_per_row;
-    rows.velocity = earlier_velocity;
-    rows.turn = earlier_turn;
     if (since_previous <= 0) return rows;
     const Pose T_previous_current = T_previous_keyframe * T_current_keyframe.inverse();
     const Velocity mean = velocityOf(T_previous_current, since_previous);
-    rows.turn = mean.turn;
-    rows.velocity = mean.linear;
-    if (earlier_interval > 0) {
-        // Means of two intervals, half of the way on to the end of the last one. All the way, the poses of a
-        // camera whose edges all lie in the rows that are read first swing ever wider: there, what a pose
-        // turns too far a velocity that follows from it takes back
-        const double ahead = 0.5 * since_previous / (since_previous + earlier_interval);
-        Vector6d now, earlier;
-        now << mean.linear, mean.turn;
-        earlier << T_previous_current.linear().transpose() * earlier_velocity, earlier_turn;
-        const Vector6d believed = earlier + gain * ((1 + ahead) * (now - earlier));
-        rows.velocity = believed.head<3>();
-        rows.turn = believed.tail<3>();
-    }
-    return rows;
-}
-
-RollingShutter RollingShutter::of(const RowMotion& rows) {
-    RollingShutter shutter;
-    shutter.seconds_per_row = rows.seconds_per_row;
-    shutter.reference_row = rows.reference_row;
-    shutter.earlier_velocity = rows.velocity;
-    shutter.earlier_turn = rows.turn;
-    return shutter;
+    if (earlier_interval <= 0) return {mean.linear, mean.turn, rows.seconds_per_row, rows.reference_row};
+    // Means of two intervals, half of the way on to the end of the last one. All the way, the poses of a
+    // camera whose edges all lie in the rows that are read first swing ever wider: there, what a pose
+    // turns too far a velocity that follows from it takes back
+    const double ahead = 0.5 * since_previous / (since_previous + earlier_interval);
+    Vector6d now, earlier;
+    now << mean.linear, mean.turn;
+    earlier << T_previous_current.linear().transpose() * rows.velocity, rows.turn;
+    const Vector6d believed = earlier + gain * ((1 + ahead) * (now - earlier));
+    return {believed.head<3>(), believed.tail<3>(), rows.seconds_per_row, rows.reference_row};
 }
 
 kernels::Projection makeProjection(const Pose& T, const PinholeCamera& camera, const RowMotion& rows) {

@@ -21,8 +21,8 @@ Velocity velocityOf(const Pose& T_begin_end, double seconds);
 struct RowMotion {
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
     Eigen::Vector3d turn = Eigen::Vector3d::Zero();      ///< rad/s
-    double seconds_per_row = 0;
-    double reference_row = 0;  ///< row at whose time the pose holds, px
+    double seconds_per_row = 0;                          ///< 0: all rows at once
+    double reference_row = 0;                            ///< row at whose time the pose holds, px
 
     bool operator==(const RowMotion& other) const {
         return velocity == other.velocity && turn == other.turn && seconds_per_row == other.seconds_per_row &&
@@ -54,23 +54,18 @@ void exchangeMotion(const RowMotion& from, const RowMotion& to, const std::vecto
 /// Images whose rows are read one after the other while the camera moves. The motion follows from the pose
 /// itself and the previous frame's.
 struct RollingShutter {
-    double seconds_per_row = 0;  ///< 0: all rows at once
-    double reference_row = 0;    ///< px
+    /// How they are read, and the mean motion over the interval before the previous pose, in that camera's
+    /// axes. Where there is no previous pose, the motion itself.
+    RowMotion rows;
+    double earlier_interval = 0;  ///< s, length of that; 0: not known
     Pose T_previous_keyframe = Pose::Identity();
     double since_previous = 0;  ///< s; 0 when there is no trusted previous pose
-
-    /// Mean motion over the interval before that, in the previous camera's axes, m/s and rad/s, and its
-    /// length, s (0: not known). Where there is no previous pose, the motion itself.
-    Eigen::Vector3d earlier_velocity = Eigen::Vector3d::Zero(), earlier_turn = Eigen::Vector3d::Zero();
-    double earlier_interval = 0;
     /// Of a change of the velocity, along the camera's axes (linear, then turn): what is believed of it.
     Matrix6d gain = Matrix6d::Identity();
     /// Variance of the rows' velocity, by axis (linear, then turn), m^2/s^2 and rad^2/s^2.
     Vector6d velocity_variance = Vector6d::Zero();
 
     RowMotion motion(const Pose& T_current_keyframe) const;
-    /// Of an image whose motion is known, whatever its pose.
-    static RollingShutter of(const RowMotion& rows);
 };
 
 /// Rigid motion, camera and row motion for the kernels.

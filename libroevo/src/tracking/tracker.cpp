@@ -132,7 +132,7 @@ Tracking Tracker::run(const Keyframe& reference, const Frame& frame, const Predi
     out.pose.keyframe = reference.id;
     RollingShutter shutter = prediction.shutter;
     // Two images in a row are sheared nearly alike: better both for still than one of them
-    if (!reference.row_motion.known()) shutter.seconds_per_row = 0;
+    if (!reference.row_motion.known()) shutter.rows.seconds_per_row = 0;
     const Stopwatch coarse_watch;
     const CoarseResult aligned = align(reference, frame, shutter, guesses, prediction.brightness);
     out.ms_coarse = coarse_watch.milliseconds();

@@ -80,7 +80,7 @@ void liftPatches(const PatchPoints& p, std::size_t n, float fx, float fy, float 
         const Lanes m01 = c * s * (g0 - g2) + (c * c - s * s) * g1;
         const Lanes m11 = s * s * g0 + 2 * c * s * g1 + c * c * g2;
         const Lanes v0 = c * r0 - s * r1, v1 = s * r0 + c * r1;
-        // As liftInformation()
+        // P^T M P and P^T v of the projection P = [a 0 e; 0 b d], Eq. (24)
         const Lanes x = load(p.x + i), y = load(p.y + i), z = load(p.z + i);
         const Lanes inverse = 1 / ahead(z), a = fx * inverse, b = fy * inverse, e = -a * x * inverse,
                     d = -b * y * inverse;
