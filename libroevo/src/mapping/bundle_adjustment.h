@@ -41,7 +41,8 @@ class BundleAdjuster {
     RefinementResult refine(std::vector<WindowKeyframe>& window, FusedEdges& edges,
                             const std::vector<RelativePrior>& priors, int iterations, double first_scale = 0);
 
-    /// As the last refine() ended.
+    /// Those of the last iteration of refine(), with the priors: at the poses before its step, which is small
+    /// where that ended the refinement.
     const WindowEquations& equations() const { return equations_; }
 
   private:
