@@ -12,7 +12,7 @@ TEST_F(BundleAdjustment, ExactPosesStay) {
         mapping_.joint_refinement = joint;
         window_ = truth_;
         const FusedEdges before = edges_;
-        const RefinementResult result = refine(10);
+        const Refined result = refine(10);
         EXPECT_LT(positionError(window_), 1e-6);
         EXPECT_LT(rotationError(window_), 1e-6);
         EXPECT_EQ(result.iterations, 1) << "still at once";
@@ -117,7 +117,7 @@ TEST_F(BundleAdjustment, FixedKeyframesNeverMove) {
     drift();
     for (auto& view : window_) view.fixed = true;
     const auto all = window_;
-    const RefinementResult result = refine(3);
+    const Refined result = refine(3);
     for (std::size_t s = 0; s < all.size(); ++s) {
         EXPECT_EQ(window_[s].T_world_camera.matrix(), all[s].T_world_camera.matrix());
         EXPECT_GT(result.inliers[s], 0);
@@ -164,7 +164,7 @@ TEST_F(BundleAdjustment, AKeyframeWithoutObservationsStaysAndStaysFinite) {
     look(std::move(made));
     drift();
     const auto before = window_;
-    const RefinementResult result = fuseAndRefine(2, 4);
+    const Refined result = fuseAndRefine(2, 4);
     for (const std::size_t s : {2U, 5U}) {
         EXPECT_LT((window_[s].T_world_camera.matrix() - before[s].T_world_camera.matrix()).norm(), 1e-12);
     }
@@ -178,7 +178,7 @@ TEST_F(BundleAdjustment, AKeyframeWithoutObservationsStaysAndStaysFinite) {
 TEST_F(BundleAdjustment, NothingToRefine) {
     std::vector<WindowKeyframe> none;
     FusedEdges no_edges;
-    EXPECT_EQ(adjuster().refine(none, no_edges, {}, 5).iterations, 0);
+    EXPECT_EQ(adjuster().refine(none, no_edges, {}, 5), 0);
     PseudoEdgeJudge(mapping_, sensor_, mappingCamera()).judge(none, no_edges, 1);
     // One keyframe alone, fixed or not
     for (const bool fixed : {true, false}) {

@@ -46,8 +46,9 @@ class PseudoEdges : public ::testing::Test {
         disturb(window_, random, drift, drift);
         edges_ = fuse(window_, clustersByCurve(made_));
         BundleAdjuster adjuster(mapping_, SensorOptions(), mappingCamera());
-        const double scale = adjuster.refine(window_, edges_, {}, 3).scale;
-        PseudoEdgeJudge(mapping_, SensorOptions(), mappingCamera()).judge(window_, edges_, scale);
+        adjuster.refine(window_, edges_, {}, 3);
+        PseudoEdgeJudge(mapping_, SensorOptions(), mappingCamera())
+            .judge(window_, edges_, adjuster.equations().scale);
         EdgeVerdict verdict = EdgeVerdict::kUnconfirmed;
         for (std::size_t e = 0; e < edges_.verdicts.size(); ++e) {
             if (edges_.clusters[e] == kJudged) {

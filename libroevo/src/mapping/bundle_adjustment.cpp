@@ -14,26 +14,26 @@ constexpr double kStill = 0.005;  ///< px of image motion; smaller steps end the
 
 /// Adds the error of T_world_to against T_world_from * T_from_to, as a perturbation in the world's axes.
 void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& window,
-              const Eigen::Vector3d& origin, int row, int col, Eigen::MatrixXd& hessian,
-              Eigen::VectorXd& gradient) {
+              WindowEquations& equations) {
     const auto from = static_cast<std::size_t>(prior.from), to = static_cast<std::size_t>(prior.to);
     const Pose expected = window[from].T_world_camera * prior.T_from_to;
     const Eigen::Matrix3d turned = window[to].T_world_camera.linear() * expected.linear().transpose();
     const Eigen::AngleAxisd angle(turned);
     Vector6d error;
     error << window[to].T_world_camera.translation() - expected.translation(), angle.angle() * angle.axis();
-    const Matrix6d to_centre = prior.toCentre(window, origin);
+    const Matrix6d to_centre = prior.toCentre(window, equations.origin());
     const Matrix6d own = to_centre.transpose() * prior.information * to_centre;
     const Vector6d own_gradient = to_centre.transpose() * prior.information * error;
+    const int row = equations.row(from), col = equations.row(to);
     if (col >= 0) {
-        hessian.block<6, 6>(col, col) += own;
-        gradient.segment<6>(col) += own_gradient;
+        equations.hessian.block<6, 6>(col, col) += own;
+        equations.gradient.segment<6>(col) += own_gradient;
     }
     if (row >= 0) {
-        hessian.block<6, 6>(row, row) += own;
-        gradient.segment<6>(row) -= own_gradient;
+        equations.hessian.block<6, 6>(row, row) += own;
+        equations.gradient.segment<6>(row) -= own_gradient;
     }
-    if (row >= 0 && col >= 0) hessian.block<6, 6>(std::min(row, col), std::max(row, col)) -= own;
+    if (row >= 0 && col >= 0) equations.hessian.block<6, 6>(std::min(row, col), std::max(row, col)) -= own;
 }
 
 }  // namespace
@@ -56,11 +56,10 @@ BundleAdjuster::BundleAdjuster(const MappingOptions& mapping, const SensorOption
                                const PinholeCamera& camera, std::size_t hessian_points)
     : focal_length_(camera.fx), equations_(mapping, sensor, camera, hessian_points) {}
 
-RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, FusedEdges& edges,
-                                        const std::vector<RelativePrior>& priors, int iterations,
-                                        double first_scale) {
-    RefinementResult result;
+int BundleAdjuster::refine(std::vector<WindowKeyframe>& window, FusedEdges& edges,
+                           const std::vector<RelativePrior>& priors, int iterations, double first_scale) {
     WindowEquations& equations = equations_;
+    int moved = 0;
     equations.gather(window, edges);
     if (iterations <= 0) equations.evaluate(window, edges.points, first_scale);
     for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -68,22 +67,15 @@ RefinementResult BundleAdjuster::refine(std::vector<WindowKeyframe>& window, Fus
         equations.evaluate(window, edges.points, first_scale / (1 << std::min(iteration, 10)));
         equations.build(window, edges.points);
         if (equations.numRows() == 0) continue;  // all poses are fixed: only the points are fitted
-        Eigen::MatrixXd& hessian = equations.hessian;
-        Eigen::VectorXd& gradient = equations.gradient;
-        for (const RelativePrior& prior : priors) {
-            addPrior(prior, window, equations.origin(), equations.row(static_cast<std::size_t>(prior.from)),
-                     equations.row(static_cast<std::size_t>(prior.to)), hessian, gradient);
-        }
-        hessian.diagonal().array() += 5e-6;
-        const Eigen::VectorXd step = -hessian.selfadjointView<Eigen::Upper>().ldlt().solve(gradient);
+        for (const RelativePrior& prior : priors) addPrior(prior, window, equations);
+        equations.hessian.diagonal().array() += 5e-6;
+        const Eigen::VectorXd step =
+            -equations.hessian.selfadjointView<Eigen::Upper>().ldlt().solve(equations.gradient);
         if (!step.allFinite()) break;
-        ++result.iterations;
+        ++moved;
         if (move(window, step) < kStill) break;
     }
-    result.scale = equations.scale;
-    result.inliers = equations.inliers;
-    result.inliers.resize(window.size(), 0);
-    return result;
+    return moved;
 }
 
 double BundleAdjuster::move(std::vector<WindowKeyframe>& window, const Eigen::VectorXd& step) const {

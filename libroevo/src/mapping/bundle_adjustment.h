@@ -21,12 +21,6 @@ struct RelativePrior {
     Matrix6d toCentre(const std::vector<WindowKeyframe>& window, const Eigen::Vector3d& origin) const;
 };
 
-struct RefinementResult {
-    int iterations = 0;
-    double scale = 0;          ///< robust spread of the point-to-tangent residuals, px
-    std::vector<int> inliers;  ///< of each window keyframe
-};
-
 /// Bundle adjustment over a window (Eqs. (17)-(19)). Both ways alternate edge fitting and pose optimisation:
 /// - alternating: each pose is registered to the fused edges as they are (the paper's Eq. (19));
 /// - joint: the poses move together, with the fused points eliminated (Schur complement), which converges in
@@ -38,8 +32,9 @@ class BundleAdjuster {
 
     /// Moves the poses of the window (those not fixed) and the points of `edges`, for at most `iterations`.
     /// @param first_scale  least spread (px) that the first iteration allows; halved in each that follows
-    RefinementResult refine(std::vector<WindowKeyframe>& window, FusedEdges& edges,
-                            const std::vector<RelativePrior>& priors, int iterations, double first_scale = 0);
+    /// @return iterations that moved poses
+    int refine(std::vector<WindowKeyframe>& window, FusedEdges& edges,
+               const std::vector<RelativePrior>& priors, int iterations, double first_scale = 0);
 
     /// Those of the last iteration of refine(), with the priors: at the poses before its step, which is small
     /// where that ended the refinement.

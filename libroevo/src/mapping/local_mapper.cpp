@@ -244,12 +244,10 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     }
     fuser_.fuse(window_, graph_.clusters(members), fused_);
     const int rough = std::min(kRoughIterations, options_.mapping.max_iterations / 2);
-    const RefinementResult first =
-        adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kDriftScale);
-    judge_.judge(window_, fused_, first.scale);
-    const RefinementResult refined =
-        adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
-    takePoses(refined.inliers, update);
+    adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kDriftScale);
+    judge_.judge(window_, fused_, adjuster_.equations().scale);
+    adjuster_.refine(window_, fused_, priors_, options_.mapping.max_iterations - rough);
+    takePoses(adjuster_.equations().inliers, update);
     if (!reused.empty() && options_.mapping.joint_refinement && update.refusals.empty())
         update.posterior = posteriorOf(window_, adjuster_.equations(), trackedClusters(), priors_);
     keepVerdicts();

@@ -74,9 +74,9 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
         fuser_.fuse(window_, graph_.clusters(members), fused_);
         takeKeptVerdicts(window_, fused_);
         last = {};
-        const RefinementResult refined = adjuster.refine(
-            window_, fused_, priors_, options_.mapping.max_iterations, round == 0 ? kDriftScale : 0);
-        takePoses(refined.inliers, last);
+        adjuster.refine(window_, fused_, priors_, options_.mapping.max_iterations,
+                        round == 0 ? kDriftScale : 0);
+        takePoses(adjuster.equations().inliers, last);
         double moved = 0;
         for (std::size_t slot = 0; slot < members.size(); ++slot)
             moved += imageMotion(members[slot]->T_world_camera.inverse(), before_round[slot].inverse(),

@@ -85,6 +85,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     couplings_.resize(slots);
     throughs_.resize(slots);
     scales_.resize(slots);
+    inliers.assign(slots, 0);
 }
 
 void WindowEquations::evaluate(const std::vector<WindowKeyframe>& window,

@@ -60,7 +60,7 @@ class WindowEquations {
 
     Eigen::MatrixXd hessian;  ///< upper triangle
     Eigen::VectorXd gradient;
-    std::vector<int> inliers;  ///< of each keyframe
+    std::vector<int> inliers;  ///< of each keyframe, as build() found them
     double scale = 0;          ///< robust spread of the point-to-tangent residuals of all keyframes, px
 
   private:

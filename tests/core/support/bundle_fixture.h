@@ -27,13 +27,20 @@ class BundleAdjustment : public ::testing::Test {
         edges_ = fuse(window_, clustersByCurve(made_));
     }
     BundleAdjuster adjuster() const { return {mapping_, sensor_, mappingCamera()}; }
-    RefinementResult refine(int iterations, const std::vector<RelativePrior>& priors = {}) {
-        return adjuster().refine(window_, edges_, priors, iterations);
+    struct Refined {
+        int iterations = 0;
+        double scale = 0;          ///< px
+        std::vector<int> inliers;  ///< of each window keyframe
+    };
+    Refined refine(int iterations, const std::vector<RelativePrior>& priors = {}) {
+        BundleAdjuster own = adjuster();
+        const int moved = own.refine(window_, edges_, priors, iterations);
+        return {moved, own.equations().scale, own.equations().inliers};
     }
     /// As the mapper goes about it, keyframe after keyframe: associations from drifted poses are displaced
     /// along the edges, and where an edge is bent, only those at better poses tell the truth.
-    RefinementResult fuseAndRefine(int times, int iterations) {
-        RefinementResult result;
+    Refined fuseAndRefine(int times, int iterations) {
+        Refined result;
         for (int k = 0; k < times; ++k) {
             edges_ = fuse(window_, clustersByCurve(made_));
             result = refine(iterations);
