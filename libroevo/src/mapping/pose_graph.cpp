@@ -60,7 +60,7 @@ bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstrain
     for (const PoseConstraint& c : constraints)
         for (const int id : {c.from, c.to})
             if (id > fixed && at(rows, id) < 0) at(rows, id) = count++;
-    std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>> information;
+    std::vector<Matrix6d> information;
     for (const PoseConstraint& c : constraints) information.push_back(informationOf(c));
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
     for (int iteration = 0; iteration < kMostIterations; ++iteration) {

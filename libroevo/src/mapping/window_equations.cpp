@@ -38,7 +38,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
             if (end - first < 2) continue;
             for (std::size_t k = first; k < end; ++k) {
                 const std::int32_t slot = edges.observations[k].slot;
-                const MapKeyframe& keyframe = *window[static_cast<std::size_t>(slot)].keyframe;
+                const MapKeyframe& keyframe = *at(window, slot).keyframe;
                 const auto i = static_cast<std::size_t>(edges.observations[k].point);
                 const auto nx = static_cast<double>(keyframe.image.normal_x[i]);
                 const auto ny = static_cast<double>(keyframe.image.normal_y[i]);
@@ -91,10 +91,11 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
 void WindowEquations::evaluate(const std::vector<WindowKeyframe>& window,
                                const std::vector<Eigen::Vector3d>& points, double least_scale) {
     for (std::size_t p = 0; p < points_.size(); ++p) {
-        const Eigen::Vector3d& point = points[static_cast<std::size_t>(points_[p])];
-        for (auto k = static_cast<std::size_t>(begin_[p]); k < static_cast<std::size_t>(begin_[p + 1]); ++k) {
+        const Eigen::Vector3d& point = at(points, points_[p]);
+        const auto [first, end] = rangeOf(begin_, p);
+        for (std::size_t k = first; k < end; ++k) {
             const LineObservation& seen = observations_[k];
-            const Pose& T = window[static_cast<std::size_t>(seen.slot)].T_world_camera;
+            const Pose& T = at(window, seen.slot).T_world_camera;
             const Eigen::Vector3d q = T.linear().transpose() * (point - T.translation());
             Residual& out = residuals_[k];
             if (!(q.z() > kNearest)) {
@@ -125,7 +126,8 @@ void WindowEquations::spreads(double least_scale) {
 double WindowEquations::spread(std::int32_t slot, double least_scale) {
     scratch_.clear();
     for (std::size_t p = 0; p < points_.size(); p += kScaleStep) {
-        for (auto k = static_cast<std::size_t>(begin_[p]); k < static_cast<std::size_t>(begin_[p + 1]); ++k) {
+        const auto [first, end] = rangeOf(begin_, p);
+        for (std::size_t k = first; k < end; ++k) {
             if (residuals_[k].inverse_z < 0 || (slot != kAnySlot && observations_[k].slot != slot)) continue;
             scratch_.push_back(static_cast<float>(std::abs(residuals_[k].across)));
         }
@@ -144,7 +146,8 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
         int count = 0;
         touched_.clear();
         direction_.setZero();
-        for (auto k = static_cast<std::size_t>(begin_[p]); k < static_cast<std::size_t>(begin_[p + 1]); ++k) {
+        const auto [first, end] = rangeOf(begin_, p);
+        for (std::size_t k = first; k < end; ++k) {
             if (residuals_[k].inverse_z < 0) continue;
             const auto slot = static_cast<std::size_t>(observations_[k].slot);
             if (!addObservation(observations_[k], residuals_[k], window[slot].T_world_camera.linear()))
@@ -152,8 +155,8 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
             ++inliers[slot];
             ++count;
         }
-        if (count >= 2) addPoint(points[static_cast<std::size_t>(points_[p])], p % stride == 0);
-        for (const std::int32_t slot : touched_) point_blocks_[static_cast<std::size_t>(slot)].used = false;
+        if (count >= 2) addPoint(at(points, points_[p]), p % stride == 0);
+        for (const std::int32_t slot : touched_) at(point_blocks_, slot).used = false;
         const bool last_of_edge = p + 1 == points_.size() || edge_of_[p + 1] != edge_of_[p];
         if (anchor_ >= 1 && last_of_edge) addPulls(edge_of_[p]);
     }
@@ -171,10 +174,10 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
 
 bool WindowEquations::addObservation(const LineObservation& seen, const Residual& residual,
                                      const Eigen::Matrix3d& R) {
-    const double spread = scales_[static_cast<std::size_t>(seen.slot)];
+    const double spread = at(scales_, seen.slot);
     const double variance = spread * spread, squared = residual.across * residual.across;
     if (squared > options_.chi2 * variance) return false;
-    InformationBlock& block = point_blocks_[static_cast<std::size_t>(seen.slot)];
+    InformationBlock& block = at(point_blocks_, seen.slot);
     if (!block.used) {
         block.used = true;
         block.information.setZero();
@@ -207,8 +210,8 @@ void WindowEquations::addPoint(Eigen::Vector3d& point, bool to_hessian) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d point_gradient = Eigen::Vector3d::Zero();
     for (const std::int32_t slot : touched_) {
-        information += point_blocks_[static_cast<std::size_t>(slot)].information;
-        point_gradient += point_blocks_[static_cast<std::size_t>(slot)].gradient;
+        information += at(point_blocks_, slot).information;
+        point_gradient += at(point_blocks_, slot).gradient;
     }
     const double trace = information.trace(), length = direction_.squaredNorm();
     information.diagonal().array() += kDamping * trace;
@@ -245,13 +248,13 @@ void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Ma
     hessian_slots_.clear();
     for (const std::int32_t slot : touched_) {
         if (!isInHessian(slot)) continue;
-        const Eigen::Matrix3d& information = point_blocks_[static_cast<std::size_t>(slot)].information;
+        const Eigen::Matrix3d& information = at(point_blocks_, slot).information;
         Coupling& coupling = couplings_[hessian_slots_.size()];
         coupling.topRows<3>() = information;
         coupling.bottomRows<3>().noalias() = P * information;
         throughs_[hessian_slots_.size()].noalias() = coupling * inverse;
         hessian_slots_.push_back(slot);
-        Block& diagonal = block(slot, slot);
+        Matrix6d& diagonal = block(slot, slot);
         diagonal.leftCols<3>() += coupling;
         diagonal.rightCols<3>().noalias() -= coupling * P;
     }

@@ -83,8 +83,6 @@ class WindowEquations {
         Eigen::Vector3d gradient;     ///< b
         bool used = false;
     };
-    using Vector6 = Vector6d;
-    using Block = Matrix6d;
     using Coupling = Eigen::Matrix<double, 6, 3>;  ///< of a pose and a point
 
     void spreads(double least_scale);
@@ -94,9 +92,9 @@ class WindowEquations {
     void addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse);
     void addPulls(std::int32_t edge);
     bool isInHessian(std::int32_t slot) const {
-        return rows_[static_cast<std::size_t>(slot)] >= 0 || (slot == anchor_ && slot > 0);
+        return at(rows_, slot) >= 0 || (slot == anchor_ && slot > 0);
     }
-    Block& block(std::int32_t row_slot, std::int32_t column_slot) {
+    Matrix6d& block(std::int32_t row_slot, std::int32_t column_slot) {
         return blocks_[static_cast<std::size_t>(row_slot) * rows_.size() +
                        static_cast<std::size_t>(column_slot)];
     }
@@ -117,13 +115,12 @@ class WindowEquations {
     int num_rows_ = 0, anchor_ = -1;
     double hessian_factor_ = 1;  ///< all points over those that make the Hessian
     std::vector<EdgePull> pulls_;
-    std::vector<Block, Eigen::aligned_allocator<Block>> blocks_;
-    std::vector<Vector6, Eigen::aligned_allocator<Vector6>> gradients_, edge_gradients_;
+    std::vector<Matrix6d> blocks_;
+    std::vector<Vector6d> gradients_, edge_gradients_;
     // Of the point that is being added
-    std::vector<InformationBlock, Eigen::aligned_allocator<InformationBlock>>
-        point_blocks_;                   ///< of each keyframe
-    std::vector<std::int32_t> touched_;  ///< slots of keyframes that observe it
-    std::vector<Coupling, Eigen::aligned_allocator<Coupling>> couplings_, throughs_;
+    std::vector<InformationBlock> point_blocks_;  ///< of each keyframe
+    std::vector<std::int32_t> touched_;           ///< slots of keyframes that observe it
+    std::vector<Coupling> couplings_, throughs_;
     std::vector<std::int32_t> hessian_slots_;  ///< of those whose poses are looked for, and of the anchor
     Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();  ///< of the edge, not normalised
 };
