@@ -120,7 +120,6 @@ EdgePoints3D liftPixels(const std::vector<cv::Point>& pixels, const Gradient& gr
                         const SensorOptions& sensor) {
     const ForegroundDepth foreground(depth, edge_options, sensor);
     EdgePoints3D out;
-    out.image.clear();
     for (const cv::Point& pixel : pixels) {
         const Eigen::Vector2d raw = camera.distortPixel(Eigen::Vector2d(pixel.x, pixel.y));
         const float z = foreground.at(static_cast<float>(raw.x()), static_cast<float>(raw.y()));

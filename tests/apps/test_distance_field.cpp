@@ -67,7 +67,6 @@ const PinholeCamera kCamera{320, 240, 260, 262, 158.7, 120.4, {}};
 
 Keyframe onePoint(const Eigen::Vector3d& p, float weight) {
     Keyframe keyframe;
-    keyframe.edges.image.clear();
     keyframe.edges.image.addPoint(0, 0, 1, 0, 10);
     keyframe.edges.image.finishEdge();
     keyframe.edges.points.x.assign(kernels::kLanes, static_cast<float>(p.x()));

@@ -31,7 +31,6 @@ PinholeCamera smallCamera() {
 // Vertical lines of 100 points at these columns.
 OrganizedEdges verticalLines(const std::vector<float>& columns) {
     OrganizedEdges edges;
-    edges.clear();
     for (const float x : columns) {
         for (int i = 0; i < 100; ++i) edges.addPoint(x, 70.0F + static_cast<float>(i), 1, 0, 50);
         edges.finishEdge();

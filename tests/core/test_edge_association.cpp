@@ -17,12 +17,6 @@ constexpr int kWidth = 320, kHeight = 240, kSpan = 4;
 constexpr double kRadius = 6;
 const PinholeCamera kCamera{kWidth, kHeight, 260, 260, 160, 120, {}};
 
-OrganizedEdges none() {
-    OrganizedEdges edges;
-    edges.clear();
-    return edges;
-}
-
 /// Straight edge of `count` points 1 px apart in x about (u, v), rising by `degrees`; `side` +1: brighter
 /// below.
 void addLine(OrganizedEdges& edges, double u, double v, int count, double degrees = 0, int side = 1) {
@@ -36,7 +30,7 @@ void addLine(OrganizedEdges& edges, double u, double v, int count, double degree
 }
 
 OrganizedEdges line(double u, double v, int count, double degrees = 0, int side = 1) {
-    OrganizedEdges edges = none();
+    OrganizedEdges edges;
     addLine(edges, u, v, count, degrees, side);
     return edges;
 }
@@ -124,7 +118,7 @@ TEST(EdgeAssociation, NormalsMustAgreeWithinTheAngle) {
 
 TEST(EdgeAssociation, OneEdgeMayFallIntoFragments) {
     const OrganizedEdges reference = line(100, 60, 90);
-    OrganizedEdges fragments = none();
+    OrganizedEdges fragments;
     for (const double u : {70.0, 100.0, 130.0}) addLine(fragments, u, 61, 30);
     const EdgeMatches matches = match(reference, fragments);
     EXPECT_EQ(countByEdge(matches, fragments), (std::map<int, int>{{0, 30}, {1, 30}, {2, 30}}));
@@ -136,7 +130,7 @@ TEST(EdgeAssociation, ACrossingEdgeIsVotedDown) {
     // The reference's edge is found again but for a gap of 17 points, where another edge crosses at 4 degrees
     const OrganizedEdges reference = line(100, 100, 101);
     const auto withCrossing = [](int length) {
-        OrganizedEdges current = none();
+        OrganizedEdges current;
         addLine(current, 70.5, 100.2, 42);   // x = 50 ... 91
         addLine(current, 129.5, 100.2, 42);  // x = 109 ... 150
         addLine(current, 100, 100, length, 4);
@@ -155,7 +149,7 @@ TEST(EdgeAssociation, ACrossingEdgeIsVotedDown) {
 }
 
 TEST(EdgeAssociation, AStrideSpreadsOverTheEdgesAndKeepsTheRatio) {
-    OrganizedEdges reference = none(), current = none();
+    OrganizedEdges reference, current;
     for (int e = 0; e < 10; ++e) {
         addLine(reference, 150, 20 + 20 * e, 53);
         if (e % 5 < 3) addLine(current, 150, 21 + 20 * e, 53);
@@ -187,10 +181,10 @@ TEST(EdgeAssociation, OnlyPointsInsideTheImageCount) {
 
 TEST(EdgeAssociation, NothingIsAssociatedWithNothing) {
     const OrganizedEdges edges = line(100, 60, 80);
-    EXPECT_EQ(match(edges, none()).size(), 0U);
-    EXPECT_EQ(match(edges, none()).matchedRatio(), 0);
-    EXPECT_EQ(match(none(), edges).size(), 0U);
-    EXPECT_EQ(match(none(), edges).matchedRatio(), 0);
+    EXPECT_EQ(match(edges, OrganizedEdges()).size(), 0U);
+    EXPECT_EQ(match(edges, OrganizedEdges()).matchedRatio(), 0);
+    EXPECT_EQ(match(OrganizedEdges(), edges).size(), 0U);
+    EXPECT_EQ(match(OrganizedEdges(), edges).matchedRatio(), 0);
     EXPECT_EQ(match(OrganizedEdges(), OrganizedEdges()).size(), 0U);
 }
 

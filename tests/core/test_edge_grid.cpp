@@ -16,7 +16,6 @@ using testing::uniform;
 
 OrganizedEdges scattered(std::mt19937& random, int width, int height, int count) {
     OrganizedEdges edges;
-    edges.clear();
     for (int i = 0; i < count; ++i) {
         const double angle = uniform(random, 0, 2 * M_PI);
         edges.addPoint(static_cast<float>(uniform(random, 0, width - 1)),
@@ -146,7 +145,7 @@ TEST(EdgeGrid, RebuildingForgetsTheOldPoints) {
     EXPECT_EQ(nearestOf(grid, 10, 40, 5, -1), -1);
     grid.build(fresh, 100, 100);  // another size
     EXPECT_EQ(nearestOf(grid, 31, 21, 3, -1), 0);
-    fresh.clear();
+    fresh = OrganizedEdges();
     grid.build(fresh, 100, 100);
     EXPECT_EQ(nearestOf(grid, 31, 21, 3, -1), -1);
 }

@@ -14,7 +14,6 @@ const PinholeCamera kCamera{160, 120, 130, 132, 79.2, 60.4, {}};
 
 OrganizedEdges uprightLine(float u, int first, int last) {
     OrganizedEdges edges;
-    edges.clear();
     for (int v = first; v <= last; ++v) edges.addPoint(u, static_cast<float>(v), 1, 0, 10);
     edges.finishEdge();
     computeNormals(edges, 3);

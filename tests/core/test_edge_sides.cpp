@@ -22,7 +22,7 @@ class EdgeSidesTest : public testing::Test {
     void drawEdge(double degrees) {
         normal_ = {std::cos(degrees * kDegree), std::sin(degrees * kDegree)};
         const Eigen::Vector2d along(-normal_.y(), normal_.x());
-        edges_.clear();
+        edges_ = OrganizedEdges();
         for (int i = -40; i <= 40; ++i) {
             const Eigen::Vector2d p = Eigen::Vector2d(99.7, 79.6) + i * along;
             edges_.addPoint(static_cast<float>(p.x()), static_cast<float>(p.y()),

@@ -10,7 +10,6 @@ namespace {
 
 OrganizedEdges arc(float radius, int count, float step, float gradient_sign) {
     OrganizedEdges edges;
-    edges.clear();
     for (int i = 0; i < count; ++i) {
         const float angle = step * static_cast<float>(i);
         const float c = std::cos(angle), s = std::sin(angle);
@@ -47,7 +46,6 @@ TEST(Normals, AtTheEndsTheSpanIsCut) {
 
 TEST(Normals, DoNotReachIntoTheNextEdge) {
     OrganizedEdges edges;
-    edges.clear();
     for (int i = 0; i < 6; ++i) edges.addPoint(static_cast<float>(i), 10, 0, 1, 5);
     edges.finishEdge();
     for (int i = 0; i < 6; ++i) edges.addPoint(50, static_cast<float>(i), -1, 0, 5);
@@ -59,7 +57,6 @@ TEST(Normals, DoNotReachIntoTheNextEdge) {
 
 TEST(Normals, AreUnitAndNeverOppositeToTheGradient) {
     OrganizedEdges edges;
-    edges.clear();
     float x = 20, y = 20;
     for (int i = 0; i < 200; ++i) {  // a crooked walk with gradients all around
         x += static_cast<float>((i * 7) % 3 - 1);
@@ -77,7 +74,6 @@ TEST(Normals, AreUnitAndNeverOppositeToTheGradient) {
 
 TEST(Normals, OfAnEdgeThatStandsStillAreItsGradient) {
     OrganizedEdges edges;
-    edges.clear();
     edges.addPoint(5, 5, 0.6F, 0.8F, 3);
     edges.finishEdge();
     computeNormals(edges, 3);

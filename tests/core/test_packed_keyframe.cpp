@@ -108,7 +108,6 @@ TEST(PackedKeyframe, WhatTheKernelsReadBeyondTheEndIsPaddedAsInANewKeyframe) {
 
 TEST(PackedKeyframe, WithoutPointsIsNotAFault) {
     MapKeyframe empty, back;
-    empty.image.clear();
     PackedKeyframe(empty).unpackInto(back, mappingCamera(), SensorOptions());
     EXPECT_EQ(back.size(), 0U);
     EXPECT_EQ(back.image.numEdges(), 0);

@@ -26,7 +26,6 @@ struct World {
         pyramid.build(image, 3);
         Gradient gradient;
         computeGradient(image, 0, gradient);
-        edges.image.clear();
         for (int v = 40; v < 200; v += 7) {
             for (int u = 50; u < 270; u += 5) {
                 const float magnitude = gradient.magnitude.at<float>(v, u);

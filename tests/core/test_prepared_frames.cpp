@@ -112,7 +112,6 @@ TEST(PreparedFrames, OneThatWasUsedOrIsLateIsNotTracked) {
 
 TEST(PreparedFrames, TheLongestEdgesAreKeptAsTheyAreAndInTheirOrder) {
     OrganizedEdges edges;
-    edges.clear();
     float next = 0;
     for (const int length : {3, 7, 2, 5, 5}) {
         for (int i = 0; i < length; ++i, ++next) {

@@ -254,7 +254,6 @@ TEST_P(ResidualKernels, ReadoutIsJoinedToThePose) {
 TEST_P(ResidualKernels, FollowedMatchesMoveAlongTheirEdgesToTheNearestPoint) {
     // A bent edge, a short one, and another edge nearer by than the one that was matched
     OrganizedEdges edges;
-    edges.clear();
     for (int i = 0; i < 60; ++i)
         edges.addPoint(static_cast<float>(40 + i), static_cast<float>(60 + 0.01 * i * i), 0, 1, 20);
     edges.finishEdge();

@@ -4,14 +4,7 @@
 
 namespace roevo {
 
-void OrganizedEdges::clear() {
-    for (auto* array : arrays()) array->clear();
-    edge_of.clear();
-    begin.assign(1, 0);
-}
-
 void OrganizedEdges::addPoint(float px, float py, float gx, float gy, float magnitude) {
-    if (begin.empty()) begin.push_back(0);
     x.push_back(px);
     y.push_back(py);
     gradient_x.push_back(gx);

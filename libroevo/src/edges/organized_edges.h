@@ -18,7 +18,7 @@ struct OrganizedEdges {
     std::vector<float> normal_x, normal_y;      ///< unit edge normal on the gradient's side, Eqs. (4)-(6)
     std::vector<float> strength;                ///< gradient magnitude, grey levels per pixel
     std::vector<std::int32_t> edge_of;          ///< index of the edge that the point belongs to
-    std::vector<std::int32_t> begin;            ///< first point of each edge, plus one past the end
+    std::vector<std::int32_t> begin{0};         ///< first point of each edge, plus one past the end
 
     std::size_t size() const { return x.size(); }
     int numEdges() const { return begin.empty() ? 0 : static_cast<int>(begin.size()) - 1; }
@@ -26,7 +26,6 @@ struct OrganizedEdges {
     IndexRange pointsOf(Index edge) const {
         return rangeOf(begin, edge);
     }
-    void clear();
     /// Room for this many points, which are to be set.
     void resize(std::size_t count);
     /// Adds a point to the edge being built; finishEdge() closes it.

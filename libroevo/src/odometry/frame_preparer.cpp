@@ -27,7 +27,6 @@ void keepLongest(OrganizedEdges& edges, std::size_t most_points) {
         points += edges.pointsOf(order[kept++]).size();
     std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept));
     OrganizedEdges out;
-    out.clear();
     std::vector<std::size_t> all;
     for (std::size_t k = 0; k < kept; ++k) {
         const IndexRange own = edges.pointsOf(order[k]);

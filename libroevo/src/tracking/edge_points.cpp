@@ -74,7 +74,6 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
     const auto most_gap = static_cast<std::size_t>(std::lround(3 * scale));  // points without depth
     const auto least_piece = static_cast<std::size_t>(std::lround(5 * scale));
     EdgePoints3D out;
-    out.image.clear();
     EdgeSides sides;
     out.reserve(edges.size());
     DepthsOfEdge depths;

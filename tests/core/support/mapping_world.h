@@ -96,7 +96,6 @@ inline TestKeyframe makeKeyframe(int id, const Pose& pose, const std::vector<Cur
     MapKeyframe& out = made.keyframe;
     out.id = id;
     out.T_world_camera = pose;
-    out.image.clear();
     out.median_depth = 2;
     const Pose T_camera_world = pose.inverse();
     for (const Sighting& sighting : sightings) {
