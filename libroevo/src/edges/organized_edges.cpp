@@ -3,6 +3,15 @@
 #include "pixels/pixel_kernels.h"
 
 namespace roevo {
+namespace {
+
+/// What there is of every point, but for its edge.
+constexpr std::vector<float> OrganizedEdges::*kArrays[] = {
+    &OrganizedEdges::x,          &OrganizedEdges::y,        &OrganizedEdges::gradient_x,
+    &OrganizedEdges::gradient_y, &OrganizedEdges::normal_x, &OrganizedEdges::normal_y,
+    &OrganizedEdges::strength};
+
+}  // namespace
 
 void OrganizedEdges::addPoint(float px, float py, float gx, float gy, float magnitude) {
     x.push_back(px);
@@ -18,29 +27,24 @@ void OrganizedEdges::finishEdge() {
 }
 
 void OrganizedEdges::resize(std::size_t count) {
-    for (auto* array : arrays()) array->resize(count);
+    for (const auto array : kArrays) (this->*array).resize(count);
     edge_of.resize(count);
 }
 
 void OrganizedEdges::reserve(std::size_t count) {
-    for (auto* array : arrays()) array->reserve(count);
+    for (const auto array : kArrays) (this->*array).reserve(count);
     edge_of.reserve(count);
 }
 
 void OrganizedEdges::addEdge(const OrganizedEdges& from, std::size_t first,
                              const std::vector<std::size_t>& further) {
     const std::size_t before = size(), count = before + further.size();
-    const auto copy = [&](const std::vector<float>& source, std::vector<float>& target) {
+    for (const auto array : kArrays) {
+        const std::vector<float>& source = from.*array;
+        std::vector<float>& target = this->*array;
         target.resize(count);
         for (std::size_t k = 0; k < further.size(); ++k) target[before + k] = source[first + further[k]];
-    };
-    copy(from.x, x);
-    copy(from.y, y);
-    copy(from.gradient_x, gradient_x);
-    copy(from.gradient_y, gradient_y);
-    copy(from.normal_x, normal_x);
-    copy(from.normal_y, normal_y);
-    copy(from.strength, strength);
+    }
     edge_of.resize(count, numEdges());
     finishEdge();
 }

@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -34,11 +33,6 @@ struct OrganizedEdges {
     void reserve(std::size_t count);
     /// Adds an edge of points of another image: number `first` and so many further on.
     void addEdge(const OrganizedEdges& from, std::size_t first, const std::vector<std::size_t>& further);
-
-  private:
-    std::array<std::vector<float>*, 7> arrays() {
-        return {&x, &y, &gradient_x, &gradient_y, &normal_x, &normal_y, &strength};
-    }
 };
 
 /// The n with which every n-th of `count` points makes no more than `most`.
