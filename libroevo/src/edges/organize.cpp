@@ -204,11 +204,7 @@ void EdgeOrganizer::organize(const Gradient& gradient, const EdgeMask& edges, do
         searchFrom(gradient, mask, again_[i], min_cosine, least, out.begin);
 
     out.resize(points_.size());
-    for (int e = 0; e < out.numEdges(); ++e) {
-        const IndexRange own = out.pointsOf(e);
-        std::fill(out.edge_of.begin() + static_cast<std::ptrdiff_t>(own.first),
-                  out.edge_of.begin() + static_cast<std::ptrdiff_t>(own.end), e);
-    }
+    out.numberPoints();
     pixels::best().refine(
         gradient.view(), points_.data(), points_.size(),
         {out.x.data(), out.y.data(), out.gradient_x.data(), out.gradient_y.data(), out.strength.data()});

@@ -26,9 +26,16 @@ void OrganizedEdges::finishEdge() {
     begin.push_back(static_cast<std::int32_t>(x.size()));
 }
 
+void OrganizedEdges::numberPoints() {
+    edge_of.resize(size());
+    for (int e = 0; e < numEdges(); ++e) {
+        const auto [first, end] = pointsOf(e);
+        std::fill(edge_of.data() + first, edge_of.data() + end, e);
+    }
+}
+
 void OrganizedEdges::resize(std::size_t count) {
     for (const auto array : kArrays) (this->*array).resize(count);
-    edge_of.resize(count);
 }
 
 void OrganizedEdges::reserve(std::size_t count) {

@@ -25,11 +25,13 @@ struct OrganizedEdges {
     IndexRange pointsOf(Index edge) const {
         return rangeOf(begin, edge);
     }
-    /// Room for this many points, which are to be set.
+    /// Room for this many points, which are to be set; numberPoints() sets their edges.
     void resize(std::size_t count);
     /// Adds a point to the edge being built; finishEdge() closes it.
     void addPoint(float px, float py, float gx, float gy, float magnitude);
     void finishEdge();
+    /// Fills edge_of, as begin has it.
+    void numberPoints();
     void reserve(std::size_t count);
     /// Adds an edge of points of another image: number `first` and so many further on.
     void addEdge(const OrganizedEdges& from, std::size_t first, const std::vector<std::size_t>& further);

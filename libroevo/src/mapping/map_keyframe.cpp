@@ -54,7 +54,6 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
     for (auto* array : {&out.image.x, &out.image.y, &out.image.normal_x, &out.image.normal_y, &out.weight})
         array->reserve(most);
     out.points.reserve(most);
-    out.image.edge_of.reserve(most);
     out.colours.reserve(most);
     for (int e = 0; e < edges.image.numEdges(); ++e) {
         const auto [first, end] = edges.image.pointsOf(e);
@@ -63,7 +62,6 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
             const Eigen::Vector2d pixel = camera.project(point);
             out.image.x.push_back(static_cast<float>(pixel.x()));
             out.image.y.push_back(static_cast<float>(pixel.y()));
-            out.image.edge_of.push_back(e);
             out.image.normal_x.push_back(edges.image.normal_x[i]);
             out.image.normal_y.push_back(edges.image.normal_y[i]);
             out.points.add(point);
@@ -72,6 +70,7 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
         }
         out.image.finishEdge();
     }
+    out.image.numberPoints();
     computeSlopes(out);
     out.row_motion = keyframe.row_motion;
     out.found.assign(static_cast<std::size_t>(out.image.numEdges()), -1);

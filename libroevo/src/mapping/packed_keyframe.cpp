@@ -46,7 +46,6 @@ void PackedKeyframe::unpackInto(MapKeyframe& keyframe, const PinholeCamera& came
         array->resize(size);
     keyframe.points = Points3();
     keyframe.points.reserve(size);
-    image.edge_of.resize(size);
     for (std::size_t i = 0; i < size; ++i) {
         image.x[i] = u_.at(i);
         image.y[i] = v_.at(i);
@@ -60,10 +59,7 @@ void PackedKeyframe::unpackInto(MapKeyframe& keyframe, const PinholeCamera& came
     }
     keyframe.points.pad();
     image.begin = begin_;
-    for (int e = 0; e < image.numEdges(); ++e) {
-        const auto [first, end] = image.pointsOf(e);
-        std::fill(image.edge_of.data() + first, image.edge_of.data() + end, e);
-    }
+    image.numberPoints();
     keyframe.colours = colours_;
     computeSlopes(keyframe);
 }
