@@ -50,9 +50,7 @@ class FeatureProcessing {
         const cv::Mat& image = undistorter_.apply(grey, undistorted_);
         times[kDetect] = timed([&] {
             computeGradient(image, options_.blur_sigma, gradient_);
-            const double high = std::max(options_.min_high_threshold,
-                                         options_.canny_factor * otsuThreshold(gradient_.magnitude));
-            canny(gradient_, options_.canny_low_ratio * high, high, mask_);
+            canny(gradient_, cannyThresholds(gradient_, options_), mask_);
         });
         times[kField] = timed([&] { field_.build(mask_.mask); });
         times[kField5x5] = timed([&] {

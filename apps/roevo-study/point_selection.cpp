@@ -104,10 +104,8 @@ std::vector<cv::Point> selectDsoPixels(const Gradient& gradient, int wanted) {
 }
 
 std::vector<cv::Point> selectCannyPixels(const Gradient& gradient, const EdgeOptions& options) {
-    const double high =
-        std::max(options.min_high_threshold, options.canny_factor * otsuThreshold(gradient.magnitude));
     EdgeMask mask;
-    canny(gradient, options.canny_low_ratio * high, high, mask);
+    canny(gradient, cannyThresholds(gradient, options), mask);
     std::vector<std::int32_t> raster = mask.pixels;
     std::sort(raster.begin(), raster.end());
     std::vector<cv::Point> pixels;

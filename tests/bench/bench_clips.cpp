@@ -1,7 +1,6 @@
 // The extraction of edges beside cv::Canny, on the images of real clips. Skips, visibly, without the data.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/utils/filesystem.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -17,7 +16,7 @@ namespace {
 
 struct Image {
     cv::Mat grey;
-    double low = 0, high = 0;  ///< our thresholds
+    CannyThresholds thresholds;  ///< ours
 };
 
 std::vector<Image> imagesOf(const std::string& clip) {
@@ -33,9 +32,7 @@ std::vector<Image> imagesOf(const std::string& clip) {
         Image image;
         image.grey = cv::imread(file, cv::IMREAD_GRAYSCALE);
         computeGradient(image.grey, options.blur_sigma, gradient);
-        image.high =
-            std::max(options.min_high_threshold, options.canny_factor * otsuThreshold(gradient.magnitude));
-        image.low = options.canny_low_ratio * image.high;
+        image.thresholds = cannyThresholds(gradient, options);
         images.push_back(image);
     }
     return images;
@@ -67,7 +64,7 @@ void clipEdges(benchmark::State& state, const std::string& clip) {
 void clipOpenCvCanny(benchmark::State& state, const std::string& clip) {
     cv::Mat out;
     timeEach(state, clip, [&](const Image& image) {
-        cv::Canny(image.grey, out, image.low, image.high, 3, true);
+        cv::Canny(image.grey, out, image.thresholds.low, image.thresholds.high, 3, true);
         benchmark::DoNotOptimize(out.data);
     });
 }

@@ -30,7 +30,7 @@ BENCHMARK(otsu)->Unit(benchmark::kMicrosecond);
 void cannyMask(benchmark::State& state) {
     EdgeMask out;
     for (auto _ : state) {
-        canny(room().gradient, room().low, room().high, out);
+        canny(room().gradient, room().thresholds, out);
         benchmark::DoNotOptimize(out.pixels.data());
         benchmark::ClobberMemory();
     }
@@ -72,7 +72,7 @@ void openCvCanny(benchmark::State& state) {
     const cv::Mat& grey = room().frames.front().grey;
     cv::Mat out;
     for (auto _ : state) {
-        cv::Canny(grey, out, room().low, room().high, 3, true);
+        cv::Canny(grey, out, room().thresholds.low, room().thresholds.high, 3, true);
         benchmark::DoNotOptimize(out.data);
         benchmark::ClobberMemory();
     }

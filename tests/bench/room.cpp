@@ -1,6 +1,5 @@
 #include "bench/room.h"
 
-#include <algorithm>
 #include <opencv2/core/utility.hpp>
 
 #include "edges/edge_extractor.h"
@@ -27,10 +26,8 @@ Room makeRoom() {
     const OdometryOptions options;
     const RgbdFrame& first = room.frames.front();
     computeGradient(first.grey, options.edges.blur_sigma, room.gradient);
-    room.high = std::max(options.edges.min_high_threshold,
-                         options.edges.canny_factor * otsuThreshold(room.gradient.magnitude));
-    room.low = options.edges.canny_low_ratio * room.high;
-    canny(room.gradient, room.low, room.high, room.raw_mask);
+    room.thresholds = cannyThresholds(room.gradient, options.edges);
+    canny(room.gradient, room.thresholds, room.raw_mask);
     EdgeMask mask;
     EdgeExtractor(options.edges).extract(first.grey, room.edges, mask);
     room.pyramid.build(first.grey, options.coarse.levels);

@@ -20,8 +20,8 @@ struct Room {
 
     // Of the first frame, with the default options:
     Gradient gradient;
-    double low = 0, high = 0;  ///< Canny's thresholds
-    EdgeMask raw_mask;         ///< before the adjustment of adjacency
+    CannyThresholds thresholds;
+    EdgeMask raw_mask;  ///< before the adjustment of adjacency
     OrganizedEdges edges;
     ImagePyramid pyramid;
     EdgePoints3D points;

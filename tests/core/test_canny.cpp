@@ -31,7 +31,7 @@ cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y) {
 Detected detect(const cv::Mat& image, double low, double high, double blur = 0) {
     Detected result;
     computeGradient(image, blur, result.gradient);
-    canny(result.gradient, low, high, result.edges);
+    canny(result.gradient, {low, high}, result.edges);
     for (const auto p : result.edges.pixels) {
         const int x = p % image.cols, y = p / image.cols;
         result.points.push_back(cv::Point2f(static_cast<float>(x), static_cast<float>(y)) +

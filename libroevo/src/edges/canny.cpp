@@ -103,7 +103,13 @@ void listStrong(const BitRows& bits, EdgeMask& out) {
 
 }  // namespace
 
-void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
+CannyThresholds cannyThresholds(const Gradient& gradient, const EdgeOptions& options) {
+    const double high =
+        std::max(options.min_high_threshold, options.canny_factor * otsuThreshold(gradient.magnitude));
+    return {options.canny_low_ratio * high, high};
+}
+
+void canny(const Gradient& gradient, const CannyThresholds& thresholds, EdgeMask& out) {
     const cv::Size size = gradient.magnitude.size();
     if (out.mask.size() == size) {  // what it shows are its pixels
         auto* mask = out.mask.ptr<std::uint8_t>();
@@ -119,7 +125,7 @@ void canny(const Gradient& gradient, double low, double high, EdgeMask& out) {
         out.strong.assign(bits.size(), 0);
         out.weak.assign(bits.size(), 0);
     }
-    markRidges(gradient, static_cast<float>(low), static_cast<float>(high), bits, out);
+    markRidges(gradient, static_cast<float>(thresholds.low), static_cast<float>(thresholds.high), bits, out);
     followWeak(bits, out);
     listStrong(bits, out);
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "edges/gradient.h"
+#include "roevo/options.h"
 
 namespace roevo {
 
@@ -19,9 +20,15 @@ struct EdgeMask {
         4;  ///< px without edges, so that patches and neighbours never leave the image
 };
 
+/// Of the gradient magnitude, Sobel units; low <= high.
+struct CannyThresholds {
+    double low = 0, high = 0;
+};
+/// As the options have them for an image: relative to Otsu's, with a floor.
+CannyThresholds cannyThresholds(const Gradient& gradient, const EdgeOptions& options);
+
 /// Canny's non-maximum suppression and hysteresis (8 neighbours) on a gradient. Linear in the number of
 /// pixels.
-/// @param low, high  thresholds on the gradient magnitude, Sobel units, low <= high
-void canny(const Gradient& gradient, double low, double high, EdgeMask& out);
+void canny(const Gradient& gradient, const CannyThresholds& thresholds, EdgeMask& out);
 
 }  // namespace roevo
