@@ -63,7 +63,7 @@ class EdgeSidesTest : public testing::Test {
         return z;
     }
     void correct(std::vector<float>& z, const PinholeCamera& lens = kCamera) {
-        sides_.correct(edges_, 0, pixels(lens), depth_, static_cast<float>(EdgeOptions().depth_jump), 1, z);
+        correctBySides(edges_, 0, pixels(lens), depth_, static_cast<float>(EdgeOptions().depth_jump), 1, z);
     }
     std::vector<float> corrected() {
         std::vector<float> z = patches();
@@ -91,7 +91,6 @@ class EdgeSidesTest : public testing::Test {
     Eigen::Vector2d normal_{1, 0};
     OrganizedEdges edges_;
     cv::Mat depth_;
-    EdgeSides sides_;
     std::mt19937 random_{53};
 };
 

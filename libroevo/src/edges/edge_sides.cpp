@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pixels/nearest.h"
+#include "pixels/pixel_kernels.h"
 
 namespace roevo {
 namespace {
@@ -23,6 +24,20 @@ constexpr double kLeastVariance = 1e-10;  ///< relative: 1e-5 of the depth
 /// Squared standard errors at which a correction counts half. 1 to 4 are about as good.
 constexpr double kDoubt = 2;
 
+/// What the normals of an edge's points pass on one side.
+struct Side {
+    pixels::SideSums close;  ///< near the edge
+    pixels::SideSums wide;   ///< further out too, where the other side is background
+};
+struct Strip {
+    Side plus, minus;  ///< along the normal, and against it
+};
+/// Where a side's line meets the edge, and the variance of that.
+struct Meeting {
+    bool known = false;
+    double value = 0, variance = 0;
+};
+
 /// How much of an estimate to believe.
 double belief(double value, double variance) {
     return value * value / (value * value + kDoubt * variance);
@@ -34,19 +49,17 @@ bool isBackground(const pixels::SideSums& from, const pixels::SideSums& to, doub
     return seen >= least && behind > kMostlyBehind * seen;
 }
 
-}  // namespace
-
-void EdgeSides::sample(const pixels::DepthView& depth, const pixels::EdgePoint& at, float jump, double scale,
-                       Strip& sums) {
+void sample(const pixels::DepthView& depth, const pixels::EdgePoint& at, float jump, double scale,
+            Strip& sums) {
     const bool by_column = std::abs(at.normal_x) >= std::abs(at.normal_y);
     const double run = std::abs(by_column ? at.normal_x : at.normal_y);
     const int centre = nearestInteger(by_column ? at.x : at.y);
-    const auto look = [&](bool along, double reach, double widening, Sums& side) {
+    const auto look = [&](bool along, double reach, double widening, pixels::SideSums& side) {
         const int steps = nearestInteger(scale * reach * run);
         pixels::best().side(depth, at, {by_column, centre, steps, along, scale * kClear, jump, widening},
                             side);
     };
-    const Sums minus_before = sums.minus.close, plus_before = sums.plus.close;
+    const pixels::SideSums minus_before = sums.minus.close, plus_before = sums.plus.close;
     look(true, kReach, 0, sums.plus.close);
     look(false, kReach, 0, sums.minus.close);
     const bool plus = isBackground(minus_before, sums.minus.close, 1),
@@ -55,7 +68,7 @@ void EdgeSides::sample(const pixels::DepthView& depth, const pixels::EdgePoint& 
     if (plus != minus) look(plus, kFurther, scale * kReach, plus ? sums.plus.wide : sums.minus.wide);
 }
 
-EdgeSides::Meeting EdgeSides::fit(const Sums& from, const Sums& to) {
+Meeting fit(const pixels::SideSums& from, const pixels::SideSums& to) {
     const double count = to.count - from.count, s = to.s - from.s, q = to.q - from.q;
     if (count < kMinSamples) return {};
     const double mean_s = s / count, mean_q = q / count;
@@ -67,7 +80,7 @@ EdgeSides::Meeting EdgeSides::fit(const Sums& from, const Sums& to) {
     return {true, mean_q - slope * mean_s, variance * (1 / count + mean_s * mean_s / ss)};
 }
 
-double EdgeSides::correction(const Meeting& plus, const Meeting& minus) {
+double correction(const Meeting& plus, const Meeting& minus) {
     // Without depth on the other side, nothing tells whether this one ends here
     if (!plus.known || !minus.known) return 0;
     const double variance = plus.variance + minus.variance;
@@ -78,7 +91,7 @@ double EdgeSides::correction(const Meeting& plus, const Meeting& minus) {
     return step_belief * nearer + (1 - step_belief) * bend_belief * bend;
 }
 
-double EdgeSides::correction(const Side& from, const Side& to) {
+double correction(const Side& from, const Side& to) {
     const Meeting close = fit(from.close, to.close);
     if (!close.known) return 0;
     const Meeting wide = fit(from.wide, to.wide);
@@ -88,28 +101,31 @@ double EdgeSides::correction(const Side& from, const Side& to) {
     return best.value * belief(best.value, best.variance);
 }
 
-double EdgeSides::correction(const Strip& from, const Strip& to) {
+double correction(const Strip& from, const Strip& to) {
     const bool plus = isBackground(from.minus.close, to.minus.close, kMinSeen),
                minus = isBackground(from.plus.close, to.plus.close, kMinSeen);
     if (plus != minus) return plus ? correction(from.plus, to.plus) : correction(from.minus, to.minus);
     return correction(fit(from.plus.close, to.plus.close), fit(from.minus.close, to.minus.close));
 }
 
-void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first,
-                        const std::vector<Eigen::Vector2d>& positions, const cv::Mat& depth, float jump,
-                        double scale, std::vector<float>& z) {
+}  // namespace
+
+void correctBySides(const OrganizedEdges& edges, std::size_t first,
+                    const std::vector<Eigen::Vector2d>& positions, const cv::Mat& depth, float jump,
+                    double scale, std::vector<float>& z) {
     const std::size_t count = positions.size();
     const pixels::DepthView view{depth.ptr<float>(), static_cast<std::ptrdiff_t>(depth.step1()), depth.cols,
                                  depth.rows};
-    if (strips_.size() <= count) strips_.resize(count + 1);
-    strips_[0] = Strip();
+    std::vector<Strip> strips;  // of all points before a point
+    strips.reserve(count + 1);
+    strips.emplace_back();
     for (std::size_t k = 0; k < count; ++k) {
-        strips_[k + 1] = strips_[k];
+        strips.push_back(strips.back());
         if (!(z[k] > 0)) continue;
         const pixels::EdgePoint point{positions[k].x(), positions[k].y(),
                                       static_cast<double>(edges.normal_x[first + k]),
                                       static_cast<double>(edges.normal_y[first + k]), z[k]};
-        sample(view, point, jump, scale, strips_[k + 1]);
+        sample(view, point, jump, scale, strips.back());
     }
     const auto most = static_cast<double>(jump);
     const auto window = static_cast<std::size_t>(std::lround(scale * kWindow));
@@ -119,7 +135,7 @@ void EdgeSides::correct(const OrganizedEdges& edges, std::size_t first,
         // As many before as after, so that a depth that changes along the edge does not lean to one side
         const std::size_t reach = std::min({window, std::max(k, least), std::max(count - 1 - k, least)});
         const std::size_t from = k > reach ? k - reach : 0, to = std::min(count, k + reach + 1);
-        const double value = std::clamp(correction(strips_[from], strips_[to]), -most, most);
+        const double value = std::clamp(correction(strips[from], strips[to]), -most, most);
         z[k] = static_cast<float>(static_cast<double>(z[k]) / (1 + value));
     }
 }

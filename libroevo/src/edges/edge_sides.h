@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "edges/organized_edges.h"
-#include "pixels/pixel_kernels.h"
 
 namespace roevo {
 
@@ -18,42 +17,15 @@ namespace roevo {
 /// mostly background, only the other one counts: sensors smear what is near over the border, with depths from
 /// further inside, and a surface that recedes towards its border came out too near. One side alone is also
 /// followed further, where the longer line agrees with the shorter one.
-class EdgeSides {
-  public:
-    /// @param edges   with normals
-    /// @param first   the edge's first point
-    /// @param positions  of the edge's points in `depth`, px; a lens that distorts hardly turns normals
-    /// @param depth   CV_32FC1, m, 0 where unknown
-    /// @param jump    relative step of depth beyond which is what the edge does not belong to
-    /// @param scale   PinholeCamera::pixelScale()
-    /// @param z       depths of the points, m, 0 where unknown (those stay); corrected in place
-    void correct(const OrganizedEdges& edges, std::size_t first,
-                 const std::vector<Eigen::Vector2d>& positions, const cv::Mat& depth, float jump,
-                 double scale, std::vector<float>& z);
-
-  private:
-    using Sums = pixels::SideSums;
-    /// What the normals of an edge's points pass on one side.
-    struct Side {
-        Sums close;  ///< near the edge
-        Sums wide;   ///< further out too, where the other side is background
-    };
-    struct Strip {
-        Side plus, minus;  ///< along the normal, and against it
-    };
-    /// Where a side's line meets the edge, and the variance of that.
-    struct Meeting {
-        bool known = false;
-        double value = 0, variance = 0;
-    };
-    static void sample(const pixels::DepthView& depth, const pixels::EdgePoint& at, float jump, double scale,
-                       Strip& sums);
-    static Meeting fit(const Sums& from, const Sums& to);
-    static double correction(const Meeting& plus, const Meeting& minus);
-    static double correction(const Side& from, const Side& to);
-    static double correction(const Strip& from, const Strip& to);
-
-    std::vector<Strip> strips_;  ///< of all points before a point
-};
+/// @param edges   with normals
+/// @param first   the edge's first point
+/// @param positions  of the edge's points in `depth`, px; a lens that distorts hardly turns normals
+/// @param depth   CV_32FC1, m, 0 where unknown
+/// @param jump    relative step of depth beyond which is what the edge does not belong to
+/// @param scale   PinholeCamera::pixelScale()
+/// @param z       depths of the points, m, 0 where unknown (those stay); corrected in place
+void correctBySides(const OrganizedEdges& edges, std::size_t first,
+                    const std::vector<Eigen::Vector2d>& positions, const cv::Mat& depth, float jump,
+                    double scale, std::vector<float>& z);
 
 }  // namespace roevo

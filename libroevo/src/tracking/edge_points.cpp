@@ -74,7 +74,6 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
     const auto most_gap = static_cast<std::size_t>(std::lround(3 * scale));  // points without depth
     const auto least_piece = static_cast<std::size_t>(std::lround(5 * scale));
     EdgePoints3D out;
-    EdgeSides sides;
     out.reserve(edges.size());
     DepthsOfEdge depths;
     const auto& [pixels, patches, z] = depths;
@@ -90,7 +89,7 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
         }
         depths.z = depths.patches;
         if (edge_options.two_sided_depth)
-            sides.correct(edges, own.first, pixels, depth, jump, scale, depths.z);
+            correctBySides(edges, own.first, pixels, depth, jump, scale, depths.z);
         const auto endPiece = [&] {
             if (piece.size() >= least_piece)
                 addPiece(edges, own.first, piece, depths, camera, rows, sensor, out);

@@ -15,7 +15,7 @@ namespace roevo {
 struct EdgePoints3D {
     OrganizedEdges image;              ///< 2-D side; points without depth are gone
     Points3 points;                    ///< camera frame, m; padded
-    std::vector<float> correction;     ///< m that EdgeSides added to the depth of the patch
+    std::vector<float> correction;     ///< m that correctBySides() added to the depth of the patch
     std::vector<float> weight;         ///< w_s(depth), Eq. (20)
     std::vector<std::int32_t> source;  ///< index of the point among those of the image
 
@@ -31,8 +31,8 @@ double depthWeight(double depth, const SensorOptions& sensor);
 bool depthsAgree(double expected, double seen, const SensorOptions& sensor);
 
 /// Looks up the foreground depth of every edge point (`depth` is the raw image of the possibly distorted
-/// `camera`, the edges are in ideal pixels), corrects it by the edge's two sides (EdgeSides), splits edges at
-/// depth jumps and drops pieces of fewer than five points.
+/// `camera`, the edges are in ideal pixels), corrects it by the edge's two sides (correctBySides()), splits
+/// edges at depth jumps and drops pieces of fewer than five points.
 /// @param rows  motion of the camera over the image rows; points are moved to where they are at the reference
 /// row's time
 EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const PinholeCamera& camera,
