@@ -14,19 +14,8 @@ constexpr double kReachAngle = 12.5 / 525, kReachSigmas = 8;  // rad
 
 }  // namespace
 
-void FusedEdges::clear() {
-    points.clear();
-    begin.assign(1, 0);
-    observation_begin.assign(1, 0);
-    observations.clear();
-    clusters.clear();
-    views.clear();
-    verdicts.clear();
-}
-
-void EdgeFuser::fuse(const std::vector<WindowKeyframe>& window, const std::vector<std::vector<int>>& clusters,
-                     FusedEdges& out) {
-    out.clear();
+FusedEdges EdgeFuser::fuse(const std::vector<WindowKeyframe>& window,
+                           const std::vector<std::vector<int>>& clusters) {
     for (std::vector<Member>& of_cluster : members_) of_cluster.clear();
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
         for (std::size_t e = 0; e < clusters[slot].size(); ++e) {
@@ -38,10 +27,12 @@ void EdgeFuser::fuse(const std::vector<WindowKeyframe>& window, const std::vecto
                                          static_cast<std::int32_t>(own.size())});
         }
     }
+    FusedEdges out;
     for (std::size_t cluster = 0; cluster < members_.size(); ++cluster) {
         rest_ = members_[cluster];
         fuseCluster(window, static_cast<int>(cluster), out);
     }
+    return out;
 }
 
 void EdgeFuser::observe(std::size_t node, Observation observation) {

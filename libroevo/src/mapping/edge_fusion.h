@@ -40,7 +40,6 @@ struct FusedEdges {
         return {static_cast<std::size_t>(observation_begin[own.first]),
                 static_cast<std::size_t>(observation_begin[own.end])};
     }
-    void clear();
 };
 
 /// Fitting and stitching (Sec. VI-B): the longest edge of a cluster is the reference; a point of another edge
@@ -52,8 +51,7 @@ class EdgeFuser {
     explicit EdgeFuser(const SensorOptions& sensor) : sensor_(sensor) {}
 
     /// @param clusters  of every edge of every window keyframe (see CovisibilityGraph)
-    void fuse(const std::vector<WindowKeyframe>& window, const std::vector<std::vector<int>>& clusters,
-              FusedEdges& out);
+    FusedEdges fuse(const std::vector<WindowKeyframe>& window, const std::vector<std::vector<int>>& clusters);
 
   private:
     /// Consecutive points of one edge of a window keyframe.

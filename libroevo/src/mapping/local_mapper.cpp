@@ -242,7 +242,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
         leaveWindow(keyframe);
         return update;
     }
-    fuser_.fuse(window_, graph_.clusters(members), fused_);
+    fused_ = fuser_.fuse(window_, graph_.clusters(members));
     const int rough = std::min(kRoughIterations, options_.mapping.max_iterations / 2);
     adjuster_.refine(window_, fused_, priors_, rough, reused.empty() ? 0 : kDriftScale);
     judge_.judge(window_, fused_, adjuster_.equations().scale);

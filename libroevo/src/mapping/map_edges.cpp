@@ -33,9 +33,7 @@ EdgeMap fuseEdges(const std::map<int, MapKeyframe>& keyframes, const std::vector
                   const PinholeCamera& camera, const OdometryOptions& options) {
     std::vector<WindowKeyframe> window;
     for (const auto& [id, keyframe] : keyframes) window.push_back({&keyframe, keyframe.T_world_camera, true});
-    FusedEdges edges;
-    EdgeFuser fuser(options.sensor);
-    fuser.fuse(window, clusters, edges);
+    FusedEdges edges = EdgeFuser(options.sensor).fuse(window, clusters);
     BundleAdjuster(options.mapping, options.sensor, camera).refine(window, edges, {}, kIterations);
     takeKeptVerdicts(window, edges);
     EdgeMap map;

@@ -71,7 +71,7 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
         }
         addPriors();
         addRecognisedPlaces();
-        fuser_.fuse(window_, graph_.clusters(members), fused_);
+        fused_ = fuser_.fuse(window_, graph_.clusters(members));
         takeKeptVerdicts(window_, fused_);
         last = {};
         adjuster.refine(window_, fused_, priors_, options_.mapping.max_iterations,

@@ -172,9 +172,7 @@ inline std::vector<std::vector<int>> clustersByCurve(const std::vector<TestKeyfr
 
 inline FusedEdges fuse(const std::vector<WindowKeyframe>& window,
                        const std::vector<std::vector<int>>& clusters) {
-    FusedEdges edges;
-    EdgeFuser(SensorOptions()).fuse(window, clusters, edges);
-    return edges;
+    return EdgeFuser(SensorOptions()).fuse(window, clusters);
 }
 
 /// Moves the poses that are not fixed by up to these bounds in each axis, in the camera's frame.
