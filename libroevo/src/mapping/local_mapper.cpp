@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "map_edges.h"
 #include "tracking/se3.h"
 
 namespace roevo {
@@ -20,12 +19,6 @@ constexpr double kSameReadout = 2e-4;  ///< s; smaller changes are not worth mov
 bool hasInformation(const MapKeyframe& keyframe) {
     return keyframe.parent_information.allFinite() &&
            (keyframe.parent_information.diagonal().array() > 0).all();
-}
-
-std::vector<const MapKeyframe*> pointersTo(const std::map<int, MapKeyframe>& keyframes) {
-    std::vector<const MapKeyframe*> pointers;
-    for (const auto& [id, keyframe] : keyframes) pointers.push_back(&keyframe);
-    return pointers;
 }
 
 }  // namespace
@@ -84,15 +77,6 @@ void LocalMapper::leaveWindow(MapKeyframe& newest) {
         if (packed_.find(id) == packed_.end()) packed_.emplace(id, PackedKeyframe(keyframe));
         dropPoints(keyframe);
     }
-}
-
-std::map<int, MapKeyframe> LocalMapper::unpacked() const {
-    std::map<int, MapKeyframe> all = keyframes_;
-    for (auto& [id, keyframe] : all) {
-        unpack(keyframe);
-        bringToReadout(keyframe);
-    }
-    return all;
 }
 
 std::vector<const MapKeyframe*> LocalMapper::nearbyOf(const MapKeyframe& keyframe,
@@ -317,16 +301,6 @@ std::vector<std::int32_t> LocalMapper::trackedClusters() const {
         clusters.push_back(own < keyframe.clusters.size() ? keyframe.clusters[own] : -1);
     }
     return clusters;
-}
-
-EdgeMap LocalMapper::fusedMap() const {
-    const std::map<int, MapKeyframe> all = unpacked();
-    return fuseEdges(all, graph_.clusters(pointersTo(all)), camera_, options_);
-}
-
-EdgeMap LocalMapper::keyframeEdges() const {
-    const std::map<int, MapKeyframe> all = unpacked();
-    return edgesAsSeen(all, graph_.clusters(pointersTo(all)), options_.sensor);
 }
 
 }  // namespace roevo

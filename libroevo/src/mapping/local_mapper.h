@@ -87,7 +87,7 @@ class LocalMapper {
     /// All of them at their present poses; points only of the newest, which the next window begins with.
     const std::map<int, MapKeyframe>& keyframes() const { return keyframes_; }
 
-    /// All keyframes' edges fused at the present poses.
+    /// All keyframes' edges fused at the present poses (Eqs. (14)-(16)).
     EdgeMap fusedMap() const;
     /// The edges of each keyframe as it saw them, with the cluster that they belong to.
     EdgeMap keyframeEdges() const;
@@ -117,6 +117,7 @@ class LocalMapper {
     void addPriors();
     void addRecognisedPlaces();
     void keepVerdicts();
+    static void takeKeptVerdicts(const std::vector<WindowKeyframe>& window, FusedEdges& edges);
     std::vector<std::int32_t> trackedClusters() const;
 
     PinholeCamera camera_;

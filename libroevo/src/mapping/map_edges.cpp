@@ -1,20 +1,35 @@
-#include "map_edges.h"
-
+// The map that is shown: edges of all keyframes.
 #include <algorithm>
 #include <array>
 
-#include "mapping/bundle_adjustment.h"
-#include "mapping/edge_fusion.h"
 #include "mapping/edge_smoothing.h"
+#include "mapping/local_mapper.h"
 
 namespace roevo {
 namespace {
 
 constexpr int kIterations = 3;  ///< that fit the fused points; the poses stay
 
+std::vector<const MapKeyframe*> pointersTo(const std::map<int, MapKeyframe>& keyframes) {
+    std::vector<const MapKeyframe*> pointers;
+    for (const auto& [id, keyframe] : keyframes) pointers.push_back(&keyframe);
+    return pointers;
+}
+
 }  // namespace
 
-void takeKeptVerdicts(const std::vector<WindowKeyframe>& window, FusedEdges& edges) {
+/// All keyframes with their points.
+std::map<int, MapKeyframe> LocalMapper::unpacked() const {
+    std::map<int, MapKeyframe> all = keyframes_;
+    for (auto& [id, keyframe] : all) {
+        unpack(keyframe);
+        bringToReadout(keyframe);
+    }
+    return all;
+}
+
+/// What most of the keyframes' edges that each fused edge is made of were thought to be.
+void LocalMapper::takeKeptVerdicts(const std::vector<WindowKeyframe>& window, FusedEdges& edges) {
     for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
         std::array<int, 4> votes{};
         const auto [first, end] = edges.observationsOfEdge(edge);
@@ -29,12 +44,12 @@ void takeKeptVerdicts(const std::vector<WindowKeyframe>& window, FusedEdges& edg
     }
 }
 
-EdgeMap fuseEdges(const std::map<int, MapKeyframe>& keyframes, const std::vector<std::vector<int>>& clusters,
-                  const PinholeCamera& camera, const OdometryOptions& options) {
+EdgeMap LocalMapper::fusedMap() const {
+    const std::map<int, MapKeyframe> keyframes = unpacked();
     std::vector<WindowKeyframe> window;
     for (const auto& [id, keyframe] : keyframes) window.push_back({&keyframe, keyframe.T_world_camera, true});
-    FusedEdges edges = EdgeFuser(options.sensor).fuse(window, clusters);
-    BundleAdjuster(options.mapping, options.sensor, camera).refine(window, edges, {}, kIterations);
+    FusedEdges edges = EdgeFuser(options_.sensor).fuse(window, graph_.clusters(pointersTo(keyframes)));
+    BundleAdjuster(options_.mapping, options_.sensor, camera_).refine(window, edges, {}, kIterations);
     takeKeptVerdicts(window, edges);
     EdgeMap map;
     for (std::size_t number = 0; number < edges.views.size(); ++number) {
@@ -49,7 +64,7 @@ EdgeMap fuseEdges(const std::map<int, MapKeyframe>& keyframes, const std::vector
         const auto reference = [&](std::size_t p) {
             return edges.observations[edges.observationsOf(p).end - 1];
         };
-        smoothDepthAlong(points, at(window, reference(first).slot).T_world_camera, options.sensor);
+        smoothDepthAlong(points, at(window, reference(first).slot).T_world_camera, options_.sensor);
         for (std::size_t p = first; p < end; ++p) {
             const Observation seen = reference(p);
             const MapKeyframe& keyframe = *at(window, seen.slot).keyframe;
@@ -62,8 +77,9 @@ EdgeMap fuseEdges(const std::map<int, MapKeyframe>& keyframes, const std::vector
     return map;
 }
 
-EdgeMap edgesAsSeen(const std::map<int, MapKeyframe>& keyframes,
-                    const std::vector<std::vector<int>>& clusters, const SensorOptions& sensor) {
+EdgeMap LocalMapper::keyframeEdges() const {
+    const std::map<int, MapKeyframe> keyframes = unpacked();
+    const std::vector<std::vector<int>> clusters = graph_.clusters(pointersTo(keyframes));
     EdgeMap map;
     std::vector<Eigen::Vector3d> points;
     auto clusters_of = clusters.begin();
@@ -80,7 +96,7 @@ EdgeMap edgesAsSeen(const std::map<int, MapKeyframe>& keyframes,
                 points.push_back(keyframe.T_world_camera * keyframe.points.at(i));
                 edge.colours.push_back(keyframe.colours[i]);
             }
-            smoothDepthAlong(points, keyframe.T_world_camera, sensor);
+            smoothDepthAlong(points, keyframe.T_world_camera, options_.sensor);
             for (const Eigen::Vector3d& point : points) edge.points.push_back(point.cast<float>());
             map.push_back(std::move(edge));
         }

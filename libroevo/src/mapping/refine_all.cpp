@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "map_edges.h"
 #include "mapping/local_mapper.h"
 #include "tracking/se3.h"
 
