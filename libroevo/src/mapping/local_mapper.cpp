@@ -116,19 +116,20 @@ void LocalMapper::relate(const Neighbourhood& neighbourhood, double radius) {
     graph_.insert(*neighbourhood.of, neighbourhood.nearby, radius);
 }
 
-/// @return its members
-std::vector<const MapKeyframe*> LocalMapper::buildWindow(const Neighbourhood& neighbourhood) {
+/// @param fixed  members, the first ones; those that were loaded are fixed, too
+void LocalMapper::setWindow(const std::vector<const MapKeyframe*>& members, std::size_t fixed) {
     window_.clear();
-    // In the order of time: of fused edges as long, the oldest one is the reference
-    std::vector<const MapKeyframe*> members = neighbourhood.nearby;
-    std::sort(members.begin(), members.end(),
-              [](const MapKeyframe* a, const MapKeyframe* b) { return a->id < b->id; });
-    const std::size_t fixed = members.size() + 1;  // and the oldest of the newest
-    members.insert(members.end(), neighbourhood.recent.rbegin(), neighbourhood.recent.rend());
-    members.push_back(neighbourhood.of);
     for (const MapKeyframe* keyframe : members)
-        window_.push_back({keyframe, keyframe->T_world_camera, window_.size() < fixed});
-    return members;
+        window_.push_back(
+            {keyframe, keyframe->T_world_camera, window_.size() < fixed || keyframe->id < loaded_});
+}
+
+/// Of a keyframe in the window; -1: it is not in it.
+int LocalMapper::slotOf(int keyframe) const {
+    const auto found = std::find_if(window_.begin(), window_.end(), [&](const WindowKeyframe& view) {
+        return view.keyframe->id == keyframe;
+    });
+    return found == window_.end() ? -1 : static_cast<int>(found - window_.begin());
 }
 
 std::optional<MapRefusal> LocalMapper::refusalOf(const WindowKeyframe& view, int inliers) const {
@@ -149,12 +150,11 @@ void LocalMapper::addPriors() {
     if (weight <= 0) return;
     for (std::size_t to = 0; to < window_.size(); ++to) {
         const MapKeyframe& keyframe = *window_[to].keyframe;
-        if (!hasInformation(keyframe)) continue;
-        for (std::size_t from = 0; from < to; ++from)
-            if (window_[from].keyframe->id == keyframe.parent)
-                priors_.push_back(RelativePrior::between(window_, static_cast<int>(from),
-                                                         static_cast<int>(to), keyframe.T_parent_camera,
-                                                         keyframe.parent_information, weight));
+        const int from = slotOf(keyframe.parent);
+        if (from < 0 || !hasInformation(keyframe)) continue;
+        priors_.push_back(RelativePrior::between(window_, from, static_cast<int>(to),
+                                                 keyframe.T_parent_camera, keyframe.parent_information,
+                                                 weight));
     }
 }
 
@@ -220,7 +220,13 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
     MapUpdate update;
     update.keyframe = id;
     update.reused = static_cast<int>(reused.size());
-    const std::vector<const MapKeyframe*> members = buildWindow(neighbourhood);
+    // In the order of time: of fused edges as long, the oldest one is the reference
+    std::vector<const MapKeyframe*> members = reused;
+    std::sort(members.begin(), members.end(),
+              [](const MapKeyframe* a, const MapKeyframe* b) { return a->id < b->id; });
+    members.insert(members.end(), neighbourhood.recent.rbegin(), neighbourhood.recent.rend());
+    members.push_back(&keyframe);
+    setWindow(members, reused.size() + 1);  // and the oldest of the recent ones
     addPriors();
     if (window_.size() < 2) {
         leaveWindow(keyframe);
@@ -277,11 +283,9 @@ void LocalMapper::keepVerdicts() {
     for (std::size_t edge = 0; edge < fused_.views.size(); ++edge) {
         const auto [first, end] = fused_.observationsOfEdge(edge);
         for (std::size_t k = first; k < end; ++k) {
-            MapKeyframe& keyframe =
-                keyframes_.at(window_[static_cast<std::size_t>(fused_.observations[k].slot)].keyframe->id);
-            const std::int32_t own =
-                keyframe.image.edge_of[static_cast<std::size_t>(fused_.observations[k].point)];
-            keyframe.verdicts[static_cast<std::size_t>(own)] = fused_.verdicts[edge];
+            const Observation& seen = fused_.observations[k];
+            MapKeyframe& keyframe = keyframes_.at(at(window_, seen.slot).keyframe->id);
+            at(keyframe.verdicts, at(keyframe.image.edge_of, seen.point)) = fused_.verdicts[edge];
         }
     }
 }
@@ -294,9 +298,8 @@ std::vector<std::int32_t> LocalMapper::trackedClusters() const {
         Observation newest = fused_.observations[first];
         for (std::size_t k = first; k < end; ++k)
             if (fused_.observations[k].slot > newest.slot) newest = fused_.observations[k];
-        const MapKeyframe& keyframe = *window_[static_cast<std::size_t>(newest.slot)].keyframe;
-        const auto own =
-            static_cast<std::size_t>(keyframe.image.edge_of[static_cast<std::size_t>(newest.point)]);
+        const MapKeyframe& keyframe = *at(window_, newest.slot).keyframe;
+        const auto own = static_cast<std::size_t>(at(keyframe.image.edge_of, newest.point));
         // Those of a map that was loaded have no number, and are fixed
         clusters.push_back(own < keyframe.clusters.size() ? keyframe.clusters[own] : -1);
     }

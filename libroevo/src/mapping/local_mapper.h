@@ -109,7 +109,8 @@ class LocalMapper {
     };
     Neighbourhood neighbourhoodOf(const MapKeyframe& keyframe) const;
     void relate(const Neighbourhood& neighbourhood, double radius);
-    std::vector<const MapKeyframe*> buildWindow(const Neighbourhood& neighbourhood);
+    void setWindow(const std::vector<const MapKeyframe*>& members, std::size_t fixed);
+    int slotOf(int keyframe) const;
     void takePoses(const std::vector<int>& inliers, MapUpdate& update);
     void refineTogether(const std::vector<const MapKeyframe*>& part, std::size_t fixed,
                         BundleAdjuster& adjuster, MapUpdate& update);

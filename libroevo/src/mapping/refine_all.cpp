@@ -23,11 +23,6 @@ constexpr double kSettled = 0.25;
 
 /// They hold what is too far apart for its edges to be related, and what too few edges relate.
 void LocalMapper::addRecognisedPlaces() {
-    const auto slotOf = [&](int id) {
-        const auto at = std::find_if(window_.begin(), window_.end(),
-                                     [id](const WindowKeyframe& view) { return view.keyframe->id == id; });
-        return at == window_.end() ? -1 : static_cast<int>(at - window_.begin());
-    };
     for (const PoseConstraint& place : places_) {
         const int from = slotOf(place.from), to = slotOf(place.to);
         const Matrix6d information = place.covariance.inverse();
@@ -41,6 +36,7 @@ void LocalMapper::addRecognisedPlaces() {
 /// they were not related yet. @param fixed  members, the first ones
 void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, std::size_t fixed,
                                  BundleAdjuster& adjuster, MapUpdate& update) {
+    if (part.back()->id < loaded_) return;  // and so are all before it
     std::vector<Neighbourhood> neighbourhoods;
     std::map<int, const MapKeyframe*> before;
     for (std::size_t k = fixed; k < part.size(); ++k) {
@@ -54,20 +50,14 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
     for (const auto& [id, keyframe] : before) members.push_back(keyframe);
     fixed += members.size();
     members.insert(members.end(), part.begin(), part.end());
-    const auto isFixed = [&](std::size_t slot) { return slot < fixed || members[slot]->id < loaded_; };
-    if (isFixed(members.size() - 1)) return;
     prepare(members);
     MapUpdate last;
     for (int round = 0; round < options_.mapping.final_rounds; ++round) {
         // Wide at first, as tracking is
         const double radius = round == 0 ? options_.fine.search_radius : options_.fine.final_radius;
         for (const Neighbourhood& neighbourhood : neighbourhoods) relate(neighbourhood, radius);
-        window_.clear();
-        std::vector<Pose> before_round;
-        for (std::size_t slot = 0; slot < members.size(); ++slot) {
-            before_round.push_back(members[slot]->T_world_camera);
-            window_.push_back({members[slot], members[slot]->T_world_camera, isFixed(slot)});
-        }
+        setWindow(members, fixed);
+        const std::vector<WindowKeyframe> before_round = window_;
         addPriors();
         addRecognisedPlaces();
         fused_ = fuser_.fuse(window_, graph_.clusters(members));
@@ -78,14 +68,15 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
         takePoses(adjuster.equations().inliers, last);
         double moved = 0;
         for (std::size_t slot = 0; slot < members.size(); ++slot)
-            moved += imageMotion(members[slot]->T_world_camera.inverse(), before_round[slot].inverse(),
-                                 camera_.fx, members[slot]->typicalDepth());
+            moved += imageMotion(members[slot]->T_world_camera.inverse(),
+                                 before_round[slot].T_world_camera.inverse(), camera_.fx,
+                                 members[slot]->typicalDepth());
         if (round > 0 && moved < kSettled * static_cast<double>(members.size())) break;
     }
     update.refusals.insert(update.refusals.end(), last.refusals.begin(), last.refusals.end());
     // Where they are now: what a round left as it was may have moved in the one before
-    for (std::size_t slot = 0; slot < members.size(); ++slot)
-        if (!isFixed(slot)) update.poses.emplace_back(members[slot]->id, members[slot]->T_world_camera);
+    for (const WindowKeyframe& view : window_)
+        if (!view.fixed) update.poses.emplace_back(view.keyframe->id, view.keyframe->T_world_camera);
 }
 
 MapUpdate LocalMapper::refineAll() {
