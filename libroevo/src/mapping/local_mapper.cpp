@@ -53,7 +53,7 @@ bool LocalMapper::bringToReadout(MapKeyframe& keyframe) const {
     const RowMotion& rows = keyframe.row_motion;
     const double change = std::abs(rows.seconds_per_row - seconds_per_row_) * camera_.height;
     if (keyframe.size() == 0 || change <= kSameReadout) return false;
-    roevo::setRowMotion(keyframe, rows.at(seconds_per_row_), camera_);
+    setRowMotion(keyframe, rows.at(seconds_per_row_), camera_);
     return true;
 }
 
@@ -158,16 +158,12 @@ void LocalMapper::addPriors() {
     }
 }
 
-void LocalMapper::setFound(int keyframe, std::vector<float> shares) {
-    const auto at = keyframes_.find(keyframe);
-    if (at != keyframes_.end() && at->second.found.size() == shares.size())
-        at->second.found = std::move(shares);
-}
-
-void LocalMapper::setRowMotion(int keyframe, const RowMotion& rows) {
-    const auto at = keyframes_.find(keyframe);
-    if (at == keyframes_.end() || at->second.size() == 0 || at->second.row_motion.known()) return;
-    roevo::setRowMotion(at->second, rows, camera_);
+void LocalMapper::learnOf(int id, std::vector<float> found, const RowMotion& rows) {
+    const auto known = keyframes_.find(id);
+    if (known == keyframes_.end()) return;
+    MapKeyframe& keyframe = known->second;
+    if (keyframe.found.size() == found.size()) keyframe.found = std::move(found);
+    if (keyframe.size() > 0 && !keyframe.row_motion.known()) setRowMotion(keyframe, rows, camera_);
 }
 
 void LocalMapper::correct(const Correction& correction) {

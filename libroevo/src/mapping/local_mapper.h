@@ -76,11 +76,11 @@ class LocalMapper {
     /// as it was judged.
     MapUpdate refineAll();
 
-    /// How often the frames after a keyframe found its edges (see MapKeyframe::found).
-    void setFound(int keyframe, std::vector<float> shares);
-
-    /// How a keyframe's rows moved, where that was not known when it was inserted; before the next insert().
-    void setRowMotion(int keyframe, const RowMotion& rows);
+    /// What the frames after a keyframe told of it; before the next insert(). Of one that there is not:
+    /// nothing.
+    /// @param found  see MapKeyframe::found
+    /// @param rows   how its rows moved, where that was not known when it was inserted
+    void learnOf(int keyframe, std::vector<float> found, const RowMotion& rows);
     /// Read-out time that all keyframes are brought to as they take part.
     void setReadout(double seconds_per_row) { seconds_per_row_ = seconds_per_row; }
 

@@ -207,10 +207,7 @@ std::vector<MapUpdate> RefiningMapper::refineAll() {
 MapUpdate RefiningMapper::run(Job job) {
     const Stopwatch watch;
     const CpuStopwatch cpu_watch;
-    if (job.previous >= 0) {
-        mapper_.setFound(job.previous, std::move(job.found));
-        mapper_.setRowMotion(job.previous, job.previous_rows);
-    }
+    mapper_.learnOf(job.previous, std::move(job.found), job.previous_rows);
     mapper_.setReadout(job.seconds_per_row);
     MapUpdate update = mapper_.insert(std::move(job.keyframe));
     update.milliseconds = watch.milliseconds();
