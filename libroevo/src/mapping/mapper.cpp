@@ -3,7 +3,9 @@
 #include <Eigen/LU>
 #include <condition_variable>
 #include <exception>
+#include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "stopwatch.h"
@@ -104,22 +106,15 @@ class RefiningMapper : public Mapper {
     EdgeMap keyframeEdges() override { return finish().keyframeEdges(); }
 
   private:
-    /// A keyframe to be inserted, or a correction of those that were.
-    struct Job {
-        Correction correction;
-        MapKeyframe keyframe;
-        int previous = -1;
-        std::vector<float> found;  ///< MapKeyframe::found of `previous`
-        RowMotion previous_rows;
-        double seconds_per_row = 0;
-    };
+    /// On the LocalMapper: a keyframe is inserted, and an update comes of that, or those that were are
+    /// corrected.
+    using Job = std::function<std::optional<MapUpdate>()>;
     using Lock = std::unique_lock<std::mutex>;
     void work();
     void runNext(Lock& lock);
     template <class Condition>
     void waitFor(Lock& lock, const Condition& condition);
     void push(Job job);
-    MapUpdate run(Job job);
     MapUpdate take();
     bool ready() const;
     LocalMapper& finish();
@@ -140,29 +135,41 @@ class RefiningMapper : public Mapper {
 };
 
 void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
-    Job job;
-    job.keyframe = toMapKeyframe(fresh.keyframe, fresh.colours, camera_, options_.max_points);
-    job.keyframe.T_world_camera = fresh.T_world_camera;
-    job.keyframe.parent = fresh.tracked.keyframe;
-    job.keyframe.T_parent_camera = fresh.tracked.T_keyframe_camera;
+    MapKeyframe keyframe = toMapKeyframe(fresh.keyframe, fresh.colours, camera_, options_.max_points);
+    keyframe.T_world_camera = fresh.T_world_camera;
+    keyframe.parent = fresh.tracked.keyframe;
+    keyframe.T_parent_camera = fresh.tracked.T_keyframe_camera;
     if (fresh.tracked.keyframe < 0)
-        job.keyframe.track = fresh.keyframe.id;
+        keyframe.track = fresh.keyframe.id;
     else
-        job.keyframe.parent_information = fresh.tracked.covariance().inverse();
+        keyframe.parent_information = fresh.tracked.covariance().inverse();
+    int previous = -1;
+    std::vector<float> found;
+    RowMotion rows;
     if (fresh.previous != nullptr) {
-        job.previous = fresh.previous->id;
-        job.found = fresh.previous->foundShares();
-        job.previous_rows = fresh.previous->row_motion;
+        previous = fresh.previous->id;
+        found = fresh.previous->foundShares();
+        rows = fresh.previous->row_motion;
     }
-    job.seconds_per_row = fresh.seconds_per_row;
     due_.push_back(timestamp + (options_.latency - 0.5) / kFrameRate);
-    push(std::move(job));
+    push([this, keyframe = std::move(keyframe), previous, found = std::move(found), rows,
+          seconds_per_row = fresh.seconds_per_row]() mutable {
+        const Stopwatch watch;
+        const CpuStopwatch cpu_watch;
+        mapper_.learnOf(previous, std::move(found), rows);
+        mapper_.setReadout(seconds_per_row);
+        MapUpdate update = mapper_.insert(std::move(keyframe));
+        update.milliseconds = watch.milliseconds();
+        update.cpu_milliseconds = cpu_watch.milliseconds();
+        return update;
+    });
 }
 
 void RefiningMapper::correct(const Correction& correction) {
-    Job job;
-    job.correction = correction;
-    push(std::move(job));
+    push([this, correction] {
+        mapper_.correct(correction);
+        return std::nullopt;
+    });
 }
 
 void RefiningMapper::push(Job job) {
@@ -204,17 +211,6 @@ std::vector<MapUpdate> RefiningMapper::refineAll() {
     return updates;
 }
 
-MapUpdate RefiningMapper::run(Job job) {
-    const Stopwatch watch;
-    const CpuStopwatch cpu_watch;
-    mapper_.learnOf(job.previous, std::move(job.found), job.previous_rows);
-    mapper_.setReadout(job.seconds_per_row);
-    MapUpdate update = mapper_.insert(std::move(job.keyframe));
-    update.milliseconds = watch.milliseconds();
-    update.cpu_milliseconds = cpu_watch.milliseconds();
-    return update;
-}
-
 void RefiningMapper::work() {
     Lock lock(mutex_);
     while (true) {
@@ -237,25 +233,22 @@ void RefiningMapper::waitFor(Lock& lock, const Condition& condition) {
 
 /// @param lock  let go meanwhile
 void RefiningMapper::runNext(Lock& lock) {
-    Job job = std::move(jobs_.front());
+    const Job job = std::move(jobs_.front());
     jobs_.pop_front();
     busy_ = true;
     lock.unlock();
-    const bool corrects = !job.correction.keyframes.empty();
-    MapUpdate update;
+    std::optional<MapUpdate> update;
     std::exception_ptr thrown;
     try {
-        if (corrects)
-            mapper_.correct(job.correction);
-        else
-            update = run(std::move(job));
+        update = job();
     } catch (...) {
         thrown = std::current_exception();
+        update.emplace();  // whoever waits for one learns of it
     }
     lock.lock();
     busy_ = false;
     if (thrown) failure_ = thrown;
-    if (!corrects || thrown) updates_.push_back(std::move(update));
+    if (update) updates_.push_back(std::move(*update));
     changed_.notify_all();
 }
 
