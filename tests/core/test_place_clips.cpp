@@ -66,15 +66,13 @@ class PlaceClips : public ::testing::Test {
     /// The one of the five candidates that it looks most like, where that needs no knowledge of where the
     /// camera is.
     Found recognise(const PlaceClip& clip, const PlaceView& view, const std::vector<int>& excluded) {
-        std::vector<PlaceCandidate> candidates;
         const auto wanted = [&](int id) {
             return std::find(excluded.begin(), excluded.end(), id) == excluded.end();
         };
-        index_.query(view.points, 5, wanted, candidates);
         EdgeRegistrar registrar(clip.camera, OdometryOptions(), false);
         PlaceDescriber describer(clip.camera);
         Found best;
-        for (const PlaceCandidate& candidate : candidates) {
+        for (const PlaceCandidate& candidate : index_.query(view.points, 5, wanted)) {
             const PlaceView& other = viewOf(candidate.id);
             const auto points = verifier_.verify(view.points, view.keyframe.id, other.points, candidate.id);
             if (!points) continue;

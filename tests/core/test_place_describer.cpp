@@ -117,10 +117,9 @@ TEST(PlaceDescriber, NothingIsFoundOnAWhiteWall) {
 TEST(PlaceDescriber, SameBytesWhateverCameBefore) {
     const auto one = viewOf(boxes(kSize, 2)), other = viewOf(boxes(300, 1.5));
     PlaceDescriber describer(squareCamera(kSize));
-    PlacePoints points;
     for (int k = 0; k < 2; ++k) {
-        describer.describe(other->keyframe.edges, other->frame.pyramid.level(0), points);
-        describer.describe(one->keyframe.edges, one->frame.pyramid.level(0), points);
+        (void)describer.describe(other->keyframe.edges, other->frame.pyramid.level(0));
+        const PlacePoints points = describer.describe(one->keyframe.edges, one->frame.pyramid.level(0));
         ASSERT_EQ(points.size(), one->points.size());
         EXPECT_EQ(std::memcmp(points.data(), one->points.data(), points.size() * sizeof(PlacePoint)), 0);
     }
@@ -174,8 +173,7 @@ TEST(PlaceDescriber, SimulatedFramesMatchWhereTheyShould) {
                last = makePlaceView(sequence.camera, sequence.frames.back(),
                                     sequence.truth.back().T_world_camera, 24);
     const Pose T = first->T_world_camera.inverse() * last->T_world_camera;
-    std::vector<PlaceMatch> matches;
-    matchPlaces(last->points, first->points, matches);
+    const std::vector<PlaceMatch> matches = matchPlaces(last->points, first->points);
     int right = 0;
     for (const PlaceMatch& match : matches) {
         const Eigen::Vector3d there = T * position(last->points[static_cast<std::size_t>(match.query)]);

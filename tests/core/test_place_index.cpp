@@ -72,7 +72,6 @@ TEST(PlaceIndex, FindsWhatBruteForceFinds) {
         keyframes.push_back(randomPlace(100, random));
         index.insert(k, keyframes.back());
     }
-    std::vector<PlaceCandidate> found;
     for (int k = 0; k < 40; ++k) {
         // A third of the points is seen again, with every eighth bit wrong
         PlacePoints query =
@@ -80,7 +79,7 @@ TEST(PlaceIndex, FindsWhatBruteForceFinds) {
         query.resize(33);
         const PlacePoints others = randomPlace(67, random);
         query.insert(query.end(), others.begin(), others.end());
-        index.query(query, 3, any, found);
+        const std::vector<PlaceCandidate> found = index.query(query, 3, any);
         ASSERT_FALSE(found.empty());
         EXPECT_EQ(found.front().id, k);
         EXPECT_EQ(found.front().id, mostSimilar(keyframes, query));
@@ -95,11 +94,11 @@ TEST(PlaceIndex, OrderOfInsertionDoesNotMatterAndEqualScoresGoById) {
     std::vector<int> order(keyframes.size());
     std::iota(order.begin(), order.end(), 0);
     const PlacePoints query = seenAgain(keyframes[4], Pose::Identity(), 0, 0.05, random);
-    std::vector<PlaceCandidate> first, other;
+    std::vector<PlaceCandidate> first;
     for (int k = 0; k < 5; ++k) {
         PlaceIndex index;
         for (const int id : order) index.insert(id, keyframes[static_cast<std::size_t>(id)]);
-        index.query(query, 12, any, other);
+        const std::vector<PlaceCandidate> other = index.query(query, 12, any);
         if (k == 0) first = other;
         EXPECT_EQ(idsOf(other), idsOf(first));
         ASSERT_GE(other.size(), 2U);
@@ -113,29 +112,23 @@ TEST(PlaceIndex, OrderOfInsertionDoesNotMatterAndEqualScoresGoById) {
 TEST(PlaceIndex, ExcludedOnesAreNoCandidatesAndNoMoreComeThanWereAskedFor) {
     std::mt19937 random(3);
     PlaceIndex index;
-    std::vector<PlaceCandidate> found;
-    index.query(randomPlace(10, random), 5, any, found);
-    EXPECT_TRUE(found.empty()) << "nothing was inserted yet";
+    EXPECT_TRUE(index.query(randomPlace(10, random), 5, any).empty()) << "nothing was inserted yet";
     const PlacePoints points = randomPlace(50, random);
     for (int id : {7, 3, 100, 42}) index.insert(id, points);
-    index.query(
-        points, 10, [](int id) { return id != 42 && id != 3; }, found);
-    EXPECT_EQ(idsOf(found), (std::vector<int>{7, 100}));
-    index.query(points, 1, any, found);
-    EXPECT_EQ(idsOf(found), std::vector<int>{3});
-    index.query({}, 10, any, found);
-    EXPECT_TRUE(found.empty());
+    const auto others = index.query(points, 10, [](int id) { return id != 42 && id != 3; });
+    EXPECT_EQ(idsOf(others), (std::vector<int>{7, 100}));
+    EXPECT_EQ(idsOf(index.query(points, 1, any)), std::vector<int>{3});
+    EXPECT_TRUE(index.query({}, 10, any).empty());
     index.insert(5, {});
     EXPECT_EQ(index.size(), 5U);
 }
 
 /// Least of some times of a query, ms.
 double queryTime(PlaceIndex& index, const PlacePoints& query) {
-    std::vector<PlaceCandidate> found;
     double least = 1e9;
     for (int k = 0; k < 9; ++k) {
         const Stopwatch watch;
-        index.query(query, 10, any, found);
+        (void)index.query(query, 10, any);
         least = std::min(least, watch.milliseconds());
     }
     return least;

@@ -34,8 +34,7 @@ TEST(PlaceMatches, AreMutualNearestNeighbours) {
         PlacePoints candidate = seenAgain(query, Pose::Identity(), 0.001, 0.12, random);
         const PlacePoints others = randomPlace(60, random);
         candidate.insert(candidate.begin() + 40, others.begin(), others.end());
-        std::vector<PlaceMatch> matches;
-        matchPlaces(query, candidate, matches);
+        const std::vector<PlaceMatch> matches = matchPlaces(query, candidate);
         EXPECT_GE(matches.size(), 110U);
         for (std::size_t k = 0; k < matches.size(); ++k) {
             const auto i = static_cast<std::size_t>(matches[k].query),
@@ -54,33 +53,24 @@ TEST(PlaceMatches, ThatAreAsGoodElsewhereDoNotCount) {
     std::mt19937 random(7);
     const PlacePoints query = randomPlace(50, random);
     PlacePoints candidate = seenAgain(query, Pose::Identity(), 0, 0.05, random);
-    std::vector<PlaceMatch> matches;
-    matchPlaces(query, candidate, matches);
-    EXPECT_EQ(matches.size(), 50U);
+    EXPECT_EQ(matchPlaces(query, candidate).size(), 50U);
     PlacePoint twin = candidate[10];
     candidate.push_back(twin);  // at the same place
-    matchPlaces(query, candidate, matches);
-    EXPECT_EQ(matches.size(), 50U);
+    EXPECT_EQ(matchPlaces(query, candidate).size(), 50U);
     candidate.back().x += 0.5F;  // a second one that looks the same
-    matchPlaces(query, candidate, matches);
-    EXPECT_EQ(matches.size(), 49U);
+    EXPECT_EQ(matchPlaces(query, candidate).size(), 49U);
 }
 
 TEST(PlaceMatches, MorePointsThanAKeyframeHasAreNotLookedAt) {
     std::mt19937 random(3);
     const PlacePoints many = randomPlace(kMaxPlacePoints + 50, random);
-    std::vector<PlaceMatch> matches;
-    matchPlaces(many, many, matches);
-    EXPECT_EQ(matches.size(), kMaxPlacePoints);
+    EXPECT_EQ(matchPlaces(many, many).size(), kMaxPlacePoints);
 }
 
 TEST(PlaceMatches, OfNothingAreNone) {
     std::mt19937 random(1);
-    std::vector<PlaceMatch> matches(3);
-    matchPlaces({}, randomPlace(10, random), matches);
-    EXPECT_TRUE(matches.empty());
-    matchPlaces(randomPlace(10, random), {}, matches);
-    EXPECT_TRUE(matches.empty());
+    EXPECT_TRUE(matchPlaces({}, randomPlace(10, random)).empty());
+    EXPECT_TRUE(matchPlaces(randomPlace(10, random), {}).empty());
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<
     Described out;
     KnownPlace& place = out.place;
     const cv::Mat& grey = frame->pyramid.level(0);
-    describer_.describe(keyframe.edges, grey, place.points);
+    place.points = describer_.describe(keyframe.edges, grey);
     place.points.shrink_to_fit();
     place.edges = PackedKeyframe(toMapKeyframe(keyframe, colours, ideal_, options_.mapping.max_points));
     place.median_depth = keyframe.median_depth;
@@ -181,8 +181,8 @@ std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajecto
     collect();
     const EdgePoints3D edges = lifted(frame);
     if (edges.size() == 0) return std::nullopt;
-    describer_.describe(edges, frame.pyramid.level(0), points_);
-    const std::vector<Alike> alike = lookUp(points_, -1, [](int) { return true; });
+    const PlacePoints points = describer_.describe(edges, frame.pyramid.level(0));
+    const std::vector<Alike> alike = lookUp(points, -1, [](int) { return true; });
     const auto found = surest(registered(alike, frame, edges, RowMotion()), trajectory, whereabouts);
     if (!found || !found->sure) return std::nullopt;
     return found->pose;
@@ -192,9 +192,7 @@ std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajecto
 std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, int query_id,
                                                     const std::function<bool(int)>& wanted) {
     std::vector<Alike> alike;
-    std::vector<PlaceCandidate> candidates;
-    index_.query(points, kCandidates, wanted, candidates);
-    for (const PlaceCandidate& candidate : candidates) {
+    for (const PlaceCandidate& candidate : index_.query(points, kCandidates, wanted)) {
         const auto& place = places_[static_cast<std::size_t>(candidate.id)];
         const auto found = verifier_.verify(points, query_id, place.points, candidate.id);
         if (found) alike.emplace_back(*found, candidate.id);

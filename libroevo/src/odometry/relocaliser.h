@@ -125,7 +125,6 @@ class Relocaliser {
     EdgeRegistrar registrar_;         ///< to what is remembered of keyframes
     EdgeRegistrar confirmer_;         ///< to a whole one
     std::vector<KnownPlace> places_;  ///< of each keyframe, by its id
-    PlacePoints points_;              ///< of the frame
     Described newest_;                ///< keyframe; its place is among places_
     std::future<Described> at_work_;  // last: waits for the thread
 };

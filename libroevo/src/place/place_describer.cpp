@@ -46,11 +46,11 @@ float cornerStrength(const cv::Mat& grey, int u, int v) {
 
 }  // namespace
 
-void PlaceDescriber::describe(const EdgePoints3D& edges, const cv::Mat& grey, PlacePoints& out) {
-    out.clear();
+PlacePoints PlaceDescriber::describe(const EdgePoints3D& edges, const cv::Mat& grey) {
     findCorners(edges.image, grey);
     chooseCorners(edges.image);
     cv::integral(grey, integral_, CV_32S);
+    PlacePoints out;
     out.reserve(corners_.size());
     for (const Corner& corner : corners_) {
         const auto i = static_cast<std::size_t>(corner.point);
@@ -66,6 +66,7 @@ void PlaceDescriber::describe(const EdgePoints3D& edges, const cv::Mat& grey, Pl
             describePatch({point.u, point.v}, normal, patchRadius(static_cast<double>(point.z)));
         out.push_back(point);
     }
+    return out;
 }
 
 double PlaceDescriber::patchRadius(double depth) const {
@@ -103,23 +104,23 @@ Likeness PlaceDescriber::compare(const PlacePoints& place, const Pose& T_frame_p
 
 void PlaceDescriber::findCorners(const OrganizedEdges& edges, const cv::Mat& grey) {
     corners_.clear();
-    for (std::size_t e = 0; e < static_cast<std::size_t>(edges.numEdges()); ++e) {
+    for (int e = 0; e < edges.numEdges(); ++e) {
+        const auto [first, end] = edges.pointsOf(e);
         strength_.clear();
-        for (auto i = static_cast<std::size_t>(edges.begin[e]);
-             i < static_cast<std::size_t>(edges.begin[e + 1]); i += kCornerStep) {
+        for (std::size_t i = first; i < end; i += kCornerStep) {
             strength_.push_back(cornerStrength(grey, nearestInteger(static_cast<double>(edges.x[i])),
                                                nearestInteger(static_cast<double>(edges.y[i]))));
         }
         const int count = static_cast<int>(strength_.size());
         for (int k = 0; k < count; ++k) {
-            const float own = strength_[static_cast<std::size_t>(k)];
+            const float own = at(strength_, k);
             bool largest = own > 0;
             for (int other = std::max(0, k - kApart); largest && other < std::min(count, k + kApart + 1);
                  ++other) {
-                const float strength = strength_[static_cast<std::size_t>(other)];
+                const float strength = at(strength_, other);
                 largest = other < k ? strength < own : strength <= own;  // of equal ones the first
             }
-            if (largest) corners_.push_back({edges.begin[e] + k * kCornerStep, own, 0});
+            if (largest) corners_.push_back({static_cast<std::int32_t>(first) + k * kCornerStep, own, 0});
         }
     }
 }
@@ -138,7 +139,7 @@ void PlaceDescriber::chooseCorners(const OrganizedEdges& edges) {
         const int column =
             std::clamp(static_cast<int>(static_cast<double>(edges.x[i]) / cell), 0, columns - 1);
         const int row = std::clamp(static_cast<int>(static_cast<double>(edges.y[i]) / cell), 0, rows - 1);
-        corner.rank = corners_of_cell_[static_cast<std::size_t>(row * columns + column)]++;
+        corner.rank = at(corners_of_cell_, row * columns + column)++;
     }
     std::sort(corners_.begin(), corners_.end(), [&](const Corner& a, const Corner& b) {
         return a.rank != b.rank ? a.rank < b.rank : stronger(a, b);

@@ -31,8 +31,8 @@ class PlaceDescriber {
 
     /// @param edges  of the keyframe
     /// @param grey   that they were found in: CV_8UC1, height x width, without the lens's distortion
-    /// @param out    at most kMaxPlacePoints, the most distinct ones of every part of the image first
-    void describe(const EdgePoints3D& edges, const cv::Mat& grey, PlacePoints& out);
+    /// @return at most kMaxPlacePoints, the most distinct ones of every part of the image first
+    PlacePoints describe(const EdgePoints3D& edges, const cv::Mat& grey);
 
     /// Looks in an image for what surrounds the points of a place. No edges need to be found there, so that
     /// blur costs little, and what is missing tells as much as what is there.

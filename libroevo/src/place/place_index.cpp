@@ -36,10 +36,10 @@ void PlaceIndex::insert(int id, const PlacePoints& points) {
     size_norm_.push_back(std::sqrt(static_cast<double>(buckets_.size()) + 1));
 }
 
-void PlaceIndex::query(const PlacePoints& points, std::size_t max_results,
-                       const std::function<bool(int)>& wanted, std::vector<PlaceCandidate>& out) {
-    out.clear();
-    if (ids_.empty()) return;
+std::vector<PlaceCandidate> PlaceIndex::query(const PlacePoints& points, std::size_t max_results,
+                                              const std::function<bool(int)>& wanted) {
+    std::vector<PlaceCandidate> out;
+    if (ids_.empty()) return out;
     collectBuckets(points);
     vote();
     for (std::size_t k = 0; k < ids_.size(); ++k)
@@ -50,6 +50,7 @@ void PlaceIndex::query(const PlacePoints& points, std::size_t max_results,
                           return a.score != b.score ? a.score > b.score : a.id < b.id;
                       });
     out.resize(kept);
+    return out;
 }
 
 void PlaceIndex::collectBuckets(const PlacePoints& points) {

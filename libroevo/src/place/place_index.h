@@ -22,9 +22,9 @@ class PlaceIndex {
     /// @param id  that was not inserted before
     void insert(int id, const PlacePoints& points);
     /// @param wanted  whether a keyframe of that id may be a candidate
-    /// @param out     at most max_results, best first, of equal scores the smaller id first
-    void query(const PlacePoints& points, std::size_t max_results, const std::function<bool(int)>& wanted,
-               std::vector<PlaceCandidate>& out);
+    /// @return at most max_results, best first, of equal scores the smaller id first
+    std::vector<PlaceCandidate> query(const PlacePoints& points, std::size_t max_results,
+                                      const std::function<bool(int)>& wanted);
 
     std::size_t size() const { return ids_.size(); }  ///< keyframes
     std::size_t bytes() const { return lists_.bytes(); }

@@ -60,8 +60,9 @@ __attribute__((always_inline)) inline int nearestElsewhere(const PlacePoint& poi
     return nearest;
 }
 
-__attribute__((always_inline)) inline void match(const PlacePoints& query, const PlacePoints& candidate,
-                                                 std::vector<PlaceMatch>& out) {
+__attribute__((always_inline)) inline std::vector<PlaceMatch> match(const PlacePoints& query,
+                                                                    const PlacePoints& candidate) {
+    std::vector<PlaceMatch> out;
     Nearest nearest;
     searchAll(query, candidate, nearest);
     for (std::size_t i = 0; i < lookedAt(query); ++i) {
@@ -73,31 +74,31 @@ __attribute__((always_inline)) inline void match(const PlacePoints& query, const
         if (kRatioDenominator * distance > kRatioNumerator * elsewhere) continue;
         out.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j), distance});
     }
+    return out;
 }
 
-void matchPortably(const PlacePoints& query, const PlacePoints& candidate, std::vector<PlaceMatch>& out) {
-    match(query, candidate, out);
+std::vector<PlaceMatch> matchPortably(const PlacePoints& query, const PlacePoints& candidate) {
+    return match(query, candidate);
 }
 #ifdef ROEVO_POPCNT_CHOICE
-__attribute__((target("popcnt"))) void matchByPopcnt(const PlacePoints& query, const PlacePoints& candidate,
-                                                     std::vector<PlaceMatch>& out) {
-    match(query, candidate, out);
+__attribute__((target("popcnt"))) std::vector<PlaceMatch> matchByPopcnt(const PlacePoints& query,
+                                                                        const PlacePoints& candidate) {
+    return match(query, candidate);
 }
 #endif
 
 }  // namespace
 
-void matchPlaces(const PlacePoints& query, const PlacePoints& candidate, std::vector<PlaceMatch>& out) {
-    out.clear();
+std::vector<PlaceMatch> matchPlaces(const PlacePoints& query, const PlacePoints& candidate) {
+    auto* matched = matchPortably;
 #ifdef ROEVO_POPCNT_CHOICE
-    if (__builtin_cpu_supports("popcnt"))
-        matchByPopcnt(query, candidate, out);
-    else
+    if (__builtin_cpu_supports("popcnt")) matched = matchByPopcnt;
 #endif
-        matchPortably(query, candidate, out);
+    std::vector<PlaceMatch> out = matched(query, candidate);
     std::sort(out.begin(), out.end(), [](const PlaceMatch& a, const PlaceMatch& b) {
         return std::tie(a.distance, a.query) < std::tie(b.distance, b.query);
     });
+    return out;
 }
 
 }  // namespace roevo

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "indexing.h"
 #include "tracking/se3.h"
 
 namespace roevo {
@@ -44,7 +45,6 @@ bool isSlim(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vec
 
 std::optional<Verification> PlaceVerifier::verify(const PlacePoints& query, int query_id,
                                                   const PlacePoints& candidate, int candidate_id) {
-    matchPlaces(query, candidate, matches_);
     collect(query, candidate);
     if (static_cast<int>(pairs_.size()) < kLeastInliers) return std::nullopt;
     constexpr std::uint32_t kSpread = 2654435761U;  // ids are small numbers: their seeds shall not be
@@ -67,9 +67,8 @@ std::optional<Verification> PlaceVerifier::verify(const PlacePoints& query, int 
 
 void PlaceVerifier::collect(const PlacePoints& query, const PlacePoints& candidate) {
     pairs_.clear();
-    for (const PlaceMatch& match : matches_) {
-        const PlacePoint& q = query[static_cast<std::size_t>(match.query)];
-        const PlacePoint& c = candidate[static_cast<std::size_t>(match.candidate)];
+    for (const PlaceMatch& match : matchPlaces(query, candidate)) {
+        const PlacePoint &q = at(query, match.query), &c = at(candidate, match.candidate);
         const double of_query = sensor_.depthSigma(static_cast<double>(q.z)),
                      of_candidate = sensor_.depthSigma(static_cast<double>(c.z));
         const double variance = of_query * of_query + of_candidate * of_candidate + kPlaceNoise * kPlaceNoise;

@@ -42,7 +42,6 @@ class PlaceVerifier {
     Verification describe(const Pose& T_candidate_query) const;
 
     SensorOptions sensor_;
-    std::vector<PlaceMatch> matches_;
     std::vector<Pair> pairs_;  ///< the most similar ones first
 };
 

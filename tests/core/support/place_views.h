@@ -28,7 +28,7 @@ inline std::unique_ptr<PlaceView> makePlaceView(const PinholeCamera& camera, con
     view->keyframe.edges = liftEdges(view->frame.edges, view->frame.images.depth, camera, RowMotion(),
                                      options.edges, options.sensor);
     view->keyframe.median_depth = static_cast<double>(view->keyframe.edges.medianDepth());
-    PlaceDescriber(camera).describe(view->keyframe.edges, view->frame.pyramid.level(0), view->points);
+    view->points = PlaceDescriber(camera).describe(view->keyframe.edges, view->frame.pyramid.level(0));
     view->T_world_camera = T_world_camera;
     return view;
 }
