@@ -2,7 +2,7 @@
 #include <array>
 #include <cstdint>
 
-#include "place/descriptor.h"
+#include "place/place_points.h"
 
 namespace roevo {
 
