@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "mapping/local_mapper.h"
+#include "mapping/semi_dense.h"
 #include "place/place_points.h"
 #include "roevo/camera/pinhole_camera.h"
-#include "semi_dense_store.h"
 #include "trajectory.h"
 
 namespace roevo {

@@ -194,7 +194,7 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
     }
-    semi_dense_.add(fresh->edges.image, of, fresh->row_motion);
+    semi_dense_.add(fresh->edges.image, of.images, fresh->row_motion);
     mapper_->insert({*fresh, std::move(colours), trajectory_.keyframePose(fresh->id), tracked,
                      reference_.get(), seconds_per_row_},
                     timestamp_);

@@ -5,9 +5,9 @@
 
 #include "keyframe_maker.h"
 #include "mapping/mapper.h"
+#include "mapping/semi_dense.h"
 #include "pseudo_clusters.h"
 #include "relocaliser.h"
-#include "semi_dense_store.h"
 #include "stored_map.h"
 #include "trajectory.h"
 
