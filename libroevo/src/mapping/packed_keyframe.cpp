@@ -9,31 +9,27 @@
 
 namespace roevo {
 
-QuantizedArray::QuantizedArray(const std::vector<float>& values, std::size_t count) {
+QuantizedArray::QuantizedArray(const std::vector<float>& values) {
     constexpr float kMostSteps = std::numeric_limits<std::uint16_t>::max();
-    if (count == 0) return;
-    const auto end = values.begin() + static_cast<std::ptrdiff_t>(count);
-    const auto [smallest, largest] = std::minmax_element(values.begin(), end);
+    if (values.empty()) return;
+    const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
     first_ = *smallest;
     step_ = (*largest - *smallest) / kMostSteps;
-    steps_.resize(count, 0);
+    steps_.resize(values.size(), 0);
     if (step_ <= 0) return;
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < values.size(); ++i)
         steps_[i] =
             static_cast<std::uint16_t>(std::min(std::round((values[i] - first_) / step_), kMostSteps));
 }
 
 PackedKeyframe::PackedKeyframe(const MapKeyframe& keyframe)
-    : u_(keyframe.image.x, keyframe.size()),
-      v_(keyframe.image.y, keyframe.size()),
-      colours_(keyframe.colours),
-      begin_(keyframe.image.begin) {
+    : u_(keyframe.image.x), v_(keyframe.image.y), colours_(keyframe.colours), begin_(keyframe.image.begin) {
     std::vector<float> values(keyframe.size());
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1 / keyframe.points.z[i];
-    inverse_depth_ = QuantizedArray(values, values.size());
+    inverse_depth_ = QuantizedArray(values);
     for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = std::atan2(keyframe.image.normal_y[i], keyframe.image.normal_x[i]);
-    normal_angle_ = QuantizedArray(values, values.size());
+    normal_angle_ = QuantizedArray(values);
     colours_.shrink_to_fit();
     begin_.shrink_to_fit();
 }

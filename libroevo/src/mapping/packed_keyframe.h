@@ -13,8 +13,7 @@ namespace roevo {
 class QuantizedArray {
   public:
     QuantizedArray() = default;
-    /// @param count  how many of the values, from the first on
-    QuantizedArray(const std::vector<float>& values, std::size_t count);
+    explicit QuantizedArray(const std::vector<float>& values);
 
     float at(std::size_t i) const { return first_ + step_ * static_cast<float>(steps_[i]); }
     /// Whether these are `count` numbers within limits.
