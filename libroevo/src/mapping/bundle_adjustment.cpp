@@ -15,16 +15,16 @@ constexpr double kStill = 0.005;  ///< px of image motion; smaller steps end the
 /// Adds the error of T_world_to against T_world_from * T_from_to, as a perturbation in the world's axes.
 void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& window,
               WindowEquations& equations) {
-    const auto from = static_cast<std::size_t>(prior.from), to = static_cast<std::size_t>(prior.to);
-    const Pose expected = window[from].T_world_camera * prior.T_from_to;
-    const Eigen::Matrix3d turned = window[to].T_world_camera.linear() * expected.linear().transpose();
+    const Pose& T_world_to = at(window, prior.to).T_world_camera;
+    const Pose expected = at(window, prior.from).T_world_camera * prior.T_from_to;
+    const Eigen::Matrix3d turned = T_world_to.linear() * expected.linear().transpose();
     const Eigen::AngleAxisd angle(turned);
     Vector6d error;
-    error << window[to].T_world_camera.translation() - expected.translation(), angle.angle() * angle.axis();
+    error << T_world_to.translation() - expected.translation(), angle.angle() * angle.axis();
     const Matrix6d to_centre = prior.toCentre(window, equations.origin());
     const Matrix6d own = to_centre.transpose() * prior.information * to_centre;
     const Vector6d own_gradient = to_centre.transpose() * prior.information * error;
-    const int row = equations.row(from), col = equations.row(to);
+    const int row = equations.row(prior.from), col = equations.row(prior.to);
     if (col >= 0) {
         equations.hessian.block<6, 6>(col, col) += own;
         equations.gradient.segment<6>(col) += own_gradient;
@@ -40,15 +40,14 @@ void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& win
 
 RelativePrior RelativePrior::between(const std::vector<WindowKeyframe>& window, int from, int to,
                                      const Pose& T_from_to, const Matrix6d& information, double weight) {
-    const Matrix6d to_world = turnedBy(window[static_cast<std::size_t>(to)].T_world_camera.linear());
+    const Matrix6d to_world = turnedBy(at(window, to).T_world_camera.linear());
     return {from, to, T_from_to, weight * to_world * information * to_world.transpose(), weight};
 }
 
 Matrix6d RelativePrior::toCentre(const std::vector<WindowKeyframe>& window,
                                  const Eigen::Vector3d& origin) const {
     Matrix6d to_centre = Matrix6d::Identity();
-    to_centre.topRightCorner<3, 3>() =
-        -skew(window[static_cast<std::size_t>(to)].T_world_camera.translation() - origin);
+    to_centre.topRightCorner<3, 3>() = -skew(at(window, to).T_world_camera.translation() - origin);
     return to_centre;
 }
 

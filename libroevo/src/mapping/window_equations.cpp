@@ -166,8 +166,7 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
         gradient.segment<6>(rows_[a]) = gradients_[a];
         for (std::size_t c = a; c < rows_.size(); ++c) {
             if (rows_[c] < 0) continue;
-            hessian.block<6, 6>(rows_[a], rows_[c]) =
-                hessian_factor_ * block(static_cast<std::int32_t>(a), static_cast<std::int32_t>(c));
+            hessian.block<6, 6>(rows_[a], rows_[c]) = hessian_factor_ * blocks_[blockOf(a, c)];
         }
     }
 }
@@ -254,7 +253,7 @@ void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Ma
         coupling.bottomRows<3>().noalias() = P * information;
         throughs_[hessian_slots_.size()].noalias() = coupling * inverse;
         hessian_slots_.push_back(slot);
-        Matrix6d& diagonal = block(slot, slot);
+        Matrix6d& diagonal = blocks_[blockOf(slot, slot)];
         diagonal.leftCols<3>() += coupling;
         diagonal.rightCols<3>().noalias() -= coupling * P;
     }

@@ -41,15 +41,16 @@ class WindowEquations {
     /// A place of the window: far from the world's origin, turns about that would drown translations.
     const Eigen::Vector3d& origin() const { return origin_; }
     /// First row of a keyframe in the normal equations, -1: fixed.
-    int row(std::size_t slot) const { return rows_[slot]; }
+    template <class Index>
+    int row(Index slot) const {
+        return at(rows_, slot);
+    }
     int numRows() const { return num_rows_; }
     /// The newest of the fixed keyframes; -1: none is fixed. Where it is not the only one, what follows is
     /// known.
     int anchor() const { return anchor_; }
     /// What the residuals relate the anchor's pose to a keyframe's by: that block of the Hessian.
-    Matrix6d anchorBlock(std::size_t slot) const {
-        return hessian_factor_ * blocks_[static_cast<std::size_t>(anchor_) * rows_.size() + slot];
-    }
+    Matrix6d anchorBlock(int slot) const { return hessian_factor_ * blocks_[blockOf(anchor_, slot)]; }
 
     /// The part of the gradient that one edge makes of one keyframe.
     struct EdgePull {
@@ -94,9 +95,9 @@ class WindowEquations {
     bool isInHessian(std::int32_t slot) const {
         return at(rows_, slot) >= 0 || (slot == anchor_ && slot > 0);
     }
-    Matrix6d& block(std::int32_t row_slot, std::int32_t column_slot) {
-        return blocks_[static_cast<std::size_t>(row_slot) * rows_.size() +
-                       static_cast<std::size_t>(column_slot)];
+    template <class Index>
+    std::size_t blockOf(Index row_slot, Index column_slot) const {
+        return static_cast<std::size_t>(row_slot) * rows_.size() + static_cast<std::size_t>(column_slot);
     }
 
     MappingOptions options_;

@@ -32,7 +32,7 @@ std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& wi
                                            const std::vector<RelativePrior>& priors) {
     const int anchor = equations.anchor();
     const auto newest = static_cast<int>(window.size()) - 1;
-    const int own_row = newest < 0 ? -1 : equations.row(static_cast<std::size_t>(newest));
+    const int own_row = newest < 0 ? -1 : equations.row(newest);
     if (anchor < 1 || own_row < 0) return std::nullopt;
     const auto unknowns = static_cast<double>(equations.numRows());
     const auto pulls = static_cast<double>(equations.pulls().size());
@@ -47,7 +47,7 @@ std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& wi
         toCamera(window.back().T_world_camera, equations.origin()) * factor.solve(columns).transpose();
     if (!gain.allFinite()) return std::nullopt;
     const auto moves = [&](int slot, const Matrix6d& pull) -> Matrix6d {
-        const int row = equations.row(static_cast<std::size_t>(slot));
+        const int row = equations.row(slot);
         return row < 0 ? Matrix6d::Zero() : Matrix6d(gain.middleCols<6>(row) * pull);
     };
 
@@ -57,7 +57,7 @@ std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& wi
     out.reused = window[0].keyframe->id;
     out.follows.setZero();
     for (int slot = anchor + 1; slot <= newest; ++slot)
-        out.follows -= moves(slot, equations.anchorBlock(static_cast<std::size_t>(slot)).transpose());
+        out.follows -= moves(slot, equations.anchorBlock(slot).transpose());
     for (const RelativePrior& prior : priors) {
         const Matrix6d to_centre = prior.toCentre(window, equations.origin());
         const Matrix6d information = to_centre.transpose() * prior.information * to_centre;
@@ -71,7 +71,7 @@ std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& wi
 
     std::map<std::int32_t, Vector6d> moved;
     for (const WindowEquations::EdgePull& pull : equations.pulls()) {
-        const int row = equations.row(static_cast<std::size_t>(pull.slot));
+        const int row = equations.row(pull.slot);
         if (row < 0) continue;
         Vector6d& sum = moved.try_emplace(at(clusters, pull.edge), Vector6d::Zero()).first->second;
         sum -= gain.middleCols<6>(row) * pull.gradient;  // a step is against the gradient
