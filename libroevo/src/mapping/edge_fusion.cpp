@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace roevo {
 namespace {
@@ -16,20 +16,19 @@ constexpr double kReachAngle = 12.5 / 525, kReachSigmas = 8;  // rad
 
 FusedEdges EdgeFuser::fuse(const std::vector<WindowKeyframe>& window,
                            const std::vector<std::vector<int>>& clusters) {
-    for (std::vector<Member>& of_cluster : members_) of_cluster.clear();
+    std::vector<std::vector<Member>> members;  // of each cluster
     for (std::size_t slot = 0; slot < window.size(); ++slot) {
         for (std::size_t e = 0; e < clusters[slot].size(); ++e) {
             const IndexRange own = window[slot].keyframe->image.pointsOf(e);
             const auto cluster = static_cast<std::size_t>(clusters[slot][e]);
-            if (cluster >= members_.size()) members_.resize(cluster + 1);
-            members_[cluster].push_back({static_cast<std::int32_t>(slot),
-                                         static_cast<std::int32_t>(own.first),
-                                         static_cast<std::int32_t>(own.size())});
+            if (cluster >= members.size()) members.resize(cluster + 1);
+            members[cluster].push_back({static_cast<std::int32_t>(slot), static_cast<std::int32_t>(own.first),
+                                        static_cast<std::int32_t>(own.size())});
         }
     }
     FusedEdges out;
-    for (std::size_t cluster = 0; cluster < members_.size(); ++cluster) {
-        rest_ = members_[cluster];
+    for (std::size_t cluster = 0; cluster < members.size(); ++cluster) {
+        rest_ = std::move(members[cluster]);
         fuseCluster(window, static_cast<int>(cluster), out);
     }
     return out;

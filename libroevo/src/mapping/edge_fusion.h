@@ -79,7 +79,6 @@ class EdgeFuser {
     std::size_t nearest(const Eigen::Vector3d& p, std::size_t from, bool search_all) const;
 
     SensorOptions sensor_;
-    std::vector<std::vector<Member>> members_;  ///< of each cluster
     std::vector<Member> apart_, rest_;
     std::vector<char> seen_;  ///< of each slot
     std::vector<Node> chain_, run_;
