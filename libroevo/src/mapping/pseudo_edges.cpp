@@ -39,10 +39,6 @@ double tangentResidual(const PinholeCamera& camera, const MapKeyframe& keyframe,
 
 }  // namespace
 
-PseudoEdgeJudge::PseudoEdgeJudge(const MappingOptions& mapping, const SensorOptions& sensor,
-                                 const PinholeCamera& camera)
-    : options_(mapping), sensor_(sensor), camera_(camera) {}
-
 double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
                                  std::size_t p) const {
     const auto [first, end] = edges.observationsOf(p);

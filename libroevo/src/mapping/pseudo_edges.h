@@ -12,7 +12,8 @@ namespace roevo {
 /// Recognises pseudo-edges: cast shadows that move, reflections, occlusion borders.
 class PseudoEdgeJudge {
   public:
-    PseudoEdgeJudge(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera);
+    PseudoEdgeJudge(const MappingOptions& mapping, const SensorOptions& sensor, const PinholeCamera& camera)
+        : options_(mapping), sensor_(sensor), camera_(camera) {}
 
     /// Gives every edge its verdict: by the spread of its observations (instead of Eq. (16)'s largest
     /// eigenvalue, which the depth noise of the sensor dominates, across the edge in the images), and by
