@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 
 #include "tracking/relative_pose.h"
 #include "tracking/se3.h"

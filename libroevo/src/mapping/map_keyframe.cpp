@@ -1,7 +1,5 @@
 #include "mapping/map_keyframe.h"
 
-#include <algorithm>
-
 #include "line_fit.h"
 
 namespace roevo {

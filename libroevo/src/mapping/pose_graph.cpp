@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>
-#include <cmath>
 
 #include "indexing.h"
 #include "tracking/relative_pose.h"
