@@ -56,19 +56,18 @@ BundleAdjuster::BundleAdjuster(const MappingOptions& mapping, const SensorOption
 
 int BundleAdjuster::refine(std::vector<WindowKeyframe>& window, FusedEdges& edges,
                            const std::vector<RelativePrior>& priors, int iterations, double first_scale) {
-    WindowEquations& equations = equations_;
     int moved = 0;
-    equations.gather(window, edges);
-    if (iterations <= 0) equations.evaluate(window, edges.points, first_scale);
+    equations_.gather(window, edges);
+    if (iterations <= 0) equations_.evaluate(window, edges.points, first_scale);
     for (int iteration = 0; iteration < iterations; ++iteration) {
         // Wide at first where old and new keyframes may have drifted apart
-        equations.evaluate(window, edges.points, first_scale / (1 << std::min(iteration, 10)));
-        equations.build(window, edges.points);
-        if (equations.numRows() == 0) continue;  // all poses are fixed: only the points are fitted
-        for (const RelativePrior& prior : priors) addPrior(prior, window, equations);
-        equations.hessian.diagonal().array() += 5e-6;
+        equations_.evaluate(window, edges.points, first_scale / (1 << std::min(iteration, 10)));
+        equations_.build(window, edges.points);
+        if (equations_.numRows() == 0) continue;  // all poses are fixed: only the points are fitted
+        for (const RelativePrior& prior : priors) addPrior(prior, window, equations_);
+        equations_.hessian.diagonal().array() += 5e-6;
         const Eigen::VectorXd step =
-            -equations.hessian.selfadjointView<Eigen::Upper>().ldlt().solve(equations.gradient);
+            -equations_.hessian.selfadjointView<Eigen::Upper>().ldlt().solve(equations_.gradient);
         if (!step.allFinite()) break;
         ++moved;
         if (move(window, step) < kStill) break;
