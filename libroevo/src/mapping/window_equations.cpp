@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tracking/kernels.h"
+#include "tracking/motion_blur.h"
 #include "tracking/robust.h"
 #include "tracking/se3.h"
 
@@ -27,9 +28,9 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     edge_of_.clear();
     begin_.assign(1, 0);
     observations_.clear();
-    blurs_.clear();
+    std::vector<MotionBlur> blurs;  // of each slot
     for (const WindowKeyframe& view : window)
-        blurs_.emplace_back(view.keyframe->row_motion, camera_, sensor_.blur_time);
+        blurs.emplace_back(view.keyframe->row_motion, camera_, sensor_.blur_time);
     for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
         if (edges.verdicts[edge] != EdgeVerdict::kTrue) continue;
         const IndexRange own = edges.pointsOf(edge);
@@ -44,7 +45,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
                 const auto ny = static_cast<double>(keyframe.image.normal_y[i]);
                 const double x = static_cast<double>(keyframe.image.x[i]) - camera_.cx;
                 const double y = static_cast<double>(keyframe.image.y[i]) - camera_.cy;
-                const float blur = blurs_[static_cast<std::size_t>(slot)].variance(
+                const float blur = blurs[static_cast<std::size_t>(slot)].variance(
                     keyframe.points.x[i], keyframe.points.y[i], keyframe.points.z[i],
                     keyframe.image.normal_x[i], keyframe.image.normal_y[i]);
                 const auto trust = static_cast<double>(keyframe.weight[i] / (1 + blur));

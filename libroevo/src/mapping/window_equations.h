@@ -5,7 +5,6 @@
 #include "mapping/edge_fusion.h"
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/options.h"
-#include "tracking/motion_blur.h"
 
 namespace roevo {
 
@@ -108,7 +107,6 @@ class WindowEquations {
     std::vector<std::int32_t> edge_of_;         ///< of each of these points
     std::vector<LineObservation> observations_;
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
-    std::vector<MotionBlur> blurs_;  ///< of each slot
     std::vector<Residual> residuals_;
     std::vector<double> scales_;  ///< of each keyframe, px
     std::vector<float> scratch_;

@@ -104,20 +104,21 @@ Likeness PlaceDescriber::compare(const PlacePoints& place, const Pose& T_frame_p
 
 void PlaceDescriber::findCorners(const OrganizedEdges& edges, const cv::Mat& grey) {
     corners_.clear();
+    std::vector<float> strengths;  // of points of one edge
     for (int e = 0; e < edges.numEdges(); ++e) {
         const auto [first, end] = edges.pointsOf(e);
-        strength_.clear();
+        strengths.clear();
         for (std::size_t i = first; i < end; i += kCornerStep) {
-            strength_.push_back(cornerStrength(grey, nearestInteger(static_cast<double>(edges.x[i])),
+            strengths.push_back(cornerStrength(grey, nearestInteger(static_cast<double>(edges.x[i])),
                                                nearestInteger(static_cast<double>(edges.y[i]))));
         }
-        const int count = static_cast<int>(strength_.size());
+        const int count = static_cast<int>(strengths.size());
         for (int k = 0; k < count; ++k) {
-            const float own = at(strength_, k);
+            const float own = at(strengths, k);
             bool largest = own > 0;
             for (int other = std::max(0, k - kApart); largest && other < std::min(count, k + kApart + 1);
                  ++other) {
-                const float strength = at(strength_, other);
+                const float strength = at(strengths, other);
                 largest = other < k ? strength < own : strength <= own;  // of equal ones the first
             }
             if (largest) corners_.push_back({static_cast<std::int32_t>(first) + k * kCornerStep, own, 0});
@@ -129,7 +130,7 @@ void PlaceDescriber::chooseCorners(const OrganizedEdges& edges) {
     const double cell = kCellSize * camera_.pixelScale();
     const int columns = static_cast<int>(camera_.width / cell) + 1,
               rows = static_cast<int>(camera_.height / cell) + 1;
-    corners_of_cell_.assign(static_cast<std::size_t>(columns * rows), 0);
+    std::vector<std::int32_t> corners_of_cell(static_cast<std::size_t>(columns * rows), 0);
     const auto stronger = [](const Corner& a, const Corner& b) {
         return a.strength != b.strength ? a.strength > b.strength : a.point < b.point;
     };
@@ -139,7 +140,7 @@ void PlaceDescriber::chooseCorners(const OrganizedEdges& edges) {
         const int column =
             std::clamp(static_cast<int>(static_cast<double>(edges.x[i]) / cell), 0, columns - 1);
         const int row = std::clamp(static_cast<int>(static_cast<double>(edges.y[i]) / cell), 0, rows - 1);
-        corner.rank = at(corners_of_cell_, row * columns + column)++;
+        corner.rank = at(corners_of_cell, row * columns + column)++;
     }
     std::sort(corners_.begin(), corners_.end(), [&](const Corner& a, const Corner& b) {
         return a.rank != b.rank ? a.rank < b.rank : stronger(a, b);

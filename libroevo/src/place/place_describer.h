@@ -57,9 +57,7 @@ class PlaceDescriber {
     double patchRadius(double depth) const;
 
     PinholeCamera lens_, camera_;
-    std::vector<float> strength_;  ///< of points of one edge
     std::vector<Corner> corners_;
-    std::vector<std::int32_t> corners_of_cell_;
     cv::Mat integral_;  ///< of the grey image
 };
 
