@@ -76,7 +76,6 @@ TEST(RepeatabilityJudge, FragmentsOfOneEdgeAreThatEdge) {
     // Found again as its lower half only: half of its points. The upper half alone, in the reference, may be
     // associated with all of the line.
     OrganizedEdges whole = verticalLines({100}), half;
-    half.clear();
     for (int i = 50; i < 100; ++i) half.addPoint(100, 70.0F + static_cast<float>(i), 1, 0, 50);
     half.finishEdge();
     computeNormals(half, 4);
