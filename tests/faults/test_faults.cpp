@@ -113,13 +113,24 @@ TEST(CleanRecording, BreaksNoPromise) {
     EXPECT_TRUE(verdict.broken.empty()) << joined(verdict.broken);
 }
 
+const Fault& faultNamed(const std::string& name) {
+    return *std::find_if(allFaults().begin(), allFaults().end(),
+                         [&](const Fault& fault) { return fault.name == name; });
+}
+
+TEST(FramesThatAreMissing, AFastTurnMeanwhileIsCoveredByTheSigma) {
+    const std::optional<Recording> recording = clip("tum_fr1_rpy_100", 60);
+    if (!recording) GTEST_SKIP() << "needs the real clips";
+    const auto frames = inject(*recording, faultNamed("frames dropped"), kFrom, 5, 1);
+    const Played played = play(*recording, frames);
+    const Verdict verdict = judge(frames, played, cleanRun(*recording), Expected::kTracked, 5);
+    EXPECT_TRUE(verdict.broken.empty()) << joined(verdict.broken) << story(frames, played);
+}
+
 TEST(DepthThatDropsOut, TheReferenceIsWorthMoreThanAScrap) {
     const std::optional<Recording> recording = clip("icl_office_kt0_50", 50);
     if (!recording) GTEST_SKIP() << "needs the real clips";
-    const Fault& corner = *std::find_if(allFaults().begin(), allFaults().end(), [](const Fault& fault) {
-        return fault.name == "depth in a corner only";
-    });
-    const auto frames = inject(*recording, corner, 10, 30, 1);
+    const auto frames = inject(*recording, faultNamed("depth in a corner only"), 10, 30, 1);
     const Played played = play(*recording, frames);
     const Verdict verdict = judge(frames, played, cleanRun(*recording), Expected::kTracked, 30);
     EXPECT_TRUE(verdict.broken.empty()) << joined(verdict.broken);

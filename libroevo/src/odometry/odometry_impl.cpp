@@ -283,8 +283,11 @@ void Odometry::Impl::renewReference(Outcome& outcome) {
 /// What a tracked frame tells besides its pose.
 void Odometry::Impl::learn(Tracking& tracking, const Prediction& prediction) {
     motion.setBrightness(tracking.brightness);
-    // The mean velocity of a gap says nothing of how the camera moves at its end
-    if (prediction.blind) tracking.rows = motion.stillRows();
+    if (prediction.blind) {
+        // The mean velocity of a gap says nothing of how the camera moves at its end
+        tracking.rows = motion.stillRows();
+        addErrorsFromElsewhere(tracking.pose.uncertainty);
+    }
     auto& reference = world.reference();
     reference.count(tracking.matches.visible, tracking.found);
     if (!reference.row_motion.known())

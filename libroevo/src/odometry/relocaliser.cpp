@@ -21,16 +21,9 @@ constexpr double kSameDirection = 15 * kDegree;  ///< rad
 constexpr double kShortReach = 3.5, kAboutThere = 1;  ///< m
 /// Of the edges, both ways: fewer, as of a blurred image, tell the place and not the pose.
 constexpr double kLeastMatched = 0.25;
-// What views from elsewhere have wrong alike, in depth, calibration and the time of rows, one sigma: between
-// real keyframes 0.1 to 0.4 m apart, poses were 1 to 2 cm and 0.4 to 1.4 degrees off where edges say 1 mm
-constexpr double kViewsDiffer = 0.01;         ///< m
-constexpr double kViewsTurn = 0.5 * kDegree;  ///< rad
-
 RelativePose poseOf(const EdgeRegistration& found, int keyframe) {
     RelativePose pose{keyframe, found.T_frame_keyframe.inverse(), {found.covariance, {}}};
-    auto variances = pose.uncertainty.independent.diagonal().array();
-    variances.head<3>() += kViewsDiffer * kViewsDiffer;
-    variances.tail<3>() += kViewsTurn * kViewsTurn;
+    addErrorsFromElsewhere(pose.uncertainty);
     return pose;
 }
 

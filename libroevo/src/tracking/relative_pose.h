@@ -16,6 +16,10 @@ struct RelativePose {
 /// One sigma along the axis that is known least.
 double worstSigma(const Eigen::Matrix3d& covariance);
 
+/// Adds what views from elsewhere have wrong alike, in depth, calibration and the time of rows, to what is
+/// known of a pose that was found with nothing known of the motion.
+void addErrorsFromElsewhere(PoseUncertainty& uncertainty);
+
 /// What turns errors of position and of orientation to other axes.
 Matrix6d turnedBy(const Eigen::Matrix3d& R);
 
