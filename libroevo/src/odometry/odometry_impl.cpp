@@ -280,11 +280,12 @@ void Odometry::Impl::renewReference(Outcome& outcome) {
     tracking = std::move(again);
 }
 
-/// What a tracked frame tells besides its pose.
+/// What a tracked frame tells besides its pose, and what a gap before it leaves unknown.
 void Odometry::Impl::learn(Tracking& tracking, const Prediction& prediction) {
     motion.setBrightness(tracking.brightness);
     if (prediction.blind) {
-        // The mean velocity of a gap says nothing of how the camera moves at its end
+        // The mean velocity of a gap says nothing of how the camera moves at its end. What is `measured`
+        // stays: it is meant for known rows, and the next velocity is made of it
         tracking.rows = motion.stillRows();
         addErrorsFromElsewhere(tracking.pose.uncertainty);
     }
