@@ -8,6 +8,7 @@
 #include "odometry/front_end.h"
 #include "tracking/fine_tracker.h"
 #include "tracking/se3.h"
+#include "tracking/tracker.h"
 
 namespace roevo {
 namespace {
@@ -165,7 +166,7 @@ TEST_F(FineTracking, WhatAVelocityOfTheRowsMovesIsWhatTrackingWithAnotherOneFind
         Vector6d moved;
         moved << apart.translation(), turn.angle() * turn.axis();
         moved /= 2 * kStep;
-        const Matrix6d of_rows = track(axis, 0).of_rows;
+        const Matrix6d of_rows = track(axis, 0).of_velocity;
         EXPECT_GT(moved.norm(), 1e-4) << axis << ": else there is nothing to see";
         for (const int first : {0, 3}) {
             const double length = moved.segment<3>(first).norm();
@@ -175,11 +176,38 @@ TEST_F(FineTracking, WhatAVelocityOfTheRowsMovesIsWhatTrackingWithAnotherOneFind
         EXPECT_GT(moved.dot(of_rows * moved), 0.75 * moved.squaredNorm() * of_rows.trace())
             << axis << ": in another direction";
     }
+    // A read-out time that is not known adds as much as one that is so long
     shutter.velocity_variance.setOnes();
-    shutter.rows.seconds_per_row = 0;
-    EXPECT_EQ(tracker.track(keyframe_, frame_, truth_, {truth_}, shutter, Brightness()).of_rows,
-              Matrix6d::Zero())
-        << "all rows at once";
+    const auto tracked = [&] {
+        return tracker.track(keyframe_, frame_, truth_, {truth_}, shutter, Brightness());
+    };
+    const Matrix6d known = tracked().of_velocity;
+    shutter.readout_sigma = 0.75 * shutter.rows.seconds_per_row;
+    const FineResult either = tracked();
+    EXPECT_LT((either.of_velocity - known).norm(), 1e-4 * known.norm());
+    EXPECT_LT((either.uncertainty.common - 0.75 * 0.75 * known).norm(), 1e-4 * known.norm());
+    shutter.rows.seconds_per_row = shutter.readout_sigma = 0;
+    const FineResult at_once = tracked();
+    EXPECT_EQ(at_once.of_velocity, Matrix6d::Zero());
+    EXPECT_EQ(at_once.uncertainty.common, Matrix6d::Zero());
+}
+
+// The frame was said to be read at once, also to those that are tracked from it where it becomes a keyframe
+TEST_F(FineTracking, AgainstAKeyframeWhoseRowsAreNotKnownThoseOfTheFrameAreToldAllTheSame) {
+    Prediction prediction;
+    prediction.prior.mean = truth_;
+    prediction.T_reference_camera = prediction.T_reference_last = truth_.inverse();
+    RollingShutter& shutter = prediction.shutter;
+    shutter.rows.seconds_per_row = 2e-5;
+    shutter.since_previous = 4. / 30;
+    shutter.velocity_variance.setOnes();
+    ASSERT_FALSE(keyframe_.row_motion.known());
+    const Tracking tracking = Tracker(sequence_->camera, options_).track(keyframe_, frame_, prediction);
+    ASSERT_TRUE(tracking.tracked);
+    EXPECT_EQ(tracking.rows.seconds_per_row, shutter.rows.seconds_per_row);
+    const RowMotion moved = shutter.motion(truth_);
+    EXPECT_LT((tracking.rows.velocity - moved.velocity).norm(), 0.05 * moved.velocity.norm());
+    EXPECT_GT(tracking.pose.uncertainty.common.trace(), 0) << "that both moved alike is a guess";
 }
 
 }  // namespace

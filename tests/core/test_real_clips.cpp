@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "core/support/real_clip.h"
 #include "core/support/sparse_depth.h"
@@ -164,19 +165,26 @@ class TwoRecordings : public ::testing::TestWithParam<Mode> {};
 TEST_P(TwoRecordings, OfADeskAreOneMap) {
     OdometryOptions options;
     options.mode = GetParam();
-    std::unique_ptr<Odometry> odometry;
-    std::vector<StampedPose> truth;
-    for (const char* name : {"tum_fr1_xyz_150", "tum_fr1_rpy_100"}) {
-        const std::string folder = test::dataFolder() + "/" + name;
-        if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
-        const DatasetReader reader = openDataset(folder);
-        for (const StampedPose& pose : readTumTrajectory(reader.groundTruthPath())) truth.push_back(pose);
-        if (!odometry) odometry = std::make_unique<Odometry>(reader.camera(), options);
-        for (std::size_t i = 0; i < reader.size(); ++i) (void)odometry->processFrame(reader.readFrame(i));
+    // Where the second one is found, one frame decides: the median of three
+    std::vector<double> ates;
+    for (const std::size_t start : {0, 3, 6}) {
+        std::unique_ptr<Odometry> odometry;
+        std::vector<StampedPose> truth;
+        for (const char* name : {"tum_fr1_xyz_150", "tum_fr1_rpy_100"}) {
+            const std::string folder = test::dataFolder() + "/" + name;
+            if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
+            const DatasetReader reader = openDataset(folder);
+            for (const StampedPose& pose : readTumTrajectory(reader.groundTruthPath())) truth.push_back(pose);
+            const std::size_t from = odometry ? start : 0;
+            if (!odometry) odometry = std::make_unique<Odometry>(reader.camera(), options);
+            for (std::size_t i = from; i < reader.size(); ++i)
+                (void)odometry->processFrame(reader.readFrame(i));
+        }
+        ates.push_back(evaluate(truth, odometry->trajectory()).ate.translation.rmse);
     }
-    const double both = evaluate(truth, odometry->trajectory()).ate.translation.rmse;
-    RecordProperty("cm", std::to_string(100 * both));
-    EXPECT_LT(both, GetParam() == Mode::kBundleAdjustment ? 0.008 : 0.016);
+    std::sort(ates.begin(), ates.end());
+    RecordProperty("cm", std::to_string(100 * ates[1]));
+    EXPECT_LT(ates[1], GetParam() == Mode::kBundleAdjustment ? 0.008 : 0.013);
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, TwoRecordings, ::testing::Values(Mode::kTracking, Mode::kBundleAdjustment));

@@ -3,6 +3,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "core/support/random_pose.h"
 #include "odometry/trajectory.h"
@@ -67,6 +70,52 @@ TEST(RelativePose, ItsCovarianceIsThatOfManyDisturbedPoses) {
         const Matrix6d white = root.matrixL().solve(half.transpose());
         EXPECT_LT((white - Matrix6d::Identity()).cwiseAbs().maxCoeff(), 0.05) << white;
     }
+}
+
+TEST(RelativePose, WhatIsCommonAddsUpAsTheRestDoes) {
+    std::mt19937 random(126);
+    for (int i = 0; i < 20; ++i) {
+        RelativePose pose = randomRelative(random), keyframe = randomRelative(random);
+        const Matrix6d changed = changeReference(pose, keyframe, 1).covariance();
+        const Matrix6d composed = compose(keyframe, pose).covariance();
+        for (PoseUncertainty* uncertainty : {&pose.uncertainty, &keyframe.uncertainty}) {
+            uncertainty->common = 0.7 * uncertainty->independent;
+            uncertainty->independent *= 0.3;
+        }
+        for (const auto& [sum, whole] : {std::pair(changeReference(pose, keyframe, 1), changed),
+                                         std::pair(compose(keyframe, pose), composed)}) {
+            EXPECT_LT((sum.covariance() - whole).norm(), 1e-12 * whole.norm());
+            EXPECT_LT((sum.uncertainty.own() - 0.3 * whole).norm(), 1e-12 * whole.norm());
+        }
+    }
+}
+
+// Frames 1 and 2 of a track, whose rows' motion was a guess, were smoothed away from where they were measured
+TEST(RelativePose, WhatNeighboursHaveWrongAlikeIsNotSmoothedAway) {
+    const auto farthest = [](const Matrix6d& own, const Matrix6d& common) {
+        constexpr int kFrames = 30;
+        std::mt19937 random(127);
+        std::normal_distribution<double> normal;
+        Trajectory trajectory;
+        trajectory.beginTrack(0, Pose::Identity(), Matrix6d::Zero());
+        std::vector<RelativePose> measured;
+        for (int i = 0; i < kFrames; ++i) {
+            Pose pose = Pose::Identity();
+            pose.translation() = Eigen::Vector3d(0.01 * i + 0.002 * normal(random), 0, 0);
+            measured.push_back({0, pose, {own, {}, common}});
+            trajectory.addFrame(i / 30., measured.back());
+        }
+        double most = 0;
+        for (int i = 1; i < kFrames; ++i)
+            most = std::max(most, (trajectory.frames()[static_cast<std::size_t>(i)].T_world_camera.inverse() *
+                                   measured[static_cast<std::size_t>(i)].T_keyframe_camera)
+                                      .translation()
+                                      .norm());
+        return most;
+    };
+    const Matrix6d exact = 1e-12 * Matrix6d::Identity(), unsure = 4e-6 * Matrix6d::Identity();
+    EXPECT_GT(farthest(unsure, exact), 1e-3);
+    EXPECT_LT(farthest(exact, unsure), 1e-5);
 }
 
 TEST(RelativePose, OfAKnownKeyframeTheCovarianceStaysAsItWas) {

@@ -253,6 +253,7 @@ TEST(ReadoutEstimator, FindsAKnownReadoutTimeInLinearData) {
     const double truth = 2.5e-5;  // s per row
     ReadoutEstimator estimator(1e-4, 0.95);
     EXPECT_EQ(estimator.secondsPerRow(), 0);
+    EXPECT_NEAR(estimator.sigma(), 1e-4, 1e-12) << "of the prior";
     for (int frame = 0; frame < 60; ++frame) {
         Evidence evidence;
         Vector6d pose_error;
@@ -267,6 +268,7 @@ TEST(ReadoutEstimator, FindsAKnownReadoutTimeInLinearData) {
         estimator.add(evidence);
     }
     EXPECT_NEAR(estimator.secondsPerRow(), truth, 0.01 * truth);
+    EXPECT_LT(estimator.sigma(), 1e-6);
 }
 
 // All frames that are tracked from a keyframe share its errors, which differ from keyframe to keyframe.

@@ -121,10 +121,23 @@ const Fault& faultNamed(const std::string& name) {
 TEST(FramesThatAreMissing, AFastTurnMeanwhileIsCoveredByTheSigma) {
     const std::optional<Recording> recording = clip("tum_fr1_rpy_100", 60);
     if (!recording) GTEST_SKIP() << "needs the real clips";
-    const auto frames = inject(*recording, faultNamed("frames dropped"), kFrom, 5, 1);
-    const Played played = play(*recording, frames);
-    const Verdict verdict = judge(frames, played, cleanRun(*recording), Expected::kTracked, 5);
-    EXPECT_TRUE(verdict.broken.empty()) << joined(verdict.broken) << story(frames, played);
+    std::vector<double> ates;
+    double clean = 0;
+    for (std::size_t from = kFrom - 2; from <= kFrom + 2; ++from) {
+        const auto frames = inject(*recording, faultNamed("frames dropped"), from, 5, 1);
+        const Played played = play(*recording, frames);
+        const Verdict verdict = judge(frames, played, cleanRun(*recording), Expected::kTracked, 5);
+        EXPECT_LE(verdict.until_ok, 5) << from;
+        EXPECT_LE(verdict.worst_named, 0) << from << story(frames, played);
+        ates.push_back(verdict.ate);
+        if (from != kFrom) continue;
+        EXPECT_LE(verdict.worst_jump, 0) << story(frames, played);
+        clean = verdict.clean_ate;
+    }
+    // Which wrong pose one gap ends in is luck
+    EXPECT_LT(ates[2], 0.0069);
+    std::sort(ates.begin(), ates.end());
+    EXPECT_LT(ates[2], 1.5 * clean + 0.002);
 }
 
 TEST(DepthThatDropsOut, TheReferenceIsWorthMoreThanAScrap) {

@@ -9,8 +9,9 @@ namespace roevo {
 struct MotionSample {
     double timestamp = 0;
     Pose T_world_camera = Pose::Identity();
-    Matrix6d covariance = Matrix6d::Zero();  ///< position, then orientation, along the camera's axes
-    bool measured = true;                    ///< else pose and covariance tell nothing
+    /// Position, then orientation, along the camera's axes, without what is common to neighbours
+    Matrix6d covariance = Matrix6d::Zero();
+    bool measured = true;  ///< else pose and covariance tell nothing
 };
 
 /// Puts poses that were not measured between those that were, by time.

@@ -52,7 +52,7 @@ void Trajectory::load(KeyframeGraph graph, bool held) {
 
 KeyframeGraph Trajectory::graph() const {
     KeyframeGraph graph{keyframes_, links_, {}, related_, loops_};
-    for (RelativePose& link : graph.links) forgetAll(link.uncertainty);
+    for (RelativePose& link : graph.links) link.uncertainty = {link.covariance(), {}};
     for (const PoseUncertainty& known : in_world_) graph.covariances.push_back(known.covariance());
     return graph;
 }
@@ -292,7 +292,7 @@ std::vector<StampedPose> Trajectory::frames(bool smooth) const {
             const Frame& frame = frames_[k];
             if (!areOfOneTrack(frames_[begin].pose.keyframe, frame.pose.keyframe)) break;
             // A keyframe is where the map has it
-            const Matrix6d covariance = isKeyframe(frame) ? Matrix6d::Zero() : frame.pose.covariance();
+            const Matrix6d covariance = isKeyframe(frame) ? Matrix6d::Zero() : frame.pose.uncertainty.own();
             samples.push_back({frame.timestamp, poses[k].T_world_camera, covariance, frame.measured});
             if (frame.measured) count = samples.size();
             if (!frames_[begin].measured) break;

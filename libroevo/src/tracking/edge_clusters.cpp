@@ -18,20 +18,21 @@ Matrix6d wholeOf(const Matrix6d& upper_triangle) {
 
 }  // namespace
 
-Matrix6d PoseUncertainty::covariance() const {
+Matrix6d PoseUncertainty::own() const {
     Matrix6d sum = independent;
     for (const EdgeInfluence& edge : influences) sum.noalias() += edge.moved * edge.moved.transpose();
     return sum;
 }
 
 double PoseUncertainty::designEffect() const {
-    const double effect = (covariance() * independent.inverse()).trace() / 6;
+    const double effect = (own() * independent.inverse()).trace() / 6;
     return std::isfinite(effect) ? std::max(1.0, effect) : 1;
 }
 
 PoseUncertainty sum(const PoseUncertainty& first, const Matrix6d& carried, const PoseUncertainty& second) {
     PoseUncertainty out;
     out.independent = second.independent + carried * first.independent * carried.transpose();
+    out.common = second.common + carried * first.common * carried.transpose();
     out.influences.reserve(first.influences.size() + second.influences.size());
     auto a = first.influences.begin();
     auto b = second.influences.begin();

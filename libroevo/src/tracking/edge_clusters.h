@@ -23,9 +23,12 @@ struct EdgeInfluence {
 struct PoseUncertainty {
     Matrix6d independent = Matrix6d::Zero();
     std::vector<EdgeInfluence> influences;  ///< in the order of clusters, each once
+    /// What frames have wrong as their neighbours do, like a read-out time: no mean makes it less.
+    Matrix6d common = Matrix6d::Zero();
 
-    Matrix6d covariance() const;
-    /// How many errors count as one: the covariance over what is independent of it, mean of all directions.
+    Matrix6d covariance() const { return own() + common; }
+    Matrix6d own() const;  ///< covariance without what is common
+    /// How many errors count as one: own() over what is independent of it, mean of all directions.
     double designEffect() const;
 };
 

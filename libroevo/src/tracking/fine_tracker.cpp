@@ -83,10 +83,13 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
         clusters_.start(keyframe.clusters);
         for (const ResidualTerm* term : terms) term->addTo(clusters_);
         result.uncertainty = clusters_.uncertainty(found.system, edges_.slope(), &likely);
-        if (shutter.rows.seconds_per_row != 0) {
-            const Matrix6d moved =
-                edges_.movedByVelocity(shutter.motion(found.T_current_keyframe), likely.information());
-            result.of_rows = moved * shutter.velocity_variance.asDiagonal() * moved.transpose();
+        if (const double longest = shutter.longReadout(); longest != 0) {
+            const RowMotion rows = shutter.motion(found.T_current_keyframe).at(longest);
+            const Matrix6d moved = edges_.movedByVelocity(rows, likely.information());
+            const Matrix6d most = moved * shutter.velocity_variance.asDiagonal() * moved.transpose();
+            const double share = shutter.rows.seconds_per_row / longest;
+            result.of_velocity = share * share * most;
+            result.uncertainty.common = most - result.of_velocity;
         }
     }
     result.converged =

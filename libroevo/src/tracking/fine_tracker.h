@@ -10,11 +10,13 @@ namespace roevo {
 struct FineResult {
     bool converged = false;
     Pose T_current_keyframe = Pose::Identity();
-    int inliers = 0;                      ///< associated points that passed the chi-square test
-    double matched_ratio = 0;             ///< see EdgeMatches
-    double depth_agreement = 1;           ///< see EdgeTerm::depthAgreement()
-    PoseUncertainty uncertainty;          ///< of the left perturbation (t, phi) of T_current_keyframe
-    Matrix6d of_rows = Matrix6d::Zero();  ///< covariance that a guessed motion of the rows adds to it
+    int inliers = 0;             ///< associated points that passed the chi-square test
+    double matched_ratio = 0;    ///< see EdgeMatches
+    double depth_agreement = 1;  ///< see EdgeTerm::depthAgreement()
+    /// Of the left perturbation (t, phi) of T_current_keyframe; common is what rows add that may take longer
+    /// to read than is known
+    PoseUncertainty uncertainty;
+    Matrix6d of_velocity = Matrix6d::Zero();  ///< covariance that a guessed velocity of the rows adds to it
 };
 
 /// Edge-wise registration: EdgeTerm joined by the photometric term and by what is likely beforehand.

@@ -129,6 +129,7 @@ PosePrior MotionModel::searchPrior(double timestamp) const {
 RollingShutter MotionModel::shutter(double timestamp) const {
     RollingShutter shutter;
     shutter.rows = stillRows().at(secondsPerRow());
+    if (sensor_.estimate_readout) shutter.readout_sigma = readout_.sigma();
     const double dt = timestamp - last_timestamp_;
     const bool known = has_last_ && dt >= kShortestStep && dt <= kLongestStep;
     // A mean velocity is that of half the time ago

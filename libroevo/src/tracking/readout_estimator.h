@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+
 #include "tracking/gauss_newton.h"
 
 namespace roevo {
@@ -16,6 +18,7 @@ class ReadoutEstimator {
     /// @param frames    of 30 Hz since the last one
     void add(const PoseSystem& evidence, double frames = 1);
     double secondsPerRow() const { return vector_ / (prior_ + information_); }
+    double sigma() const { return 1 / std::sqrt(prior_ + information_); }  ///< of it
     /// What a frame would add to what is known, in proportion to it.
     double worth(const PoseSystem& evidence) const;
 

@@ -17,7 +17,7 @@ constexpr double kViewsTurn = 0.5 * kDegree;  ///< rad
 }  // namespace
 
 void addErrorsFromElsewhere(PoseUncertainty& uncertainty) {
-    auto variances = uncertainty.independent.diagonal().array();
+    auto variances = uncertainty.common.diagonal().array();
     variances.head<3>() += kViewsDiffer * kViewsDiffer;
     variances.tail<3>() += kViewsTurn * kViewsTurn;
 }

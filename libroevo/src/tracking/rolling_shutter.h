@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -57,6 +58,7 @@ struct RollingShutter {
     /// How they are read, and the mean motion over the interval before the previous pose, in that camera's
     /// axes. Where there is no previous pose, the motion itself.
     RowMotion rows;
+    double readout_sigma = 0;     ///< one sigma of rows.seconds_per_row, s
     double earlier_interval = 0;  ///< s, length of that; 0: not known
     Pose T_previous_keyframe = Pose::Identity();
     double since_previous = 0;  ///< s; 0 when there is no trusted previous pose
@@ -66,6 +68,8 @@ struct RollingShutter {
     Vector6d velocity_variance = Vector6d::Zero();
 
     RowMotion motion(const Pose& T_current_keyframe) const;
+    /// As long as the read-out time of a row may well be, s.
+    double longReadout() const { return std::hypot(rows.seconds_per_row, readout_sigma); }
 };
 
 /// Rigid motion, camera and row motion for the kernels.

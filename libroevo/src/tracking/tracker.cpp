@@ -132,7 +132,10 @@ Tracking Tracker::run(const Keyframe& reference, const Frame& frame, const Predi
     out.pose.keyframe = reference.id;
     RollingShutter shutter = prediction.shutter;
     // Two images in a row are sheared nearly alike: better both for still than one of them
-    if (!reference.row_motion.known()) shutter.rows.seconds_per_row = 0;
+    if (!reference.row_motion.known()) {
+        shutter.readout_sigma = shutter.longReadout();
+        shutter.rows.seconds_per_row = 0;
+    }
     const Stopwatch coarse_watch;
     const CoarseResult aligned = align(reference, frame, shutter, guesses, prediction.brightness);
     out.ms_coarse = coarse_watch.milliseconds();
@@ -141,7 +144,7 @@ Tracking Tracker::run(const Keyframe& reference, const Frame& frame, const Predi
     out.fault = options_.mode == Mode::kCoarse ? runCoarse(reference, frame, aligned, shutter, out)
                                                : runFine(reference, frame, aligned, prior, shutter, out);
     out.tracked = !out.fault;
-    out.rows = shutter.motion(out.pose.T_keyframe_camera.inverse());
+    out.rows = prediction.shutter.motion(out.pose.T_keyframe_camera.inverse());
     out.ms_fine = fine_watch.milliseconds();
     return out;
 }
@@ -173,7 +176,7 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
         FineResult found = fine_.assess(reference, frame, T, shutter.motion(T));
         found.converged = found.converged && refined.converged;
         found.uncertainty = refined.uncertainty;
-        found.of_rows = refined.of_rows;
+        found.of_velocity = refined.of_velocity;
         return found;
     };
     FineResult found = registered();
@@ -198,8 +201,10 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
     if (!found.converged) return describeFailure(found, options_.fine);
     out.depth_fault = contradiction;
     out.pose.T_keyframe_camera = found.T_current_keyframe.inverse();
-    out.measured = out.pose.uncertainty = found.uncertainty;
-    out.pose.uncertainty.independent += found.of_rows;
+    out.pose.uncertainty = found.uncertainty;
+    out.pose.uncertainty.independent += found.of_velocity;
+    out.measured = found.uncertainty;
+    out.measured.common.setZero();
     if (out.doubtful) out.doubt();
     return {};
 }
