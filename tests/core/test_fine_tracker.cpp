@@ -176,7 +176,7 @@ TEST_F(FineTracking, WhatAVelocityOfTheRowsMovesIsWhatTrackingWithAnotherOneFind
         EXPECT_GT(moved.dot(of_rows * moved), 0.75 * moved.squaredNorm() * of_rows.trace())
             << axis << ": in another direction";
     }
-    // A read-out time that is not known adds as much as one that is so long
+    // Against a keyframe whose motion is not known, an unknown read-out time adds as much as one so long
     shutter.velocity_variance.setOnes();
     const auto tracked = [&] {
         return tracker.track(keyframe_, frame_, truth_, {truth_}, shutter, Brightness());
@@ -185,7 +185,17 @@ TEST_F(FineTracking, WhatAVelocityOfTheRowsMovesIsWhatTrackingWithAnotherOneFind
     shutter.readout_sigma = 0.75 * shutter.rows.seconds_per_row;
     const FineResult either = tracked();
     EXPECT_LT((either.of_velocity - known).norm(), 1e-4 * known.norm());
-    EXPECT_LT((either.uncertainty.common - 0.75 * 0.75 * known).norm(), 1e-4 * known.norm());
+    EXPECT_LT((either.uncertainty.common - 1.25 * 1.25 * known).norm(), 1e-4 * known.norm());
+    // Else as much as the one moved otherwise than the other
+    keyframe_.row_motion.velocity.x() = 0.1;
+    shutter.rows.velocity = truth_.linear() * keyframe_.row_motion.velocity + Eigen::Vector3d(0.2, 0, 0);
+    shutter.velocity_variance = Vector6d::Unit(0);
+    const FineResult otherwise = tracked();
+    EXPECT_GT(otherwise.of_velocity.norm(), 0);
+    EXPECT_LT((otherwise.uncertainty.common - 0.15 * 0.15 * otherwise.of_velocity).norm(),
+              1e-3 * otherwise.uncertainty.common.norm());
+    shutter.rows.velocity = truth_.linear() * keyframe_.row_motion.velocity;
+    EXPECT_LT(tracked().uncertainty.common.norm(), 1e-4 * otherwise.uncertainty.common.norm());
     shutter.rows.seconds_per_row = shutter.readout_sigma = 0;
     const FineResult at_once = tracked();
     EXPECT_EQ(at_once.of_velocity, Matrix6d::Zero());

@@ -83,13 +83,18 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
         clusters_.start(keyframe.clusters);
         for (const ResidualTerm* term : terms) term->addTo(clusters_);
         result.uncertainty = clusters_.uncertainty(found.system, edges_.slope(), &likely);
-        if (const double longest = shutter.longReadout(); longest != 0) {
-            const RowMotion rows = shutter.motion(found.T_current_keyframe).at(longest);
-            const Matrix6d moved = edges_.movedByVelocity(rows, likely.information());
-            const Matrix6d most = moved * shutter.velocity_variance.asDiagonal() * moved.transpose();
+        if (const double longest = shutter.longReadout(); longest > 0) {
+            const RowMotion rows = shutter.motion(found.T_current_keyframe), &then = keyframe.row_motion;
+            const Matrix6d moved = edges_.movedByVelocity(rows.at(longest), likely.information());
+            const Matrix6d of_guess = moved * shutter.velocity_variance.asDiagonal() * moved.transpose();
             const double share = shutter.rows.seconds_per_row / longest;
-            result.of_velocity = share * share * most;
-            result.uncertainty.common = most - result.of_velocity;
+            result.of_velocity = share * share * of_guess;
+            // What moved alike looks alike, however long it takes to read
+            const Eigen::Matrix3d R = found.T_current_keyframe.linear();
+            Vector6d faster;
+            faster << rows.velocity - R * then.velocity, rows.turn - R * then.turn;
+            const Vector6d longer = shutter.readout_sigma / longest * moved * faster;
+            result.uncertainty.common = then.known() ? Matrix6d(longer * longer.transpose()) : of_guess;
         }
     }
     result.converged =
