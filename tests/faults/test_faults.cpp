@@ -127,15 +127,15 @@ TEST(FramesThatAreMissing, AFastTurnMeanwhileIsCoveredByTheSigma) {
         const auto frames = inject(*recording, faultNamed("frames dropped"), from, 5, 1);
         const Played played = play(*recording, frames);
         const Verdict verdict = judge(frames, played, cleanRun(*recording), Expected::kTracked, 5);
+        EXPECT_GT(verdict.until_ok, 0) << from;
         EXPECT_LE(verdict.until_ok, 5) << from;
         EXPECT_LE(verdict.worst_named, 0) << from << story(frames, played);
         ates.push_back(verdict.ate);
         if (from != kFrom) continue;
-        EXPECT_LE(verdict.worst_jump, 0) << story(frames, played);
+        EXPECT_TRUE(verdict.broken.empty()) << joined(verdict.broken) << story(frames, played);
         clean = verdict.clean_ate;
     }
     // Which wrong pose one gap ends in is luck
-    EXPECT_LT(ates[2], 0.0069);
     std::sort(ates.begin(), ates.end());
     EXPECT_LT(ates[2], 1.5 * clean + 0.002);
 }
