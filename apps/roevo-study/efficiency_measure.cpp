@@ -105,8 +105,7 @@ struct StepTimes {
 /// Times both steps of a tracker by the same clock around the same calls.
 class TimedTracker : public Tracker {
   public:
-    TimedTracker(const PinholeCamera& camera, const OdometryOptions& options, bool count_steps)
-        : Tracker(camera, options), count_steps_(count_steps) {}
+    using Tracker::Tracker;
 
     void reset() { times_ = StepTimes(); }
     const StepTimes& times() const { return times_; }
@@ -121,7 +120,6 @@ class TimedTracker : public Tracker {
         return result;
     }
 
-    bool count_steps_;
     StepTimes times_;
     FrameWork work_;
 };
@@ -129,14 +127,11 @@ class TimedTracker : public Tracker {
 /// ROEVO's fine tracking, and beside it that and the field with all that differs switched off.
 class OursTimed : public TimedTracker {
   public:
-    OursTimed(const StudyInput& input, const OdometryOptions& options, bool count_steps)
-        : TimedTracker(input.camera, options, count_steps),
+    OursTimed(const StudyInput& input, const OdometryOptions& options)
+        : TimedTracker(input.camera, options),
           fine_(input.camera, options_),
           alike_(input.camera, withFine(options_, alikeOptions(options_.fine))),
-          alike_field_(input.camera, alikeOptions(options_.fine), 0),
-          steps_(options_.fine, [&](const FineOptions& fine) {
-              return FineTracker(input.camera, withFine(options_, fine));
-          }) {}
+          alike_field_(input.camera, alikeOptions(options_.fine), 0) {}
 
   protected:
     FineResult refine(const Keyframe& reference, const Frame& frame, const Pose& T_start,
@@ -148,8 +143,7 @@ class OursTimed : public TimedTracker {
         FineResult result;
         times_.registration = timed([&] { result = track(fine_); });
         times_.besides = timed([&] {
-            work_.ours.points = lookedUpPoints(reference, options_.fine);
-            if (count_steps_) work_.ours.steps = steps_.count(result, track);
+            work_.ours = {lookedUpPoints(reference, options_.fine), result.iterations};
             alike_field_.prepare(frame);
             bool converged = true;
             times_.alike = timed([&] { converged = track(alike_).converged; });
@@ -162,43 +156,35 @@ class OursTimed : public TimedTracker {
   private:
     FineTracker fine_, alike_;
     DistanceFieldTracker alike_field_;
-    StepCounter<FineTracker> steps_;
 };
 
 class FieldTimed : public TimedTracker {
   public:
-    FieldTimed(const StudyInput& input, const OdometryOptions& options, bool count_steps)
-        : TimedTracker(input.camera, options, count_steps),
-          field_(input.camera, options_.fine, 0),
-          steps_(options_.fine,
-                 [&](const FineOptions& fine) { return DistanceFieldTracker(input.camera, fine, 0); }) {}
+    FieldTimed(const StudyInput& input, const OdometryOptions& options)
+        : TimedTracker(input.camera, options), field_(input.camera, options_.fine, 0) {}
 
   protected:
     FineResult refine(const Keyframe& reference, const Frame& frame, const Pose& T_start,
                       const PosePrior& prior, const RollingShutter& shutter,
                       const Brightness& brightness) override {
-        const auto track = [&](DistanceFieldTracker& tracker) {
-            return tracker.track(reference, frame, T_start, prior, shutter, brightness);
-        };
         field_.prepare(frame);  // building the field is timed apart
         FineResult result;
-        times_.registration = timed([&] { result = track(field_); });
-        work_.field.points = lookedUpPoints(reference, options_.fine);
-        if (count_steps_) work_.field.steps = steps_.count(result, track);
+        times_.registration =
+            timed([&] { result = field_.track(reference, frame, T_start, prior, shutter, brightness); });
+        work_.field = {lookedUpPoints(reference, options_.fine), result.iterations};
         return result;
     }
 
   private:
     DistanceFieldTracker field_;
-    StepCounter<DistanceFieldTracker> steps_;
 };
 
 /// An odometry and the tracker in it.
 template <class Timed>
 struct Contestant {
-    Contestant(const StudyInput& input, Mode mode, bool count_steps)
+    Contestant(const StudyInput& input, Mode mode)
         : Contestant(input, optionsFor(input, mode),
-                     std::make_unique<Timed>(input, optionsFor(input, mode), count_steps)) {}
+                     std::make_unique<Timed>(input, optionsFor(input, mode))) {}
     Contestant(const StudyInput& input, const OdometryOptions& options, std::unique_ptr<Timed> own)
         : tracker(*own), odometry(input.camera, options, Pose::Identity(), std::move(own)) {}
 
@@ -209,10 +195,9 @@ struct Contestant {
 /// Both odometries.
 class Contest {
   public:
-    /// @param count_steps  of the registrations, which takes time
-    Contest(const StudyInput& input, bool count_steps)
-        : ours_(input, Mode::kBundleAdjustment, count_steps),
-          theirs_(input, Mode::kTracking, count_steps),
+    explicit Contest(const StudyInput& input)
+        : ours_(input, Mode::kBundleAdjustment),
+          theirs_(input, Mode::kTracking),
           features_(input.camera, input.options.edges) {}
 
     /// @return whether both tracked the frame
@@ -255,11 +240,10 @@ class Contest {
     FeatureProcessing features_;
 };
 
-Measured measureOnce(const StudyInput& input, bool first_pass, bool ours_first, Progress& progress,
-                     std::size_t& done) {
+Measured measureOnce(const StudyInput& input, bool ours_first, Progress& progress, std::size_t& done) {
     Measured measured;
     measured.name = input.name;
-    Contest contest(input, first_pass);
+    Contest contest(input);
     const auto source = input.open();
     for (SourceFrame frame; source->next(frame);) {
         progress.update(++done);
@@ -281,10 +265,10 @@ Measured measureOnce(const StudyInput& input, bool first_pass, bool ours_first, 
 
 Measured measureEfficiency(const StudyInput& input, Progress& progress, std::size_t& done) {
     const OneThread one_thread;
-    Measured least = measureOnce(input, true, true, progress, done);
+    Measured least = measureOnce(input, true, progress, done);
     const auto take = [](double& a, double b) { a = std::min(a, b); };
     for (int pass = 1; pass < kEfficiencyPasses; ++pass) {
-        const Measured again = measureOnce(input, false, pass % 2 == 0, progress, done);
+        const Measured again = measureOnce(input, pass % 2 == 0, progress, done);
         for (std::size_t i = 0; i < std::min(least.frames.size(), again.frames.size()); ++i)
             for (std::size_t k = 0; k < kOperations; ++k) take(least.frames[i][k], again.frames[i][k]);
         for (std::size_t i = 0; i < std::min(least.mapping.size(), again.mapping.size()); ++i)

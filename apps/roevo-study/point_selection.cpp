@@ -5,7 +5,7 @@
 
 #include "edges/canny.h"
 #include "edges/edge_depth.h"
-#include "tracking/kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 namespace {

@@ -13,6 +13,12 @@ decltype(auto) at(Array&& array, Index index) {
     return std::forward<Array>(array)[static_cast<std::size_t>(index)];
 }
 
+/// Takes out the elements that a condition holds for; it is asked once for each, in order.
+template <class T, class Condition>
+void eraseIf(std::vector<T>& values, const Condition& condition) {
+    values.erase(std::remove_if(values.begin(), values.end(), condition), values.end());
+}
+
 /// Half open.
 struct IndexRange {
     std::size_t first = 0, end = 0;

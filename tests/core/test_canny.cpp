@@ -6,7 +6,7 @@
 
 #include "core/support/analytic_image.h"
 #include "edges/canny.h"
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 namespace {
@@ -23,8 +23,8 @@ cv::Point2f subpixelOffset(const Gradient& gradient, int x, int y) {
     if (gradient.gx.at<std::int16_t>(y, x) == 0 && gradient.gy.at<std::int16_t>(y, x) == 0) return {0, 0};
     cv::Point2f point;
     float gradient_x, gradient_y, strength;
-    pixels::best().refine(gradient.view(), &pixel, 1,
-                          {&point.x, &point.y, &gradient_x, &gradient_y, &strength});
+    kernels::best().refine(gradient.view(), &pixel, 1,
+                           {&point.x, &point.y, &gradient_x, &gradient_y, &strength});
     return point - cv::Point2f(static_cast<float>(x), static_cast<float>(y));
 }
 

@@ -7,7 +7,7 @@
 
 #include "core/support/random_pose.h"
 #include "edges/edge_grid.h"
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 namespace {
@@ -74,13 +74,13 @@ TEST(EdgeGrid, NearestPointsAreThoseOfAllPoints) {
     constexpr int kColumns = 12, kRows = 5, kPoints = 300;
     constexpr float kRadius = 5, kMinCosine = 0.5F;
     std::mt19937 random(8);
-    std::uniform_real_distribution<float> column(0, kColumns * pixels::kCellWidth - 0.01F),
-        row(0, kRows * pixels::kCellHeight - 0.01F), angle(0, 6.28F);
+    std::uniform_real_distribution<float> column(0, kColumns * kernels::kCellWidth - 0.01F),
+        row(0, kRows * kernels::kCellHeight - 0.01F), angle(0, 6.28F);
     struct Point {
         float x, y, angle;
         int cell() const {
-            return static_cast<int>(y) / pixels::kCellHeight * kColumns +
-                   static_cast<int>(x) / pixels::kCellWidth;
+            return static_cast<int>(y) / kernels::kCellHeight * kColumns +
+                   static_cast<int>(x) / kernels::kCellWidth;
         }
     };
     std::vector<Point> points;
@@ -99,7 +99,7 @@ TEST(EdgeGrid, NearestPointsAreThoseOfAllPoints) {
         for (std::size_t cell = static_cast<std::size_t>(point.cell()) + 1; cell < first.size(); ++cell)
             ++first[cell];
     }
-    for (auto* values : {&x, &y, &nx, &ny}) values->resize(points.size() + pixels::kGridPadding, 1e9F);
+    for (auto* values : {&x, &y, &nx, &ny}) values->resize(points.size() + kernels::kGridPadding, 1e9F);
     std::vector<float> u, v, qx, qy;
     for (int i = 0; i < 500; ++i) {
         u.push_back(2 * column(random) - 20);  // outside, too
@@ -111,7 +111,7 @@ TEST(EdgeGrid, NearestPointsAreThoseOfAllPoints) {
     u[0] = -1e6F;
     v[1] = 1e6F;
     int with = 0;
-    for (const auto* table : {&pixels::baseline(), pixels::avx2()}) {
+    for (const auto* table : {&kernels::baseline(), kernels::avx2()}) {
         if (table == nullptr) continue;
         std::vector<std::int32_t> found(u.size());
         table->nearestPoints(

@@ -11,17 +11,17 @@
 
 #include "edges/gradient.h"
 #include "edges/organized_edges.h"
-#include "pixels/nearest.h"
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
+#include "nearest.h"
 
 namespace roevo {
 namespace {
 
 using Floats = std::vector<float>;
 
-std::vector<const pixels::Table*> tables() {
-    std::vector<const pixels::Table*> all{&pixels::baseline()};
-    if (pixels::avx2() != nullptr) all.push_back(pixels::avx2());
+std::vector<const kernels::Table*> tables() {
+    std::vector<const kernels::Table*> all{&kernels::baseline()};
+    if (kernels::avx2() != nullptr) all.push_back(kernels::avx2());
     return all;
 }
 
@@ -74,8 +74,8 @@ TEST(EdgeKernels, PixelsMoveToTheRidge) {
     for (int y = 4; y < 89; ++y) {
         const auto stride = static_cast<std::ptrdiff_t>(g.magnitude.step1());
         const auto found =
-            pixels::baseline().ridges(g.magnitude.ptr<float>(y) + 60, stride, g.gx.ptr<std::int16_t>(y) + 60,
-                                      g.gy.ptr<std::int16_t>(y) + 60, 64, 30, 30);
+            kernels::baseline().ridges(g.magnitude.ptr<float>(y) + 60, stride, g.gx.ptr<std::int16_t>(y) + 60,
+                                       g.gy.ptr<std::int16_t>(y) + 60, 64, 30, 30);
         for (int i = 0; i < 64; ++i)
             if ((found.all >> i & 1) != 0) ridges.push_back(y * 161 + 60 + i);
     }
@@ -154,14 +154,14 @@ TEST(EdgeKernels, NormalsAreOnTheSideOfTheGradient) {
 }
 
 /// What depthPatch() finds, the same by every table.
-pixels::DepthPatch patchOf(const Floats& depth, std::ptrdiff_t stride, int size,
-                           const pixels::DepthLimits& limits, double u, double v) {
+kernels::DepthPatch patchOf(const Floats& depth, std::ptrdiff_t stride, int size,
+                            const kernels::DepthLimits& limits, double u, double v) {
     Floats columns, rows;
     for (int k = 0; k < 8; ++k) {
         columns.push_back(static_cast<float>(k - size / 2));
         rows.push_back(2 * columns.back());
     }
-    std::vector<pixels::DepthPatch> found;
+    std::vector<kernels::DepthPatch> found;
     for (const auto* table : tables()) {
         found.emplace_back();
         table->depthPatch({depth.data(), stride, size, columns.data(), rows.data()}, limits,
@@ -173,7 +173,7 @@ pixels::DepthPatch patchOf(const Floats& depth, std::ptrdiff_t stride, int size,
 
 TEST(EdgeKernels, PlaneOfInverseDepthsIsTheLeastSquaresOne) {
     constexpr int kStride = 11;
-    constexpr pixels::DepthLimits kLimits{0.2F, 9, 1.5F, 1};
+    constexpr kernels::DepthLimits kLimits{0.2F, 9, 1.5F, 1};
     std::mt19937 random(6);
     std::uniform_real_distribution<double> unit(0, 1);
     int planes = 0;
@@ -198,7 +198,7 @@ TEST(EdgeKernels, PlaneOfInverseDepthsIsTheLeastSquaresOne) {
                 q.tail(1) << 1 / static_cast<double>(z);
             }
         }
-        const pixels::DepthPatch found = patchOf(depth, kStride, size, kLimits, u, v);
+        const kernels::DepthPatch found = patchOf(depth, kStride, size, kLimits, u, v);
         ASSERT_EQ(found.count, A.rows());
         if (A.rows() == 0) continue;
         EXPECT_NEAR(found.nearest, 1 / q.maxCoeff(), 1e-5);
@@ -216,7 +216,7 @@ TEST(EdgeKernels, PlaneOfInverseDepthsIsTheLeastSquaresOne) {
 }
 
 TEST(EdgeKernels, TheNearestSurfaceIsThatOfTheSortedDepths) {
-    constexpr pixels::DepthLimits kLimits{0.2F, 9, 1.03F, 3};
+    constexpr kernels::DepthLimits kLimits{0.2F, 9, 1.03F, 3};
     std::mt19937 random(8);
     std::uniform_real_distribution<float> unit(0, 1);
     int several = 0, speckled = 0, none = 0;
@@ -238,7 +238,7 @@ TEST(EdgeKernels, TheNearestSurfaceIsThatOfTheSortedDepths) {
             if (end - begin >= 3) break;
             begin = end;
         }
-        const pixels::DepthPatch found = patchOf(depth, 8, 5, kLimits, 0, 0);
+        const kernels::DepthPatch found = patchOf(depth, 8, 5, kLimits, 0, 0);
         if (end - begin < 3) {
             ++none;
             EXPECT_EQ(found.count, 0);
@@ -260,9 +260,9 @@ TEST(EdgeKernels, TheNearestSurfaceIsThatOfTheSortedDepths) {
 }
 
 /// What side() should add: pixel by pixel.
-pixels::SideSums plainSide(const cv::Mat& depth, const pixels::EdgePoint& at,
-                           const pixels::SideReach& reach) {
-    pixels::SideSums sums;
+kernels::SideSums plainSide(const cv::Mat& depth, const kernels::EdgePoint& at,
+                            const kernels::SideReach& reach) {
+    kernels::SideSums sums;
     const Eigen::Vector2d point(at.x, at.y), normal(at.normal_x, at.normal_y);
     const int main = reach.by_column ? 0 : 1;
     const double outwards = reach.along ? 1 : -1;
@@ -309,18 +309,18 @@ TEST(EdgeKernels, OneSideIsSummedPixelByPixel) {
             }
         }
         const double angle = repeat % 8 == 0 ? M_PI_2 * (repeat % 4) : 2 * M_PI * unit(random);
-        const pixels::EdgePoint at{31 * unit(random), 23 * unit(random), std::cos(angle), std::sin(angle),
-                                   static_cast<float>(2 + 0.1 * unit(random))};
+        const kernels::EdgePoint at{31 * unit(random), 23 * unit(random), std::cos(angle), std::sin(angle),
+                                    static_cast<float>(2 + 0.1 * unit(random))};
         const bool by_column = std::abs(at.normal_x) >= std::abs(at.normal_y);
-        const pixels::SideReach reach{by_column,
-                                      nearestInteger(by_column ? at.x : at.y),
-                                      1 + repeat / 2 % 9,
-                                      repeat % 2 == 0,
-                                      0.6,
-                                      0.03F,
-                                      repeat % 3 == 0 ? 4.0 : 0.0};
-        const pixels::SideSums expected = plainSide(depth, at, reach);
-        std::vector<pixels::SideSums> found;
+        const kernels::SideReach reach{by_column,
+                                       nearestInteger(by_column ? at.x : at.y),
+                                       1 + repeat / 2 % 9,
+                                       repeat % 2 == 0,
+                                       0.6,
+                                       0.03F,
+                                       repeat % 3 == 0 ? 4.0 : 0.0};
+        const kernels::SideSums expected = plainSide(depth, at, reach);
+        std::vector<kernels::SideSums> found;
         for (const auto* table : tables()) {
             found.emplace_back();
             table->side({depth.ptr<float>(), 31, 31, 23}, at, reach, found.back());

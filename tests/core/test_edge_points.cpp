@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/support/random_pose.h"
+#include "kernels/kernels.h"
 #include "tracking/edge_points.h"
-#include "tracking/kernels.h"
 
 namespace roevo {
 namespace {

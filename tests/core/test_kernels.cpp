@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "core/support/random_pose.h"
-#include "tracking/kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo::kernels {
 namespace {

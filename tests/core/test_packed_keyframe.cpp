@@ -6,10 +6,10 @@
 #include <set>
 
 #include "core/support/mapping_world.h"
+#include "kernels/kernels.h"
 #include "mapping/local_mapper.h"
 #include "mapping/packed_keyframe.h"
 #include "tracking/edge_points.h"
-#include "tracking/kernels.h"
 
 namespace roevo {
 namespace {

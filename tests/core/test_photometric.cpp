@@ -235,10 +235,7 @@ TEST_P(Gains, AFewStepsFindThePoseAndTheBrightness) {
         PhotometricTerm photometric(residuals, world_.points, 0, image, kCamera,
                                     {0.97 * GetParam(), brightness().offset});  // of the frame before
         DampingTerm damping(0.4, 0.2);
-        GaussNewtonOptions options;
-        options.max_iterations = 12;
-        options.focal_length = kCamera.fx;
-        options.depth = 2;
+        const GaussNewtonOptions options{12, kCamera.fx, 2};
         const GaussNewtonResult found =
             minimise(Pose::Identity(), RollingShutter(), {&photometric, &damping}, options);
         EXPECT_TRUE(found.complete);

@@ -7,14 +7,14 @@
 
 #include "camera/undistorter.h"
 #include "edges/gradient.h"
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 namespace {
 
-std::vector<const pixels::Table*> tables() {
-    std::vector<const pixels::Table*> all{&pixels::baseline()};
-    if (pixels::avx2() != nullptr) all.push_back(pixels::avx2());
+std::vector<const kernels::Table*> tables() {
+    std::vector<const kernels::Table*> all{&kernels::baseline()};
+    if (kernels::avx2() != nullptr) all.push_back(kernels::avx2());
     return all;
 }
 
@@ -147,7 +147,7 @@ TEST(PixelKernels, RemapReadsWhatItShouldAndNothingElse) {
             const int down = i == 0 ? 32 : static_cast<int>(random() % 33);
             fraction.push_back(static_cast<std::int16_t>(right + 256 * down));
         }
-        fraction.resize(fraction.size() + pixels::kRemapPadding);
+        fraction.resize(fraction.size() + kernels::kRemapPadding);
         offset.resize(fraction.size());
         for (const auto* table : tables()) {
             std::vector<std::uint8_t> out(static_cast<std::size_t>(count));

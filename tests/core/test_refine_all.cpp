@@ -48,10 +48,7 @@ class RefineAll : public ::testing::Test {
             mapper_->insert(std::move(keyframe));
         }
         Correction join;
-        for (int id = 5; id < 10; ++id) {
-            join.keyframes.push_back(id);
-            join.motions.push_back(off);
-        }
+        for (int id = 5; id < 10; ++id) join.motions.emplace(id, off);
         const auto poseOf = [&](int id) { return mapper_->keyframes().at(id).T_world_camera; };
         const Pose T_4_9 = poseOf(4).inverse() * off * poseOf(9);
         join.places.push_back({4, 9, T_4_9, sigma * sigma * Matrix6d::Identity()});

@@ -158,14 +158,12 @@ FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const Frame& fr
     PriorTerm likely(prior);
     std::vector<ResidualTerm*> terms{&field, &likely};
     if (photometric_weight_ > 0 && keyframe.photometric.size() > 0) terms.push_back(&photometric);
-    GaussNewtonOptions loop;
-    loop.max_iterations = options_.max_iterations;
+    GaussNewtonOptions loop{options_.max_iterations, ideal_.fx, keyframe.typicalDepth()};
     loop.settled_from = field.narrowed();
-    loop.focal_length = ideal_.fx;
-    loop.depth = keyframe.typicalDepth();
     const GaussNewtonResult found = minimise(T_start, shutter, terms, loop);
     const Pose& pose = found.T_current_keyframe;
     FineResult result;
+    result.iterations = found.iterations;
     result.inliers = inliers_;
     result.matched_ratio = visible_ > 0 ? static_cast<double>(near_.size()) / visible_ : 0;
     result.converged = inliers_ >= options_.min_inliers && pose.isFinite();

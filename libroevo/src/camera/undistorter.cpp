@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 namespace {
 
-constexpr int kOne = 1 << pixels::kFractionBits;
+constexpr int kOne = 1 << kernels::kFractionBits;
 
 /// A coordinate in 1/32 px as the first of two neighbouring pixels and the way from it to the second; what is
 /// outside repeats the outermost pixel.
@@ -37,7 +37,7 @@ Undistorter::Undistorter(const PinholeCamera& camera) {
             fraction_.push_back(static_cast<std::int16_t>(x.fraction + 256 * y.fraction));
         }
     }
-    offset_.resize(offset_.size() + pixels::kRemapPadding);
+    offset_.resize(offset_.size() + kernels::kRemapPadding);
     fraction_.resize(offset_.size());
 }
 
@@ -46,8 +46,8 @@ const cv::Mat& Undistorter::apply(const cv::Mat& image, cv::Mat& buffer) const {
     const cv::Mat whole = image.isContinuous() ? image : image.clone();  // as the offsets assume
     buffer.create(height_, width_, CV_8UC1);
     const auto* first = whole.ptr<std::uint8_t>();
-    pixels::best().remap(first, first + whole.total(), width_, {offset_.data(), fraction_.data()},
-                         width_ * height_, buffer.ptr<std::uint8_t>());
+    kernels::best().remap(first, first + whole.total(), width_, {offset_.data(), fraction_.data()},
+                          width_ * height_, buffer.ptr<std::uint8_t>());
     return buffer;
 }
 

@@ -19,7 +19,7 @@ class Undistorter {
 
   private:
     int width_ = 0, height_ = 0;
-    std::vector<std::int32_t> offset_;  ///< of each pixel, as pixels::Remap has them
+    std::vector<std::int32_t> offset_;  ///< of each pixel, as kernels::Remap has them
     std::vector<std::int16_t> fraction_;
 };
 

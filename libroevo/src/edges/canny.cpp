@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 namespace {
@@ -25,9 +25,9 @@ struct BitRows {
 /// Sets a bit of `weak` for each ridge of at least `low`, or of `strong` from `high` on.
 void markRidges(const Gradient& gradient, float low, float high, const BitRows& bits, EdgeMask& out) {
     constexpr int kBorder = EdgeMask::kBorder;
-    static_assert(kBits == pixels::kMostRidges);
+    static_assert(kBits == kernels::kMostRidges);
     const auto stride = static_cast<std::ptrdiff_t>(gradient.magnitude.step1());
-    const auto& kernels = pixels::best();
+    const auto& kernels = kernels::best();
     for (int row = 0; row < bits.rows; ++row) {
         const auto* magnitude = gradient.magnitude.ptr<float>(row + kBorder) + kBorder;
         const auto* gx = gradient.gx.ptr<std::int16_t>(row + kBorder) + kBorder;
@@ -35,7 +35,7 @@ void markRidges(const Gradient& gradient, float low, float high, const BitRows& 
         std::size_t word = bits.firstWord(row);
         for (int first = 0; first < bits.columns; first += kBits, ++word) {
             const int count = std::min(kBits, bits.columns - first);
-            const pixels::Ridges ridges =
+            const kernels::Ridges ridges =
                 kernels.ridges(magnitude + first, stride, gx + first, gy + first, count, low, high);
             out.strong[word] = ridges.strong;
             out.weak[word] = ridges.all & ~ridges.strong;

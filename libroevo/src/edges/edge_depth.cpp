@@ -6,12 +6,12 @@
 #include <random>
 
 #include "indexing.h"
-#include "pixels/nearest.h"
+#include "nearest.h"
 
 namespace roevo {
 namespace {
 
-constexpr int kMost = pixels::kMostPatch;
+constexpr int kMost = kernels::kMostPatch;
 constexpr int kMostSparse = 7;     ///< px, radius of a square where few depths are known
 constexpr int kMinForeground = 3;  ///< fewer near pixels are speckle
 constexpr std::array<float, 2 * kMost + 1> kSteps = {-7, -6, -5, -4, -3, -2, -1, 0, 1, 2, 3, 4, 5, 6, 7};
@@ -19,7 +19,7 @@ constexpr std::array<float, 2 * kMost + 1> kSteps = {-7, -6, -5, -4, -3, -2, -1,
 /// The depth at the edge of a surface. The edge is up to a pixel past the last near sample, and sometimes
 /// only two columns of them are in the patch. Kept within their range, the far end of whatever recedes came
 /// out too near, and a camera that moves forward moved too little.
-float depthAtEdge(const pixels::DepthPatch& patch, const pixels::DepthLimits& limits) {
+float depthAtEdge(const kernels::DepthPatch& patch, const kernels::DepthLimits& limits) {
     const float range = patch.farthest - patch.nearest;
     return std::clamp(patch.inverse > 0 ? 1 / patch.inverse : patch.farthest,
                       std::max(patch.nearest - range, limits.near),
@@ -114,7 +114,7 @@ void ForegroundDepth::lookForKnown(int x, int y, Offsets& rows, Offsets& columns
 }
 
 /// Across a border, of a large square only some pixels, or where few are known.
-pixels::DepthSquare ForegroundDepth::copy(int x, int y, Copy& to) const {
+kernels::DepthSquare ForegroundDepth::copy(int x, int y, Copy& to) const {
     Offsets rows = Offsets::spread(radius_), columns = rows;
     if (sparse_) lookForKnown(x, y, rows, columns);
     for (int c = 0; c < columns.count; ++c)
@@ -137,10 +137,10 @@ float ForegroundDepth::at(float u, float v) const {
     const int x = nearestInteger(static_cast<double>(u)), y = nearestInteger(static_cast<double>(v));
     const int size = 2 * radius_ + 1, left = x - radius_, top = y - radius_;
     const bool is_inside = left >= 0 && top >= 0 && left + kMost < depth_.cols && top + size <= depth_.rows;
-    pixels::DepthPatch patch;
-    const auto look = [&](const pixels::DepthSquare& square) {
-        pixels::best().depthPatch(square, limits_, u - static_cast<float>(x), v - static_cast<float>(y),
-                                  patch);
+    kernels::DepthPatch patch;
+    const auto look = [&](const kernels::DepthSquare& square) {
+        kernels::best().depthPatch(square, limits_, u - static_cast<float>(x), v - static_cast<float>(y),
+                                   patch);
     };
     if (!sparse_ && size <= kMost && is_inside) {
         const float* const offsets = kSteps.data() + kMost - radius_;

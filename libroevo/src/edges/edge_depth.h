@@ -1,7 +1,7 @@
 #pragma once
 #include <opencv2/core/mat.hpp>
 
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 #include "roevo/options.h"
 
 namespace roevo {
@@ -26,10 +26,10 @@ class ForegroundDepth {
     struct Offsets;
     struct Copy;
     void lookForKnown(int x, int y, Offsets& rows, Offsets& columns) const;
-    pixels::DepthSquare copy(int x, int y, Copy& to) const;
+    kernels::DepthSquare copy(int x, int y, Copy& to) const;
 
     cv::Mat depth_;
-    pixels::DepthLimits limits_{};
+    kernels::DepthLimits limits_{};
     int radius_ = 0;  // px
     bool sparse_ = false;
 };

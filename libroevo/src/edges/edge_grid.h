@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "edges/organized_edges.h"
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 
@@ -30,8 +30,8 @@ class EdgeGrid {
     bool any(float u, float v, float radius, Accept&& accept) const;
 
   private:
-    int column(float x) const { return cellOf(x, 1.0F / pixels::kCellWidth, columns_); }
-    int row(float y) const { return cellOf(y, 1.0F / pixels::kCellHeight, rows_); }
+    int column(float x) const { return cellOf(x, 1.0F / kernels::kCellWidth, columns_); }
+    int row(float y) const { return cellOf(y, 1.0F / kernels::kCellHeight, rows_); }
     static int cellOf(float at, float per_pixel, int count) {
         return std::clamp(static_cast<int>(at * per_pixel), 0, count - 1);
     }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pixels/nearest.h"
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
+#include "nearest.h"
 
 namespace roevo {
 namespace {
@@ -26,8 +26,8 @@ constexpr double kDoubt = 2;
 
 /// What the normals of an edge's points pass on one side.
 struct Side {
-    pixels::SideSums close;  ///< near the edge
-    pixels::SideSums wide;   ///< further out too, where the other side is background
+    kernels::SideSums close;  ///< near the edge
+    kernels::SideSums wide;   ///< further out too, where the other side is background
 };
 struct Strip {
     Side plus, minus;  ///< along the normal, and against it
@@ -44,22 +44,22 @@ double belief(double value, double variance) {
 }
 
 /// Whether what was added to a side's sums is background, if it is of at least this weight.
-bool isBackground(const pixels::SideSums& from, const pixels::SideSums& to, double least) {
+bool isBackground(const kernels::SideSums& from, const kernels::SideSums& to, double least) {
     const double seen = to.seen - from.seen, behind = to.behind - from.behind;
     return seen >= least && behind > kMostlyBehind * seen;
 }
 
-void sample(const pixels::DepthView& depth, const pixels::EdgePoint& at, float jump, double scale,
+void sample(const kernels::DepthView& depth, const kernels::EdgePoint& at, float jump, double scale,
             Strip& sums) {
     const bool by_column = std::abs(at.normal_x) >= std::abs(at.normal_y);
     const double run = std::abs(by_column ? at.normal_x : at.normal_y);
     const int centre = nearestInteger(by_column ? at.x : at.y);
-    const auto look = [&](bool along, double reach, double widening, pixels::SideSums& side) {
+    const auto look = [&](bool along, double reach, double widening, kernels::SideSums& side) {
         const int steps = nearestInteger(scale * reach * run);
-        pixels::best().side(depth, at, {by_column, centre, steps, along, scale * kClear, jump, widening},
-                            side);
+        kernels::best().side(depth, at, {by_column, centre, steps, along, scale * kClear, jump, widening},
+                             side);
     };
-    const pixels::SideSums minus_before = sums.minus.close, plus_before = sums.plus.close;
+    const kernels::SideSums minus_before = sums.minus.close, plus_before = sums.plus.close;
     look(true, kReach, 0, sums.plus.close);
     look(false, kReach, 0, sums.minus.close);
     const bool plus = isBackground(minus_before, sums.minus.close, 1),
@@ -68,7 +68,7 @@ void sample(const pixels::DepthView& depth, const pixels::EdgePoint& at, float j
     if (plus != minus) look(plus, kFurther, scale * kReach, plus ? sums.plus.wide : sums.minus.wide);
 }
 
-Meeting fit(const pixels::SideSums& from, const pixels::SideSums& to) {
+Meeting fit(const kernels::SideSums& from, const kernels::SideSums& to) {
     const double count = to.count - from.count, s = to.s - from.s, q = to.q - from.q;
     if (count < kMinSamples) return {};
     const double mean_s = s / count, mean_q = q / count;
@@ -114,17 +114,17 @@ void correctBySides(const OrganizedEdges& edges, std::size_t first,
                     const std::vector<Eigen::Vector2d>& positions, const cv::Mat& depth, float jump,
                     double scale, std::vector<float>& z) {
     const std::size_t count = positions.size();
-    const pixels::DepthView view{depth.ptr<float>(), static_cast<std::ptrdiff_t>(depth.step1()), depth.cols,
-                                 depth.rows};
+    const kernels::DepthView view{depth.ptr<float>(), static_cast<std::ptrdiff_t>(depth.step1()), depth.cols,
+                                  depth.rows};
     std::vector<Strip> strips;  // of all points before a point
     strips.reserve(count + 1);
     strips.emplace_back();
     for (std::size_t k = 0; k < count; ++k) {
         strips.push_back(strips.back());
         if (!(z[k] > 0)) continue;
-        const pixels::EdgePoint point{positions[k].x(), positions[k].y(),
-                                      static_cast<double>(edges.normal_x[first + k]),
-                                      static_cast<double>(edges.normal_y[first + k]), z[k]};
+        const kernels::EdgePoint point{positions[k].x(), positions[k].y(),
+                                       static_cast<double>(edges.normal_x[first + k]),
+                                       static_cast<double>(edges.normal_y[first + k]), z[k]};
         sample(view, point, jump, scale, strips.back());
     }
     const auto most = static_cast<double>(jump);

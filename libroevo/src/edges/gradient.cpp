@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "indexing.h"
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 
@@ -19,7 +19,7 @@ void computeGradient(const cv::Mat& grey, double blur_sigma, Gradient& out) {
     out.gx.create(grey.size(), CV_16SC1);
     out.gy.create(grey.size(), CV_16SC1);
     out.magnitude.create(grey.size(), CV_32FC1);
-    const auto& kernels = pixels::best();
+    const auto& kernels = kernels::best();
     for (int y = 0; y < grey.rows; ++y) {
         kernels.gradient(source.ptr<std::uint8_t>(std::max(0, y - 1)), source.ptr<std::uint8_t>(y),
                          source.ptr<std::uint8_t>(std::min(grey.rows - 1, y + 1)), grey.cols,

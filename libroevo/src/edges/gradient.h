@@ -2,7 +2,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 
@@ -12,7 +12,7 @@ struct Gradient {
     cv::Mat magnitude;  ///< CV_32FC1, Euclidean norm
     cv::Mat blurred;    ///< buffer of the optional blur
 
-    pixels::GradientView view() const {
+    kernels::GradientView view() const {
         return {gx.ptr<std::int16_t>(), gy.ptr<std::int16_t>(), magnitude.ptr<float>(), magnitude.cols};
     }
 };

@@ -205,7 +205,7 @@ void EdgeOrganizer::organize(const Gradient& gradient, const EdgeMask& edges, do
 
     out.resize(points_.size());
     out.numberPoints();
-    pixels::best().refine(
+    kernels::best().refine(
         gradient.view(), points_.data(), points_.size(),
         {out.x.data(), out.y.data(), out.gradient_x.data(), out.gradient_y.data(), out.strength.data()});
 }

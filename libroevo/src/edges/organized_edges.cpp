@@ -1,6 +1,6 @@
 #include "edges/organized_edges.h"
 
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 namespace {
@@ -79,7 +79,7 @@ void computeNormals(OrganizedEdges& edges, int span) {
         for (std::size_t i = inner_end; i < own.end; ++i) chord(i);
     }
     // An edge of one point, or one that turns back on itself, has its gradient
-    pixels::best().normals(u, v, edges.gradient_x.data(), edges.gradient_y.data(), edges.size(), u, v);
+    kernels::best().normals(u, v, edges.gradient_x.data(), edges.gradient_y.data(), edges.size(), u, v);
 }
 
 }  // namespace roevo

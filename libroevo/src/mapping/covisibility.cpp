@@ -7,15 +7,12 @@ namespace {
 
 constexpr int kTangentSpan = 3;  ///< points of thinned edges to each side
 
-FineOptions withAllPoints(FineOptions options) {
-    options.max_points = std::numeric_limits<int>::max();
-    return options;
-}
-
 }  // namespace
 
 CovisibilityGraph::CovisibilityGraph(const PinholeCamera& camera, const FineOptions& fine)
-    : camera_(camera), associator_(camera, withAllPoints(forThinned(fine)), kTangentSpan) {}
+    : camera_(camera), associator_(camera, forThinned(fine), kTangentSpan) {
+    associator_.limit(std::numeric_limits<int>::max());
+}
 
 void CovisibilityGraph::insert(const MapKeyframe& current, const std::vector<const MapKeyframe*>& others,
                                double radius) {

@@ -168,9 +168,9 @@ void LocalMapper::learnOf(int id, std::vector<float> found, const RowMotion& row
 
 void LocalMapper::correct(const Correction& correction) {
     places_.insert(places_.end(), correction.places.begin(), correction.places.end());
-    for (std::size_t i = 0; i < correction.keyframes.size(); ++i) {
-        MapKeyframe& keyframe = keyframes_.at(correction.keyframes[i]);
-        keyframe.T_world_camera = correction.motions[i] * keyframe.T_world_camera;
+    for (const auto& [id, motion] : correction.motions) {
+        MapKeyframe& keyframe = keyframes_.at(id);
+        keyframe.T_world_camera = motion * keyframe.T_world_camera;
         keyframe.track = keyframes_.at(correction.places.front().from).track;
     }
 }

@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -30,17 +29,9 @@ struct MapUpdate {
 
 /// How keyframes move when a place is recognised: a whole track to where it belongs, or each as a loop wants.
 struct Correction {
-    std::vector<int> keyframes;  ///< in order
-    std::vector<Pose> motions;   ///< of each, of the world: T_world_camera <- motion * T_world_camera
+    std::map<int, Pose> motions;  ///< by keyframe, of the world: T_world_camera <- motion * T_world_camera
     /// What was recognised. Those that move belong to the track of the first one's `from` from now on.
     std::vector<PoseConstraint> places;
-
-    /// Null where the keyframe stays.
-    const Pose* motionOf(int keyframe) const {
-        const auto at = std::lower_bound(keyframes.begin(), keyframes.end(), keyframe);
-        if (at == keyframes.end() || *at != keyframe) return nullptr;
-        return &motions[static_cast<std::size_t>(at - keyframes.begin())];
-    }
 };
 
 /// What mapping knows of a keyframe besides its pose, as it is kept in a file.

@@ -31,8 +31,9 @@ class CollectingMapper : public Mapper {
     }
     void correct(const Correction& correction) override {
         for (MapEdge& edge : map_)
-            if (const Pose* motion = correction.motionOf(edge.keyframe_id))
-                for (Eigen::Vector3f& point : edge.points) point = motion->cast<float>() * point;
+            if (const auto found = correction.motions.find(edge.keyframe_id);
+                found != correction.motions.end())
+                for (Eigen::Vector3f& point : edge.points) point = found->second.cast<float>() * point;
     }
     std::vector<MapUpdate> due(double, double&) override { return {}; }
     const std::deque<MapUpdate>& outstanding() override { return none_; }

@@ -30,13 +30,6 @@ std::size_t strideOf(std::size_t points) {
     return 1 + points / kMostLooks;
 }
 
-double tangentResidual(const PinholeCamera& camera, const MapKeyframe& keyframe, std::size_t i,
-                       const Eigen::Vector3d& in_camera) {
-    const Eigen::Vector2d normal(keyframe.image.normal_x[i], keyframe.image.normal_y[i]),
-        seen(keyframe.image.x[i], keyframe.image.y[i]);
-    return normal.dot(camera.project(in_camera) - seen);  // Eq. (7)
-}
-
 }  // namespace
 
 double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, const FusedEdges& edges,
@@ -48,7 +41,12 @@ double PseudoEdgeJudge::spreadOf(const std::vector<WindowKeyframe>& window, cons
         const auto i = static_cast<std::size_t>(edges.observations[k].point);
         const Eigen::Vector3d q =
             view.T_world_camera.linear().transpose() * (edges.points[p] - view.T_world_camera.translation());
-        const double residual = q.z() > kNearest ? tangentResidual(camera_, *view.keyframe, i, q) : kFarOff;
+        double residual = kFarOff;
+        if (q.z() > kNearest) {
+            const OrganizedEdges& image = view.keyframe->image;
+            const Eigen::Vector2d normal(image.normal_x[i], image.normal_y[i]), seen(image.x[i], image.y[i]);
+            residual = normal.dot(camera_.project(q) - seen);  // Eq. (7)
+        }
         sum += residual * residual;
     }
     return std::sqrt(sum / static_cast<double>(end - first - 1));
@@ -69,10 +67,6 @@ PseudoEdgeJudge::View PseudoEdgeJudge::viewOf(const Pose& T_world_camera) const 
     view.offsets = in_camera * view.T_camera_world.translation();
     view.offsets[4] -= sensor_.min_depth;
     return view;
-}
-
-bool PseudoEdgeJudge::isInside(const View& view, const Eigen::Vector3d& point) {
-    return (view.normals * point + view.offsets).minCoeff() > 0;
 }
 
 void PseudoEdgeJudge::project(const View& view, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const {
@@ -97,13 +91,13 @@ void PseudoEdgeJudge::findPoints(const FusedEdges& edges, std::size_t edge) {
     const double radius = std::sqrt(squared_radius);
     for (std::size_t slot = 0; slot < views_.size(); ++slot) {
         const View& view = views_[slot];
-        const double nearest = (view.normals * centre + view.offsets).minCoeff();
+        const double nearest = view.inside(centre);
         if (nearest > radius)
             inside_[slot] = bit - 1;  // all of them
         else if (nearest > -radius) {
             std::uint32_t own = 1;
             for (std::size_t p = first; p < end; p += stride, own <<= 1)
-                if (isInside(view, edges.points[p])) inside_[slot] |= own;
+                if (view.inside(edges.points[p]) > 0) inside_[slot] |= own;
         }
         observed_[slot] &= inside_[slot];
     }
@@ -118,7 +112,7 @@ double PseudoEdgeJudge::weightOf(std::size_t slot) const {
 }
 
 PseudoEdgeJudge::Looks PseudoEdgeJudge::looksAt(const std::vector<WindowKeyframe>& window,
-                                                const FusedEdges& edges, std::size_t edge, double found) {
+                                                const FusedEdges& edges, std::size_t edge) {
     findPoints(edges, edge);
     const auto [first, end] = edges.pointsOf(edge);
     const std::size_t stride = strideOf(end - first), count = (end - first + stride - 1) / stride;
@@ -139,13 +133,6 @@ PseudoEdgeJudge::Looks PseudoEdgeJudge::looksAt(const std::vector<WindowKeyframe
             missing_.push_back(slot);
     }
     looks.looked = looks.seen + static_cast<double>(missing_.size());
-    if (!isVanishing(looks, found)) return looks;  // whatever the looks that missed it weigh
-    looks.looked = looks.seen;
-    weights_.clear();
-    for (const std::size_t slot : missing_) {
-        weights_.push_back(weightOf(slot));
-        looks.looked += weights_.back();
-    }
     return looks;
 }
 
@@ -158,7 +145,7 @@ bool PseudoEdgeJudge::isInImage(const View& view, const OrganizedEdges& image, c
     const auto radius = std::max(1.0F, static_cast<float>(camera_.pixelScale())) * kLookRadius;
     Eigen::Vector2f pixel, before, after;
     for (std::size_t p = first; p < end && found < enough && inside - found <= enough; p += stride) {
-        if (!isInside(view, edges.points[p])) continue;
+        if (!(view.inside(edges.points[p]) > 0)) continue;
         ++inside;
         project(view, edges.points[p], pixel);
         before = after = pixel;  // where a neighbour is behind the camera
@@ -192,11 +179,18 @@ void PseudoEdgeJudge::judge(const std::vector<WindowKeyframe>& window, FusedEdge
             continue;
         }
         const double found = foundShare(window, edges, edge);
-        const Looks looks = looksAt(window, edges, edge, found);
-        if (!isVanishing(looks, found)) continue;
-        for (std::size_t k = 0; k < missing_.size(); ++k)
-            questions_.push_back({missing_[k], suspects_.size(), weights_[k]});
-        suspects_.push_back({edge, looks, found, looks.looked - looks.seen});
+        Looks looks = looksAt(window, edges, edge);
+        if (!isVanishing(looks, found)) continue;  // whatever the looks that missed it weigh
+        looks.looked = looks.seen;
+        const std::size_t asked = questions_.size();
+        for (const std::size_t slot : missing_) {
+            questions_.push_back({slot, suspects_.size(), weightOf(slot)});
+            looks.looked += questions_.back().weight;
+        }
+        if (isVanishing(looks, found))
+            suspects_.push_back({edge, looks, found, looks.looked - looks.seen});
+        else
+            questions_.resize(asked);
     }
     askImages(window, edges);
     for (const Suspect& suspect : suspects_) {

@@ -39,21 +39,19 @@ class PseudoEdgeJudge {
         double weight = 0;  ///< of the look
     };
 
-    /// Where a window keyframe is, and what bounds its image: a point is in it where all five rows of
-    /// `normals` x + `offsets` (m) are positive.
+    /// Where a window keyframe is, and what bounds its image.
     struct View {
         Pose T_camera_world;
         Eigen::Matrix<double, 5, 3> normals;
         Eigen::Matrix<double, 5, 1> offsets;
+        /// How far inside a point is, m; outside, negative.
+        double inside(const Eigen::Vector3d& point) const { return (normals * point + offsets).minCoeff(); }
     };
     View viewOf(const Pose& T_world_camera) const;
     /// Which of an edge's points each keyframe looks at, and which it observes.
     void findPoints(const FusedEdges& edges, std::size_t edge);
-    /// Those that do not observe the edge are `missing_`, with their `weights_` where it may vanish.
-    /// @param found  foundShare(): where that and those that observe the edge are enough, the others count in
-    ///               full
-    Looks looksAt(const std::vector<WindowKeyframe>& window, const FusedEdges& edges, std::size_t edge,
-                  double found);
+    /// Those that do not observe the edge are `missing_`; here they count in full.
+    Looks looksAt(const std::vector<WindowKeyframe>& window, const FusedEdges& edges, std::size_t edge);
     /// Of a keyframe's look at the edge: by the angle to the nearest other view that it was observed from.
     double weightOf(std::size_t slot) const;
     void askImages(const std::vector<WindowKeyframe>& window, const FusedEdges& edges);
@@ -61,7 +59,6 @@ class PseudoEdgeJudge {
     bool isInImage(const View& view, const OrganizedEdges& image, const FusedEdges& edges,
                    std::size_t edge) const;
     bool isVanishing(const Looks& looks, double found) const;
-    static bool isInside(const View& view, const Eigen::Vector3d& point);
     /// Where a point is in a keyframe's image; behind the camera it is nowhere, and `pixel` stays.
     void project(const View& view, const Eigen::Vector3d& point, Eigen::Vector2f& pixel) const;
     /// Share of the frames after a keyframe that found an edge, mean over its keyframes; < 0: not known.
@@ -75,7 +72,6 @@ class PseudoEdgeJudge {
     std::vector<Suspect> suspects_;
     std::vector<Question> questions_;
     std::vector<std::size_t> missing_;  ///< slots of the keyframes that look at an edge and do not observe it
-    std::vector<double> weights_;       ///< of these looks, where the edge is suspect
     std::vector<std::uint32_t> inside_, observed_;  ///< of each slot: points of the edge, a bit of each
     std::vector<Eigen::Vector3d> rays_;             ///< of each slot: from the edge to the camera
     EdgeGrid grid_;                                 ///< of the image that is asked

@@ -6,7 +6,7 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 
-#include "pixels/nearest.h"
+#include "nearest.h"
 
 namespace roevo {
 namespace {

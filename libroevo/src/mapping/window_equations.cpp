@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tracking/kernels.h"
+#include "kernels/kernels.h"
 #include "tracking/motion_blur.h"
 #include "tracking/robust.h"
 #include "tracking/se3.h"
@@ -79,9 +79,6 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     }
     hessian.resize(num_rows_, num_rows_);
     gradient.resize(num_rows_);
-    blocks_.resize(slots * slots);
-    gradients_.resize(slots);
-    edge_gradients_.resize(slots);
     point_blocks_.resize(slots);
     couplings_.resize(slots);
     throughs_.resize(slots);
@@ -110,18 +107,11 @@ void WindowEquations::evaluate(const std::vector<WindowKeyframe>& window,
                    q.z() - seen.depth - seen.slope * along};
         }
     }
-    spreads(least_scale);
-}
-
-void WindowEquations::spreads(double least_scale) {
+    scale = spread(kAnySlot, least_scale);
     // Registered alone, a keyframe is judged by its own spread: keyframes that drifted together agree among
     // themselves long before they are back, and would else shut out those that did not
-    if (!options_.joint_refinement) {
-        for (std::size_t s = 0; s < scales_.size(); ++s)
-            scales_[s] = spread(static_cast<std::int32_t>(s), least_scale);
-    }
-    scale = spread(kAnySlot, least_scale);
-    if (options_.joint_refinement) std::fill(scales_.begin(), scales_.end(), scale);
+    for (std::size_t s = 0; s < scales_.size(); ++s)
+        scales_[s] = options_.joint_refinement ? scale : spread(static_cast<std::int32_t>(s), least_scale);
 }
 
 double WindowEquations::spread(std::int32_t slot, double least_scale) {
@@ -137,9 +127,9 @@ double WindowEquations::spread(std::int32_t slot, double least_scale) {
 }
 
 void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vector<Eigen::Vector3d>& points) {
-    for (auto& entry : blocks_) entry.setZero();
-    for (auto& entry : gradients_) entry.setZero();
-    for (auto& entry : edge_gradients_) entry.setZero();
+    blocks_.assign(rows_.size() * rows_.size(), Matrix6d::Zero());
+    gradients_.assign(rows_.size(), Vector6d::Zero());
+    edge_gradients_.assign(rows_.size(), Vector6d::Zero());
     pulls_.clear();
     inliers.assign(window.size(), 0);
     const std::size_t stride = 1 + points_.size() / hessian_points_;
@@ -224,12 +214,10 @@ void WindowEquations::addPoint(Eigen::Vector3d& point, bool to_hessian) {
         const auto s = static_cast<std::size_t>(slot);
         if (rows_[s] < 0) continue;
         const Eigen::Vector3d b = point_blocks_[s].gradient + point_blocks_[s].information * step;
-        const Eigen::Vector3d turning = (point - origin_).cross(b);
-        gradients_[s].head<3>() -= b;
-        gradients_[s].tail<3>() -= turning;
-        if (anchor_ < 1) continue;  // nobody asks for pulls
-        edge_gradients_[s].head<3>() -= b;
-        edge_gradients_[s].tail<3>() -= turning;
+        Vector6d pull;
+        pull << b, (point - origin_).cross(b);
+        gradients_[s] -= pull;
+        if (anchor_ >= 1) edge_gradients_[s] -= pull;  // else nobody asks
     }
     if (to_hessian) addToHessian(point, inverse);
 }

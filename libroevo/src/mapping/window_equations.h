@@ -85,7 +85,6 @@ class WindowEquations {
     };
     using Coupling = Eigen::Matrix<double, 6, 3>;  ///< of a pose and a point
 
-    void spreads(double least_scale);
     double spread(std::int32_t slot, double least_scale);
     bool addObservation(const LineObservation& seen, const Residual& residual, const Eigen::Matrix3d& R);
     void addPoint(Eigen::Vector3d& point, bool to_hessian);

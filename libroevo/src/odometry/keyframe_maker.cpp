@@ -5,7 +5,7 @@
 #include <map>
 
 #include "mapping/semi_dense.h"
-#include "pixels/nearest.h"
+#include "nearest.h"
 #include "tracking/se3.h"
 
 namespace roevo {

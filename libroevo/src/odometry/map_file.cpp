@@ -3,6 +3,7 @@
 #include <cmath>
 #include <istream>
 #include <ostream>
+#include <tuple>
 
 #include "input/byte_stream.h"
 
@@ -59,54 +60,31 @@ void transfer(Bytes& bytes, Pose& pose) {
     pose = Pose(Eigen::Quaterniond(rotation), translation);
 }
 
-template <class Bytes>
-void transfer(Bytes& bytes, PinholeCamera& camera) {
-    bytes(camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, camera.distortion);
-}
+/// What it has of each of these.
+struct MapFormat {
+    static auto of(PinholeCamera& c) {
+        return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.distortion);
+    }
+    static auto of(KeyframeInfo& k) { return std::tie(k.id, k.timestamp, k.T_world_camera); }
+    static auto of(RelativePose& p) {
+        return std::tie(p.keyframe, p.T_keyframe_camera, p.uncertainty.independent);
+    }
+    static auto of(PoseConstraint& c) { return std::tie(c.from, c.to, c.T_from_to, c.covariance); }
+    static auto of(RowMotion& r) { return std::tie(r.velocity, r.turn, r.seconds_per_row, r.reference_row); }
+    static auto of(CovisibilityGraph::Link& l) { return std::tie(l.edge, l.other_edge, l.points); }
+    static auto of(CovisibilityGraph::Links& l) { return std::tie(l.other, l.links); }
+    static auto of(KeptKeyframe& k) {
+        return std::tie(k.points, k.median_depth, k.row_motion, k.found, k.verdicts, k.links);
+    }
+    static auto of(KeyframeGraph& g) {
+        return std::tie(g.keyframes, g.links, g.covariances, g.related, g.loops);
+    }
+    static auto of(StoredMap& m) { return std::tie(m.camera, m.graph, m.places, m.edges, m.surfaces); }
+};
 
-template <class Bytes>
-void transfer(Bytes& bytes, KeyframeInfo& keyframe) {
-    bytes(keyframe.id, keyframe.timestamp, keyframe.T_world_camera);
-}
-
-template <class Bytes>
-void transfer(Bytes& bytes, RelativePose& pose) {
-    bytes(pose.keyframe, pose.T_keyframe_camera, pose.uncertainty.independent);
-}
-
-template <class Bytes>
-void transfer(Bytes& bytes, PoseConstraint& constraint) {
-    bytes(constraint.from, constraint.to, constraint.T_from_to, constraint.covariance);
-}
-
-template <class Bytes>
-void transfer(Bytes& bytes, RowMotion& rows) {
-    bytes(rows.velocity, rows.turn, rows.seconds_per_row, rows.reference_row);
-}
-
-template <class Bytes>
-void transfer(Bytes& bytes, CovisibilityGraph::Link& link) {
-    bytes(link.edge, link.other_edge, link.points);
-}
-
-template <class Bytes>
-void transfer(Bytes& bytes, CovisibilityGraph::Links& links) {
-    bytes(links.other, links.links);
-}
-
-template <class Bytes>
-void transfer(Bytes& bytes, KeptKeyframe& kept) {
-    bytes(kept.points, kept.median_depth, kept.row_motion, kept.found, kept.verdicts, kept.links);
-}
-
-template <class Bytes>
-void transfer(Bytes& bytes, KeyframeGraph& graph) {
-    bytes(graph.keyframes, graph.links, graph.covariances, graph.related, graph.loops);
-}
-
-template <class Bytes>
-void transfer(Bytes& bytes, StoredMap& map) {
-    bytes(map.camera, map.graph, map.places, map.edges, map.surfaces);
+template <class Bytes, class T>
+void transfer(Bytes& bytes, T& value) {
+    std::apply([&](auto&... fields) { bytes(fields...); }, MapFormat::of(value));
 }
 
 namespace {

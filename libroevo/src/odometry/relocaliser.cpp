@@ -27,8 +27,8 @@ RelativePose poseOf(const EdgeRegistration& found, int keyframe) {
     return pose;
 }
 
-bool hasOthers(const std::vector<bool>& own) {
-    return std::find(own.begin(), own.end(), false) != own.end();
+bool hasOthers(const std::vector<int>& tracks) {
+    return std::any_of(tracks.begin(), tracks.end(), [&](int track) { return track != tracks.back(); });
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ const std::vector<KnownPlace>& Relocaliser::places() {
 }
 
 void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours,
-                      std::vector<bool> own, int end) {
+                      std::vector<int> tracks, int end) {
     collect();
     Keyframe copy;  // of what is remembered
     copy.id = keyframe.id;
@@ -69,7 +69,7 @@ void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<
     copy.median_depth = keyframe.median_depth;
     copy.row_motion = keyframe.row_motion;
     auto seen = std::make_unique<Frame>();
-    if (end > 0 || hasOthers(own)) {
+    if (end > 0 || hasOthers(tracks)) {
         seen->edges = frame.edges;
         seen->images.depth = frame.images.depth.clone();
         seen->images.mask = frame.images.mask.clone();
@@ -77,13 +77,13 @@ void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<
     seen->pyramid.build(frame.pyramid.level(0).clone(), 1);
     const auto launch = threadCount(options_.threads) > 1 ? std::launch::async : std::launch::deferred;
     at_work_ = std::async(launch, [this, copy = std::move(copy), seen = std::move(seen),
-                                   colours = std::move(colours), own = std::move(own), end]() mutable {
-        return describe(std::move(copy), std::move(seen), colours, own, end);
+                                   colours = std::move(colours), tracks = std::move(tracks), end]() mutable {
+        return describe(std::move(copy), std::move(seen), colours, tracks, end);
     });
 }
 
 Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<Frame> frame,
-                                             const std::vector<Rgb>& colours, const std::vector<bool>& own,
+                                             const std::vector<Rgb>& colours, const std::vector<int>& tracks,
                                              int end) {
     Described out;
     KnownPlace& place = out.place;
@@ -93,8 +93,9 @@ Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<
     place.edges = PackedKeyframe(toMapKeyframe(keyframe, colours, ideal_, options_.mapping.max_points));
     place.median_depth = keyframe.median_depth;
     place.row_motion = keyframe.row_motion;
-    const auto isOwn = [&](int id) { return static_cast<bool>(own[static_cast<std::size_t>(id)]); };
-    if (hasOthers(own)) out.elsewhere = lookUp(place.points, keyframe.id, [&](int id) { return !isOwn(id); });
+    const auto isOwn = [&](int id) { return at(tracks, id) == tracks.back(); };
+    if (hasOthers(tracks))
+        out.elsewhere = lookUp(place.points, keyframe.id, [&](int id) { return !isOwn(id); });
     if (end > 0) out.alike = lookUp(place.points, keyframe.id, [&](int id) { return id < end && isOwn(id); });
     if (out.alike.empty() && out.elsewhere.empty()) return out;
     frame->grid.build(frame->edges, grey.cols, grey.rows);
@@ -196,10 +197,9 @@ std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, i
 }
 
 /// Those whose edges do not contradict.
-std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<Alike>& alike,
-                                                              const Frame& frame, const EdgePoints3D& edges,
-                                                              const RowMotion& rows) {
-    std::vector<Recognition> recognised;
+std::vector<RecognisedPlace> Relocaliser::registered(const std::vector<Alike>& alike, const Frame& frame,
+                                                     const EdgePoints3D& edges, const RowMotion& rows) {
+    std::vector<RecognisedPlace> recognised;
     for (std::size_t k = 0; k < std::min(kRegistered, alike.size()); ++k) {
         const auto& [of_points, id] = alike[k];
         const EdgeRegistration found =
@@ -211,33 +211,34 @@ std::vector<Relocaliser::Recognition> Relocaliser::registered(const std::vector<
         const Evidence evidence = evidenceOf(of_points, found, likeness);
         if (evidence == Evidence::kNone) continue;
         const double matched = std::min(found.keyframe_matched, found.frame_matched);
-        recognised.push_back({poseOf(found, id), evidence, likeness.share(), matched});
+        recognised.push_back({poseOf(found, id), evidence, likeness.share(), matched, false});
     }
     return recognised;
 }
 
-std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<Recognition>& recognised,
+std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<RecognisedPlace>& recognised,
                                                    const Trajectory& trajectory,
                                                    const Whereabouts& whereabouts) {
     if (recognised.empty()) return std::nullopt;
-    const auto best = [](const std::vector<Recognition>& among) {
-        return *std::max_element(among.begin(), among.end(), [](const Recognition& a, const Recognition& b) {
-            return std::pair(a.evidence, a.likeness) < std::pair(b.evidence, b.likeness);
-        });
+    const auto best = [](const std::vector<RecognisedPlace>& among) {
+        return *std::max_element(
+            among.begin(), among.end(), [](const RecognisedPlace& a, const RecognisedPlace& b) {
+                return std::pair(a.evidence, a.likeness) < std::pair(b.evidence, b.likeness);
+            });
     };
-    const auto worldPose = [&](const Recognition& r) { return trajectory.worldPose(r.pose); };
-    const auto trackOf = [&](const Recognition& r) { return trajectory.beginOfTrack(r.pose.keyframe); };
+    const auto worldPose = [&](const RecognisedPlace& r) { return trajectory.worldPose(r.pose); };
+    const auto trackOf = [&](const RecognisedPlace& r) { return trajectory.beginOfTrack(r.pose.keyframe); };
     // What the camera cannot have reached is believed only if it is like no other place, and is no rival
-    std::vector<Recognition> possible;
-    for (const Recognition& r : recognised)
+    std::vector<RecognisedPlace> possible;
+    for (const RecognisedPlace& r : recognised)
         if (whereabouts.allow(worldPose(r), r.pose.keyframe)) possible.push_back(r);
-    const std::vector<Recognition>& among = possible.empty() ? recognised : possible;
-    const Recognition likeliest = best(among);
+    const std::vector<RecognisedPlace>& among = possible.empty() ? recognised : possible;
+    RecognisedPlace likeliest = best(among);
     const bool holds = likeliest.matched >= kLeastMatched;
-    if (holds && likeliest.evidence == Evidence::kConclusive)
-        return RecognisedPlace{likeliest.pose, likeliest.likeness, true};
+    likeliest.sure = holds && likeliest.evidence == Evidence::kConclusive;
+    if (likeliest.sure) return likeliest;
     const Evidence rivals = std::min(likeliest.evidence, Evidence::kPlausible);
-    const bool has_rival = std::any_of(among.begin(), among.end(), [&](const Recognition& other) {
+    const bool has_rival = std::any_of(among.begin(), among.end(), [&](const RecognisedPlace& other) {
         // The same place may be in two tracks
         if (other.evidence < rivals || trackOf(other) != trackOf(likeliest)) return false;
         const Pose apart = worldPose(likeliest).inverse() * worldPose(other);
@@ -246,11 +247,11 @@ std::optional<RecognisedPlace> Relocaliser::surest(const std::vector<Recognition
     if (has_rival) return std::nullopt;
     const bool is_possible = !possible.empty();
     const Evidence needed = whereabouts.unseen <= kShortReach ? Evidence::kPlausible : Evidence::kStrong;
-    const bool sure = holds && is_possible && likeliest.evidence >= needed;
+    likeliest.sure = holds && is_possible && likeliest.evidence >= needed;
     const bool is_about_there =
         is_possible && whereabouts.reach(likeliest.pose.keyframe).distance <= kAboutThere;
-    if (!sure && !is_about_there && likeliest.evidence < Evidence::kFitting) return std::nullopt;
-    return RecognisedPlace{likeliest.pose, likeliest.likeness, sure};
+    if (!likeliest.sure && !is_about_there && likeliest.evidence < Evidence::kFitting) return std::nullopt;
+    return likeliest;
 }
 
 }  // namespace roevo

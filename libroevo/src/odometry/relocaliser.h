@@ -39,10 +39,12 @@ struct KnownPlace {
 /// Keyframes, as seen from the newest one.
 enum class Among { kOwnTrack, kOtherTracks };
 
-/// The place that a frame shows, as far as one look tells.
+/// A place that a frame may show, as far as one look tells.
 struct RecognisedPlace {
     RelativePose pose;
+    Evidence evidence = Evidence::kNone;
     double likeness = 0;  ///< share of the place's points in view that look as they did
+    double matched = 0;   ///< share of the edges, of the smaller of both ways
     bool sure = false;    ///< else a second look must agree
 };
 
@@ -66,10 +68,10 @@ class Relocaliser {
     /// In a thread of its own, or when it is asked for where there is but one.
     /// @param frame    that the keyframe was made of
     /// @param colours  of the keyframe's points
-    /// @param own      of each older keyframe, whether it is of the same track. Those that are not are looked
-    ///                 for apart from the others, which look more like the new one.
+    /// @param tracks   of all keyframes. Those of its own track are looked for apart from the others: they
+    ///                 look more like the new one.
     /// @param end      only keyframes of its own track before this one are looked for
-    void add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, std::vector<bool> own,
+    void add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, std::vector<int> tracks,
              int end);
 
     /// Older keyframes of its own track that the newest one looks like, and its poses relative to them by
@@ -92,11 +94,6 @@ class Relocaliser {
                                                       const Pose& T_keyframe_camera);
 
   private:
-    struct Recognition {
-        RelativePose pose;
-        Evidence evidence = Evidence::kNone;
-        double likeness = 0, matched = 0;
-    };
     using Alike = std::pair<Verification, int>;  ///< and the keyframe
     struct Described {
         KnownPlace place;
@@ -104,15 +101,15 @@ class Relocaliser {
         EdgePoints3D edges;
         std::vector<Alike> alike, elsewhere;  ///< in its own track and in others
     };
-    static std::optional<RecognisedPlace> surest(const std::vector<Recognition>& recognised,
+    static std::optional<RecognisedPlace> surest(const std::vector<RecognisedPlace>& recognised,
                                                  const Trajectory& trajectory,
                                                  const Whereabouts& whereabouts);
     Described describe(Keyframe keyframe, std::unique_ptr<Frame> frame, const std::vector<Rgb>& colours,
-                       const std::vector<bool>& own, int end);
+                       const std::vector<int>& tracks, int end);
     std::vector<Alike> lookUp(const PlacePoints& points, int query_id,
                               const std::function<bool(int)>& wanted);
-    std::vector<Recognition> registered(const std::vector<Alike>& alike, const Frame& frame,
-                                        const EdgePoints3D& edges, const RowMotion& rows);
+    std::vector<RecognisedPlace> registered(const std::vector<Alike>& alike, const Frame& frame,
+                                            const EdgePoints3D& edges, const RowMotion& rows);
     void collect();
     Keyframe unpacked(int id) const;
     EdgePoints3D lifted(const Frame& frame) const;

@@ -14,13 +14,8 @@ constexpr float kMostOfPlace = 1e4F;    // m, px, rad
 /// Leaves some.
 template <class T>
 void keepSome(const std::vector<bool>& kept, std::vector<T>& values) {
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (kept[i]) {
-            if (next != i) values[next] = std::move(values[i]);
-            ++next;
-        }
-    values.erase(values.begin() + static_cast<std::ptrdiff_t>(next), values.end());
+    std::size_t i = 0;
+    eraseIf(values, [&](const T&) { return !kept[i++]; });
 }
 
 bool isSound(const Pose& pose) {
@@ -102,27 +97,14 @@ void keepOnly(const std::vector<bool>& kept, StoredMap& map) {
     KeyframeGraph& graph = map.graph;
     for (KeyframeInfo& keyframe : graph.keyframes) keyframe.id = now(keyframe.id);
     for (RelativePose& link : graph.links) link.keyframe = now(link.keyframe);
-    std::vector<bool> pairs, loops;
-    for (auto& [older, newer] : graph.related) {
-        older = now(older);
-        newer = now(newer);
-        pairs.push_back(older >= 0 && newer >= 0);
-    }
-    for (PoseConstraint& loop : graph.loops) {
-        loop.from = now(loop.from);
-        loop.to = now(loop.to);
-        loops.push_back(loop.from >= 0 && loop.to >= 0);
-    }
+    for (auto& [older, newer] : graph.related) older = now(older), newer = now(newer);
+    for (PoseConstraint& loop : graph.loops) loop.from = now(loop.from), loop.to = now(loop.to);
+    eraseIf(graph.related, [](const auto& pair) { return std::min(pair.first, pair.second) < 0; });
+    eraseIf(graph.loops, [](const PoseConstraint& loop) { return std::min(loop.from, loop.to) < 0; });
     for (KeptKeyframe& edges : map.edges) {
-        std::vector<bool> there;
-        for (CovisibilityGraph::Links& links : edges.links) {
-            links.other = now(links.other);
-            there.push_back(links.other >= 0);
-        }
-        keepSome(there, edges.links);
+        for (CovisibilityGraph::Links& links : edges.links) links.other = now(links.other);
+        eraseIf(edges.links, [](const CovisibilityGraph::Links& links) { return links.other < 0; });
     }
-    keepSome(pairs, graph.related);
-    keepSome(loops, graph.loops);
     keepSome(kept, graph.keyframes);
     keepSome(kept, graph.links);
     keepSome(kept, graph.covariances);

@@ -141,12 +141,11 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
     Correction join;
     join.places.push_back({pose.keyframe, keyframe, pose.T_keyframe_camera, pose.covariance()});
     const Pose motion = worldPose(pose) * keyframePose(keyframe).inverse();
-    for (int id = begin; id < static_cast<int>(keyframes_.size()); ++id)
-        if (beginOfTrack(id) == begin) join.keyframes.push_back(id);
-    for (const int id : join.keyframes) {
+    for (int id = begin; id < static_cast<int>(keyframes_.size()); ++id) {
+        if (beginOfTrack(id) != begin) continue;
         Pose& placed = at(keyframes_, id).T_world_camera;
         placed = motion * placed;
-        join.motions.push_back(motion);
+        join.motions.emplace(id, motion);
     }
     // As well known as what was recognised. A track is linked to what is older than all of it.
     RelativePose link = pose;
@@ -154,8 +153,8 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
     at(links_, begin) = {
         link.keyframe, keyframePose(link.keyframe).inverse() * keyframePose(begin), {link.covariance(), {}}};
     findTracks();
-    for (const int id : join.keyframes) at(in_world_, id) = inWorld(at(links_, id)).uncertainty;
-    for (const int id : join.keyframes)
+    for (const auto& [id, by] : join.motions) at(in_world_, id) = inWorld(at(links_, id)).uncertainty;
+    for (const auto& [id, by] : join.motions)
         if (id + 1 < static_cast<int>(keyframes_.size())) forgetAll(at(in_world_, id));
     corrections_.push_back(join);
     return join;
@@ -196,8 +195,7 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
     for (std::size_t id = 0; id < poses.size(); ++id) {
         if (tracks_[id] != track || static_cast<int>(id) < held_) continue;
         Pose& placed = keyframes_[id].T_world_camera;
-        correction.keyframes.push_back(static_cast<int>(id));
-        correction.motions.push_back(poses[id] * placed.inverse());
+        correction.motions.emplace(static_cast<int>(id), poses[id] * placed.inverse());
         placed = poses[id];
     }
     loops_ = std::move(loops);
@@ -211,15 +209,13 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
 
 void Trajectory::apply(const MapUpdate& update) {
     // Updates come in order: those of keyframes from before a correction know nothing of it
-    corrections_.erase(
-        std::remove_if(corrections_.begin(), corrections_.end(),
-                       [&](const Correction& c) { return c.keyframes.back() < update.keyframe; }),
-        corrections_.end());
+    eraseIf(corrections_, [&](const Correction& c) { return c.motions.rbegin()->first < update.keyframe; });
     for (const auto& [id, pose] : update.poses) {
         Pose& placed = at(keyframes_, id).T_world_camera;
         placed = pose;
         for (const Correction& correction : corrections_)
-            if (const Pose* motion = correction.motionOf(id)) placed = *motion * placed;
+            if (const auto found = correction.motions.find(id); found != correction.motions.end())
+                placed = found->second * placed;
     }
     for (auto id = static_cast<std::size_t>(update.keyframe) + 1; id < keyframes_.size(); ++id) {
         if (links_[id].keyframe < 0) continue;

@@ -101,9 +101,7 @@ StoredMap World::map() {
 }
 
 EdgeMap World::inThisWorld(EdgeMap edges) const {
-    edges.erase(std::remove_if(edges.begin(), edges.end(),
-                               [&](const MapEdge& edge) { return edge.keyframe_id < unrelated(); }),
-                edges.end());
+    eraseIf(edges, [&](const MapEdge& edge) { return edge.keyframe_id < unrelated(); });
     return edges;
 }
 
@@ -184,13 +182,10 @@ Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Trac
 }
 
 void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
-    const bool closes = closesLoops();
     std::vector<Rgb> colours = coloursOf(fresh->edges.image, of.images, camera_);
     if (remembersPlaces()) {
-        std::vector<bool> own;
-        const std::vector<int>& tracks = trajectory_.tracks();
-        for (std::size_t id = 0; id + 1 < tracks.size(); ++id) own.push_back(tracks[id] == tracks.back());
-        relocaliser_.add(*fresh, of, colours, std::move(own), closes ? fresh->id - kStillInView : 0);
+        relocaliser_.add(*fresh, of, colours, trajectory_.tracks(),
+                         closesLoops() ? fresh->id - kStillInView : 0);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
     }
@@ -333,7 +328,7 @@ void World::closeLoop(const Look& newest) {
     const Pose before = trajectory_.lastPose();
     const Correction correction =
         trajectory_.closeLoop({{first->keyframe, first->place.pose}, {newest.keyframe, newest.place.pose}});
-    if (correction.keyframes.empty()) return;
+    if (correction.motions.empty()) return;
     mapper_->correct(correction);
     noteMotion(before);
     change_.closed_at = newest.place.pose.keyframe;

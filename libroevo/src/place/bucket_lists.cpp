@@ -4,12 +4,6 @@
 
 namespace roevo {
 
-void BucketLists::reset(std::size_t count) {
-    lists_.assign(count, {});
-    memory_.clear();
-    for (auto& pieces : free_) pieces.clear();
-}
-
 void BucketLists::append(std::size_t list, std::uint32_t value) {
     List& at = lists_[list];
     const bool full = (at.length & (at.length - 1)) == 0;  // 0, 1, 2, 4, 8 ...: as long as its piece

@@ -10,8 +10,8 @@ namespace roevo {
 /// of powers of two; what a list outgrows is used again by others.
 class BucketLists {
   public:
-    /// @param count  lists, all empty
-    void reset(std::size_t count);
+    /// @param count  lists, all empty; before anything is appended
+    void reset(std::size_t count) { lists_.assign(count, {}); }
     void append(std::size_t list, std::uint32_t value);
 
     std::size_t length(std::size_t list) const { return lists_[list].length; }

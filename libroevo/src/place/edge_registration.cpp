@@ -42,11 +42,8 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
                                               const RowMotion& rows) {
     EdgeRegistration out;
     term_.start(keyframe, frame);
-    GaussNewtonOptions loop;
-    loop.max_iterations = options_.fine.max_iterations;
+    GaussNewtonOptions loop{options_.fine.max_iterations, ideal_.fx, keyframe.typicalDepth()};
     loop.settled_from = term_.narrowed();
-    loop.focal_length = ideal_.fx;
-    loop.depth = keyframe.typicalDepth();
     loop.still = kStill;
     loop.relaxation = kOverRelaxation;
     loop.relaxed_from = term_.narrowed();
@@ -57,15 +54,14 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     term_.addTo(clusters_);
     out.covariance = clusters_.uncertainty(found.system, term_.slope()).covariance();
     if (!out.covariance.allFinite()) return out;
-    out.sigma_translation = worstSigma(out.covariance.topLeftCorner<3, 3>());
-    out.sigma_rotation = worstSigma(out.covariance.bottomRightCorner<3, 3>());
     term_.look(keyframe, frame);
     term_.assess(out.T_frame_keyframe, rows);
     out.inliers = term_.inliers();
     out.keyframe_matched = term_.matches().matchedRatio();
     lookBack(keyframe, frame_edges, out);
     out.held = out.inliers >= kLeastInliers && out.visible >= kLeastVisible &&
-               out.sigma_translation <= kMostSigmaTranslation && out.sigma_rotation <= kMostSigmaRotation;
+               worstSigma(out.covariance.topLeftCorner<3, 3>()) <= kMostSigmaTranslation &&
+               worstSigma(out.covariance.bottomRightCorner<3, 3>()) <= kMostSigmaRotation;
     return out;
 }
 

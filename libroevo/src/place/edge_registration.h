@@ -10,15 +10,13 @@ namespace roevo {
 struct EdgeRegistration {
     Pose T_frame_keyframe = Pose::Identity();
     Matrix6d covariance = Matrix6d::Zero();  ///< of its left perturbation (t, phi)
-    int inliers = 0;               ///< associated points of the keyframe that passed the chi-square test
-    double keyframe_matched = 0;   ///< share of the keyframe's visible edges that the frame has
-    double frame_matched = 0;      ///< share of the frame's visible edges that the keyframe has
-    double visible = 0;            ///< the smaller share of edge points of one that are in view of the other
-    double depth_agreement = 0;    ///< share of the associated points whose depths agree
-    double sigma_translation = 0;  ///< m, in the worst direction
-    double sigma_rotation = 0;     ///< rad, about the worst axis
-    bool held = false;             ///< edges hold the pose in every direction; those of a place that
-                                   ///< looks alike do, too
+    int inliers = 0;              ///< associated points of the keyframe that passed the chi-square test
+    double keyframe_matched = 0;  ///< share of the keyframe's visible edges that the frame has
+    double frame_matched = 0;     ///< share of the frame's visible edges that the keyframe has
+    double visible = 0;           ///< the smaller share of edge points of one that are in view of the other
+    double depth_agreement = 0;   ///< share of the associated points whose depths agree
+    bool held = false;            ///< edges hold the pose in every direction; those of a place that
+                                  ///< looks alike do, too
 };
 
 /// Registers a frame to a keyframe that it may never have been tracked against, by their edges only: from a

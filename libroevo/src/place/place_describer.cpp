@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "pixels/nearest.h"
+#include "nearest.h"
 #include "place/sampling_pattern.h"
 #include "tracking/se3.h"
 

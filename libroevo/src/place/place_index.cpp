@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "indexing.h"
+
 namespace roevo {
 namespace {
 
@@ -66,12 +68,10 @@ void PlaceIndex::collectBuckets(const PlacePoints& points) {
 void PlaceIndex::vote() {
     votes_.assign(ids_.size(), 0);
     const std::size_t overfull = std::max(kFewKeyframes, ids_.size() / kOverfull);
-    buckets_.erase(std::remove_if(buckets_.begin(), buckets_.end(),
-                                  [&](std::uint32_t bucket) {
-                                      const std::size_t length = lists_.length(bucket);
-                                      return length == 0 || length > overfull;
-                                  }),
-                   buckets_.end());
+    eraseIf(buckets_, [&](std::uint32_t bucket) {
+        const std::size_t length = lists_.length(bucket);
+        return length == 0 || length > overfull;
+    });
     std::sort(buckets_.begin(), buckets_.end(), [&](std::uint32_t a, std::uint32_t b) {
         return std::make_tuple(lists_.length(a), a) < std::make_tuple(lists_.length(b), b);
     });

@@ -23,10 +23,7 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
     PhotometricTerm photometric(residuals_, keyframe.photometric, level, image, camera, state.brightness);
     photometric.require(options_.min_points);
     DampingTerm damping(kDampingTranslation * depth, kDampingRotation);
-    GaussNewtonOptions loop;
-    loop.max_iterations = options_.max_iterations + 1;
-    loop.focal_length = camera.fx;
-    loop.depth = depth;
+    GaussNewtonOptions loop{options_.max_iterations + 1, camera.fx, depth};
     loop.keep_best = true;
     if (level > 0) loop.still = kStill;
     const GaussNewtonResult found =

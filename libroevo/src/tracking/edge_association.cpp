@@ -42,8 +42,8 @@ void EdgeAssociator::associate(const OrganizedEdges& reference, const ProjectedP
         at(out.visible, e) = static_cast<std::int32_t>(n - before_this);
     }
     out.visible_points = static_cast<int>(n);
-    pixels::best().normals(queries_.normal_x.data(), queries_.normal_y.data(), side_x_.data(), side_y_.data(),
-                           n, queries_.normal_x.data(), queries_.normal_y.data());
+    kernels::best().normals(queries_.normal_x.data(), queries_.normal_y.data(), side_x_.data(),
+                            side_y_.data(), n, queries_.normal_x.data(), queries_.normal_y.data());
     out.current.resize(n);
     grid.nearest(queries_, n, radius, std::cos(options_.normal_angle_deg * kDegree), out.current.data());
     std::size_t found = 0;

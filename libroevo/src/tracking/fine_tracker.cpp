@@ -69,16 +69,14 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
     PriorTerm likely(prior);
     std::vector<ResidualTerm*> terms{&edges_, &likely};
     if (options_.photometric_weight > 0 && keyframe.photometric.size() > 0) terms.push_back(&photometric);
-    GaussNewtonOptions loop;
-    loop.max_iterations = options_.max_iterations;
+    GaussNewtonOptions loop{options_.max_iterations, ideal_.fx, keyframe.typicalDepth()};
     loop.settled_from = edges_.narrowed();
-    loop.focal_length = ideal_.fx;
-    loop.depth = keyframe.typicalDepth();
     loop.relaxation = kOverRelaxation;
     loop.relaxed_from = kPlainSteps;
     const GaussNewtonResult found = minimise(T_start, shutter, terms, loop);
     FineResult result;
     result.T_current_keyframe = found.T_current_keyframe;
+    result.iterations = found.iterations;
     if (found.complete) {
         clusters_.start(keyframe.clusters);
         for (const ResidualTerm* term : terms) term->addTo(clusters_);
@@ -132,10 +130,7 @@ void FineTracker::addReadoutEvidence(const Keyframe& keyframe, const Pose& T_cur
     if (estimator.worth(first / kCaution) < kLeastWorth) return;
     // Those that followed the pose lack more of it (fr1_rpy backwards in tr: 0.59 cm with them, 0.53)
     edges_.renewMatches(T_current_keyframe, shutter.motion(T_current_keyframe));
-    GaussNewtonOptions loop;
-    loop.max_iterations = kReadoutSteps;
-    loop.focal_length = ideal_.fx;
-    loop.depth = keyframe.typicalDepth();
+    GaussNewtonOptions loop{kReadoutSteps, ideal_.fx, keyframe.typicalDepth()};
     loop.relaxation = kOverRelaxation;
     loop.free_readout = true;
     const GaussNewtonResult found = minimise(T_current_keyframe, shutter, {&edges_, &about}, loop);

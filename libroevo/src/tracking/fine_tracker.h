@@ -10,6 +10,7 @@ namespace roevo {
 struct FineResult {
     bool converged = false;
     Pose T_current_keyframe = Pose::Identity();
+    int iterations = 0;          ///< steps that were taken
     int inliers = 0;             ///< associated points that passed the chi-square test
     double matched_ratio = 0;    ///< see EdgeMatches
     double depth_agreement = 1;  ///< see EdgeTerm::depthAgreement()

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "kernels/kernels.h"
 #include "roevo/types.h"
 #include "tracking/edge_clusters.h"
-#include "tracking/kernels.h"
 #include "tracking/points3.h"
 #include "tracking/rolling_shutter.h"
 
@@ -114,10 +114,10 @@ class DampingTerm : public ResidualTerm {
 
 struct GaussNewtonOptions {
     int max_iterations = 1;
-    int settled_from = 1;       ///< iterations from which on a small step ends it
-    double still = 0.01;        ///< px of image motion: a small step
     double focal_length = 1;    ///< px
     double depth = 1;           ///< m, of a typical point
+    int settled_from = 1;       ///< iterations from which on a small step ends it
+    double still = 0.01;        ///< px of image motion: a small step
     double relaxation = 1;      ///< factor on the steps from `relaxed_from` on
     int relaxed_from = 0;       ///< iteration
     bool keep_best = false;     ///< the last pose whose cost, of the first term, is about the least counts

@@ -1,6 +1,6 @@
 #include "tracking/image_pyramid.h"
 
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 
@@ -19,8 +19,8 @@ void ImagePyramid::build(const cv::Mat& grey, int levels) {
         cv::Mat& level = at(levels_, i);
         level.create(half, CV_8UC1);
         for (int y = 0; y < half.height; ++y)
-            pixels::best().halve(below.ptr<std::uint8_t>(2 * y), below.ptr<std::uint8_t>(2 * y + 1),
-                                 half.width, level.ptr<std::uint8_t>(y));
+            kernels::best().halve(below.ptr<std::uint8_t>(2 * y), below.ptr<std::uint8_t>(2 * y + 1),
+                                  half.width, level.ptr<std::uint8_t>(y));
     }
 }
 

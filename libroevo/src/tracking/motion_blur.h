@@ -1,8 +1,8 @@
 #pragma once
 #include <algorithm>
 
+#include "kernels/kernels.h"
 #include "roevo/camera/pinhole_camera.h"
-#include "tracking/kernels.h"
 #include "tracking/rolling_shutter.h"
 
 namespace roevo {

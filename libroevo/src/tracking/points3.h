@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "tracking/kernels.h"
+#include "kernels/kernels.h"
 
 namespace roevo {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/support/random_pose.h"
+#include "kernels/kernels.h"
 #include "mapping/edge_fusion.h"
-#include "tracking/kernels.h"
 
 namespace roevo::testing {
 

@@ -1,4 +1,4 @@
-// Schur complements; what kernels_impl.h says of itself holds here.
+// Schur complements; what lanes_impl.h says of itself holds here.
 
 constexpr int kQuad = 4;
 typedef double Quad __attribute__((vector_size(8 * kQuad)));

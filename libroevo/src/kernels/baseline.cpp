@@ -1,8 +1,8 @@
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
-namespace roevo::pixels {
+namespace roevo::kernels {
 namespace {
-#include "side_kernels_impl.h"
+#include "table_impl.h"
 }  // namespace
 
 const Table& baseline() {
@@ -21,4 +21,4 @@ const Table& best() {
     return table;
 }
 
-}  // namespace roevo::pixels
+}  // namespace roevo::kernels

@@ -2,7 +2,6 @@
 // namespace. No standard containers or Eigen here: an inline function compiled with AVX2 must never be picked
 // by the linker for the baseline.
 
-constexpr int kLanes = 8;
 typedef float Lanes __attribute__((vector_size(4 * kLanes)));
 typedef std::int32_t IntLanes __attribute__((vector_size(4 * kLanes)));
 constexpr IntLanes kLane = {0, 1, 2, 3, 4, 5, 6, 7};

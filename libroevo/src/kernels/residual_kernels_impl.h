@@ -1,5 +1,4 @@
-// Residuals, weights and information of both trackers; what kernels_impl.h says of itself holds here.
-#include "kernels_impl.h"
+// Residuals, weights and information of both trackers; what lanes_impl.h says of itself holds here.
 
 constexpr float kNu = 5;  // degrees of freedom, as kStudentNu
 

@@ -1,6 +1,5 @@
 // Included by one file per instruction set, inside an anonymous namespace; what lanes_impl.h says of itself
 // holds here.
-#include "lanes_impl.h"
 
 typedef std::int16_t ShortLanes __attribute__((vector_size(2 * kLanes)));
 typedef std::int16_t WideShorts __attribute__((vector_size(4 * kLanes)));  ///< twice as many

@@ -1,5 +1,4 @@
-// The surface on one side of an edge's point; what pixel_kernels_impl.h says of itself holds here.
-#include "edge_kernels_impl.h"
+// The surface on one side of an edge's point; what lanes_impl.h says of itself holds here.
 
 inline Lanes floorOf(Lanes v) {
 #ifdef __AVX2__
@@ -71,8 +70,4 @@ void sumSide(const DepthView& depth, const EdgePoint& at, const SideReach& reach
 
 void side(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& sums) {
     (reach.widening > 0 ? sumSide<true> : sumSide<false>)(depth, at, reach, sums);
-}
-
-constexpr Table tableNamed(const char* name) {
-    return {name, gradient, ridges, remap, halve, refine, normals, nearestPoints, depthPatch, side};
 }

@@ -1,6 +1,5 @@
 // Included by one file per instruction set, inside an anonymous namespace; what lanes_impl.h says of itself
 // holds here.
-#include "pixels/lanes_impl.h"
 
 void project(const Projection& m, const float* px, const float* py, const float* pz, std::size_t n,
              const ProjectedPoints& out) {

@@ -1,5 +1,4 @@
-// Loops over the pixels and points of edges; what pixel_kernels_impl.h says of itself holds here.
-#include "pixel_kernels_impl.h"
+// Loops over the pixels and points of edges; what lanes_impl.h says of itself holds here.
 
 /// Values at these indices, none of which is the last one.
 inline IntLanes gather(const std::int16_t* data, IntLanes index) {

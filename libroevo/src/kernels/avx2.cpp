@@ -1,10 +1,10 @@
 #include <immintrin.h>
 
-#include "pixels/pixel_kernels.h"
+#include "kernels/kernels.h"
 
-namespace roevo::pixels {
+namespace roevo::kernels {
 namespace {
-#include "side_kernels_impl.h"
+#include "table_impl.h"
 }  // namespace
 
 const Table* avx2() {
@@ -12,4 +12,4 @@ const Table* avx2() {
     return __builtin_cpu_supports("avx2") ? &table : nullptr;
 }
 
-}  // namespace roevo::pixels
+}  // namespace roevo::kernels
