@@ -97,6 +97,26 @@ void hand(Shown& shown, std::size_t i, cv::RNG&) {
     shown.frame.depth.setTo(0.35, shape);
 }
 
+/// A textured figure, a quarter of the image wide and nearer than most of the scene, that walks through the
+/// image in five seconds, and has more contrast than many a scene.
+void somebody(Shown& shown, std::size_t i, cv::RNG&) {
+    Mat &image = shown.frame.grey, &depth = shown.frame.depth;
+    const int width = image.cols / 4, height = image.rows * 9 / 10;
+    const int left = static_cast<int>(i) * image.cols / 160 - width / 2, top = image.rows - height;
+    Mat shape = Mat::zeros(image.size(), CV_8UC1), clothes(image.size(), CV_8UC1, cv::Scalar(200));
+    cv::ellipse(shape, {left + width / 2, top + height * 6 / 10}, {width / 2, height * 4 / 10}, 0, 0, 360,
+                255, cv::FILLED);
+    cv::circle(shape, {left + width / 2, top + height / 8}, height / 8, 255, cv::FILLED);
+    cv::RNG pattern(7);  // the same in every frame
+    for (int k = 0; k < 40; ++k) {
+        const cv::Point corner(left + pattern.uniform(0, width), top + pattern.uniform(0, height));
+        const cv::Size size(pattern.uniform(4, width / 2), pattern.uniform(4, width / 2));
+        cv::rectangle(clothes, {corner, size}, cv::Scalar(pattern.uniform(0, 256)), cv::FILLED);
+    }
+    clothes.copyTo(image, shape);
+    depth.setTo(0.65 * cv::mean(depth, depth > 0)[0], shape);
+}
+
 /// As if the camera had been turned about an axis of its own, from that frame on.
 Injection turn(const Eigen::Vector3d& axis, double degrees) {
     return [=](const Recording& recording, Frames& frames, std::size_t from, std::size_t to, cv::RNG&) {
@@ -227,6 +247,7 @@ const std::vector<Fault>& allFaults() {
         {"torn", E::kSurvived, torn},
         {"half covered", E::kAny, each(coverHalf)},
         {"a hand", E::kTracked, each(hand)},
+        {"somebody walks by", E::kTracked, each(somebody)},
         {"brightness x1.5", E::kTracked, brightness(1.5)},
         {"brightness x3", E::kAny, brightness(3)},
         {"brightness x0.3", E::kTracked, brightness(0.3)},
