@@ -1,6 +1,7 @@
 // Registration of a frame to a keyframe by their edges alone, and what is not accepted.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "core/support/place_views.h"
@@ -48,7 +49,7 @@ TEST_F(PlaceRegistration, ConvergesFromWhatSimilarPointsTell) {
         EXPECT_GT(found.keyframe_matched, 0.7);
         EXPECT_GT(found.frame_matched, 0.7);
         EXPECT_GT(found.depth_agreement, 0.8);
-        EXPECT_LT(std::sqrt((found.covariance.topLeftCorner<3, 3>().trace())), 0.01);
+        EXPECT_LT(std::sqrt(found.covariance.topLeftCorner<3, 3>().trace()), 0.01);
     }
 }
 

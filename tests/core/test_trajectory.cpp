@@ -343,15 +343,11 @@ TEST(Trajectory, WhatWasLoadedAndIsHeldStaysInLoops) {
 /// Out along x in ten steps and back, with a step that is told too long; keyframe 20 is where keyframe 0 is.
 Trajectory thereAndBack(double error) {
     Trajectory trajectory;
-    const auto known = [](const Pose& pose) {
-        return RelativePose{-1, pose, {1e-6 * Matrix6d::Identity(), {}}};
-    };
     beginTrack(trajectory, 0, at(0));
     trajectory.addFrame(0, from(0, at(0)));
     for (int i = 1; i <= 20; ++i) {
-        RelativePose step = known(at(i <= 10 ? 1 : -1));
+        RelativePose step{i - 1, at(i <= 10 ? 1 : -1), {1e-6 * Matrix6d::Identity(), {}}};
         step.T_keyframe_camera.translation().y() = error;
-        step.keyframe = i - 1;
         trajectory.addFrame(i, step);
         trajectory.addKeyframe(i, step, {});
     }
