@@ -9,6 +9,7 @@
 #include "roevo/camera/rgbd_frame.h"
 #include "roevo/options.h"
 #include "roevo/types.h"
+#include "tracking/camera_scale.h"
 #include "tracking/edge_points.h"
 
 namespace roevo {
@@ -35,7 +36,10 @@ struct FeatureFrame {
 class FeatureExtractor {
   public:
     FeatureExtractor(const PinholeCamera& camera, const OdometryOptions& options)
-        : camera_(camera), options_(options), undistorter_(camera), extractor_(options.edges) {}
+        : camera_(camera),
+          options_(scaledTo(camera, options)),
+          undistorter_(camera),
+          extractor_(options_.edges) {}
 
     /// Poses are left to the caller.
     std::shared_ptr<FeatureFrame> extract(const RgbdFrame& frame, std::size_t number);
