@@ -19,7 +19,7 @@ namespace {
 using test::readFile;
 using test::runProgram;
 
-constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "c4f06ef2293b8da1";
+constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "46abb206d333dbc0";
 
 /// FNV-1a, as 16 digits.
 std::string checksum(const std::string& bytes) {

@@ -163,7 +163,7 @@ TEST_F(RoevoOdometryTest, TheMapLeavesOutPseudoEdgesTheSimpleMapDoesNot) {
 }
 
 TEST_F(RoevoOdometryTest, HowWellAKeyframeIsKnownIsInTheSimpleMapAlsoWhereTheFrameBeforeBecameIt) {
-    odometry_.options.odometry.keyframe.min_overlap = 0.95;
+    odometry_.options.odometry.keyframe.min_overlap = 1;
     for (int i = 0; i < 3; i++) odometry_.processObservation(*laterScan(*scan_, 0.033 * i));
     cv::Mat image = scan_->intensityImage.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
     image.colRange(0, image.cols / 3).setTo(128);

@@ -45,7 +45,7 @@ struct EdgeOptions {
     double angle_deg = 20;           ///< oriented BFS: largest angle between neighbouring gradients
     int min_length = 10;             ///< shortest organized edge, px
     int tangent_span = 4;         ///< tangents are taken between the points this many places before and after
-    int depth_patch = 8;          ///< side of the square of foreground depths, px; wider if sparse
+    int depth_patch_radius = 2;   ///< of the square of foreground depths, px; wider if sparse
     double depth_jump = 0.03;     ///< relative depth step that separates foreground from background
     bool two_sided_depth = true;  ///< keyframe depths corrected by the surfaces on both sides of each edge
 };

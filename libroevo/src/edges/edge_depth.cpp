@@ -12,10 +12,9 @@ namespace roevo {
 namespace {
 
 constexpr int kMost = kernels::kMostPatch;
-constexpr int kMostSparse = 15;  ///< px, side of a square where few depths are known
-constexpr int kLeastSparse = 3;  ///< depths; there, fewer near ones are speckle
-constexpr int kLeastShare = 8;   ///< elsewhere, less than one in so many
-constexpr std::array<float, kMost> kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
+constexpr int kMostSparse = 7;     ///< px, radius of a square where few depths are known
+constexpr int kMinForeground = 3;  ///< fewer near pixels are speckle
+constexpr std::array<float, 2 * kMost + 1> kSteps = {-7, -6, -5, -4, -3, -2, -1, 0, 1, 2, 3, 4, 5, 6, 7};
 
 /// The depth at the edge of a surface. The edge is up to a pixel past the last near sample, and sometimes
 /// only two columns of them are in the patch. Kept within their range, the far end of whatever recedes came
@@ -47,110 +46,109 @@ double densityOf(const cv::Mat& depth) {
     return found > 0 ? static_cast<double>(known) / looked_at : 1;
 }
 
-/// Side of squares that hold enough known depths on both sides of an edge, px; 0 where depth is not sparse.
-int sparseSide(double density) {
+/// Radius of squares that hold enough known depths on both sides of an edge, px; 0 where depth is not sparse.
+int sparseRadius(double density) {
     constexpr double kSparse = 0.35, kEnough = 16;
     if (density > kSparse) return 0;
-    return std::min(kMostSparse, 2 * static_cast<int>(std::ceil((std::sqrt(kEnough / density) - 1) / 2)) + 1);
-}
-
-/// Where a square of this side around a coordinate begins, px.
-int beginOf(float centre, int side) {
-    return nearestInteger(static_cast<double>(centre) - (side - 1) / 2.0);
+    return std::min(kMostSparse, static_cast<int>(std::ceil((std::sqrt(kEnough / density) - 1) / 2)));
 }
 
 }  // namespace
 
 /// The rows (columns) of a square that are looked at.
 struct ForegroundDepth::Offsets {
-    std::array<int, kMost> from_first{};  // px
+    std::array<int, kMost> from_centre{};  // px
     int count = 0;
 
     /// Of those that are known, at most kMost, spread over all.
-    static Offsets known(const std::array<bool, kMostSparse>& is_known, int side) {
-        std::array<int, kMostSparse> all{};
+    static Offsets known(const std::array<bool, 2 * kMostSparse + 1>& is_known, int radius) {
+        std::array<int, 2 * kMostSparse + 1> all{};
         int number = 0;
-        for (int k = 0; k < side; ++k)
-            if (roevo::at(is_known, k)) roevo::at(all, number++) = k;
+        for (int k = 0; k <= 2 * radius; ++k)
+            if (roevo::at(is_known, k)) roevo::at(all, number++) = k - radius;
         Offsets some;
         some.count = std::min(number, kMost);
         for (int k = 0; k < some.count; ++k)
-            roevo::at(some.from_first, k) = roevo::at(all, k * number / some.count);
+            roevo::at(some.from_centre, k) = roevo::at(all, k * number / some.count);
         return some;
     }
-    /// At most kMost, spread over a square of this side.
-    static Offsets spread(int side) {
+    /// At most kMost, spread over a square of this radius.
+    static Offsets spread(int radius) {
         Offsets some;
-        some.count = std::min(side, kMost);
-        for (int k = 0; k < some.count; ++k)
-            roevo::at(some.from_first, k) = k * (side - 1) / std::max(1, some.count - 1);
+        const int half = std::min(radius, kMost / 2);
+        some.count = 2 * half + 1;
+        for (int k = 0; k < some.count; ++k) roevo::at(some.from_centre, k) = (k - half) * radius / half;
         return some;
     }
 };
 
 /// What the kernel looks at where it cannot look at the image itself.
 struct ForegroundDepth::Copy {
-    std::array<float, kMost * kMost> depths{};
-    std::array<float, kMost> rows{}, columns{};
+    std::array<float, kMost*(kMost + 1)> depths{};
+    std::array<float, kMost + 1> rows{}, columns{};
 };
 
 ForegroundDepth::ForegroundDepth(const cv::Mat& depth, const EdgeOptions& edges, const SensorOptions& sensor)
-    : depth_(depth), side_(edges.depth_patch) {
-    const int needed = sparseSide(densityOf(depth));
+    : depth_(depth),
+      limits_{static_cast<float>(sensor.min_depth), static_cast<float>(sensor.depth_limit),
+              1 + static_cast<float>(edges.depth_jump), kMinForeground},
+      radius_(edges.depth_patch_radius) {
+    const int needed = sparseRadius(densityOf(depth));
     sparse_ = needed > 0;
-    if (sparse_) side_ = std::min(std::max(needed, side_), kMostSparse);
-    const int looked_at = std::min(side_, kMost);
-    limits_ = {static_cast<float>(sensor.min_depth), static_cast<float>(sensor.depth_limit),
-               1 + static_cast<float>(edges.depth_jump),
-               sparse_ ? kLeastSparse : std::max(kLeastSparse, looked_at * looked_at / kLeastShare)};
+    if (sparse_) radius_ = std::min(std::max(needed, radius_), kMostSparse);
 }
 
-void ForegroundDepth::lookForKnown(int left, int top, Offsets& rows, Offsets& columns) const {
-    std::array<bool, kMostSparse> row_known{}, column_known{};
-    for (int v = std::max(0, -top); v < std::min(side_, depth_.rows - top); ++v) {
-        const float* const row = depth_.ptr<float>(top + v);
-        for (int u = std::max(0, -left); u < std::min(side_, depth_.cols - left); ++u) {
-            if (!(row[left + u] > 0)) continue;
-            roevo::at(row_known, v) = roevo::at(column_known, u) = true;
+void ForegroundDepth::lookForKnown(int x, int y, Offsets& rows, Offsets& columns) const {
+    std::array<bool, 2 * kMostSparse + 1> row_known{}, column_known{};
+    const int top = std::max(-radius_, -y), bottom = std::min(radius_, depth_.rows - 1 - y);
+    const int left = std::max(-radius_, -x), right = std::min(radius_, depth_.cols - 1 - x);
+    for (int v = top; v <= bottom; ++v) {
+        const float* const row = depth_.ptr<float>(y + v);
+        for (int u = left; u <= right; ++u) {
+            if (!(row[x + u] > 0)) continue;
+            roevo::at(row_known, v + radius_) = roevo::at(column_known, u + radius_) = true;
         }
     }
-    rows = Offsets::known(row_known, side_);
-    columns = Offsets::known(column_known, side_);
+    rows = Offsets::known(row_known, radius_);
+    columns = Offsets::known(column_known, radius_);
 }
 
 /// Across a border, of a large square only some pixels, or where few are known.
-kernels::DepthSquare ForegroundDepth::copy(int left, int top, Copy& to) const {
-    Offsets rows = Offsets::spread(side_), columns = rows;
-    if (sparse_) lookForKnown(left, top, rows, columns);
+kernels::DepthSquare ForegroundDepth::copy(int x, int y, Copy& to) const {
+    Offsets rows = Offsets::spread(radius_), columns = rows;
+    if (sparse_) lookForKnown(x, y, rows, columns);
     for (int c = 0; c < columns.count; ++c)
-        roevo::at(to.columns, c) = static_cast<float>(roevo::at(columns.from_first, c));
+        roevo::at(to.columns, c) = static_cast<float>(roevo::at(columns.from_centre, c));
     for (int r = 0; r < rows.count; ++r) {
-        const int v = roevo::at(rows.from_first, r), row = top + v;
+        const int v = roevo::at(rows.from_centre, r), row = y + v;
         roevo::at(to.rows, r) = static_cast<float>(v);
         for (int c = 0; c < columns.count; ++c) {
-            const int column = left + roevo::at(columns.from_first, c);
+            const int column = x + roevo::at(columns.from_centre, c);
             if (row >= 0 && row < depth_.rows && column >= 0 && column < depth_.cols)
-                roevo::at(to.depths, r * kMost + c) = depth_.at<float>(row, column);
+                roevo::at(to.depths, r * (kMost + 1) + c) = depth_.at<float>(row, column);
         }
     }
-    return {to.depths.data(), kMost, std::max(rows.count, columns.count), to.columns.data(), to.rows.data()};
+    return {to.depths.data(), kMost + 1, std::max(rows.count, columns.count), to.columns.data(),
+            to.rows.data()};
 }
 
 float ForegroundDepth::at(float u, float v) const {
     if (depth_.empty()) return 0;
-    const int left = beginOf(u, side_), top = beginOf(v, side_);
-    const bool is_inside = left >= 0 && top >= 0 && left + kMost <= depth_.cols && top + side_ <= depth_.rows;
+    const int x = nearestInteger(static_cast<double>(u)), y = nearestInteger(static_cast<double>(v));
+    const int size = 2 * radius_ + 1, left = x - radius_, top = y - radius_;
+    const bool is_inside = left >= 0 && top >= 0 && left + kMost < depth_.cols && top + size <= depth_.rows;
     kernels::DepthPatch patch;
     const auto look = [&](const kernels::DepthSquare& square) {
-        kernels::best().depthPatch(square, limits_, u - static_cast<float>(left), v - static_cast<float>(top),
+        kernels::best().depthPatch(square, limits_, u - static_cast<float>(x), v - static_cast<float>(y),
                                    patch);
     };
-    if (!sparse_ && side_ <= kMost && is_inside) {
-        look({depth_.ptr<float>(top) + left, static_cast<std::ptrdiff_t>(depth_.step1()), side_,
-              kSteps.data(), kSteps.data()});
+    if (!sparse_ && size <= kMost && is_inside) {
+        const float* const offsets = kSteps.data() + kMost - radius_;
+        look({depth_.ptr<float>(top) + left, static_cast<std::ptrdiff_t>(depth_.step1()), size, offsets,
+              offsets});
     } else {
         Copy copied;
-        look(copy(left, top, copied));
+        look(copy(x, y, copied));
     }
     return patch.count > 0 ? depthAtEdge(patch, limits_) : 0;
 }

@@ -25,12 +25,12 @@ class ForegroundDepth {
   private:
     struct Offsets;
     struct Copy;
-    void lookForKnown(int left, int top, Offsets& rows, Offsets& columns) const;
-    kernels::DepthSquare copy(int left, int top, Copy& to) const;
+    void lookForKnown(int x, int y, Offsets& rows, Offsets& columns) const;
+    kernels::DepthSquare copy(int x, int y, Copy& to) const;
 
     cv::Mat depth_;
     kernels::DepthLimits limits_{};
-    int side_ = 0;  // px, of squares
+    int radius_ = 0;  // px
     bool sparse_ = false;
 };
 

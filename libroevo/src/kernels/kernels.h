@@ -46,14 +46,14 @@ struct EdgePointArrays {
     float *x, *y, *gradient_x, *gradient_y, *strength;
 };
 
-constexpr int kMostPatch = 8;  ///< px, side of the squares that depthPatch() looks at
+constexpr int kMostPatch = 7;  ///< px, side of the squares that depthPatch() looks at
 
 /// A square of depths, eight columns of which can be read.
 struct DepthSquare {
     const float* depth;           ///< m, its first one
     std::ptrdiff_t stride;        ///< of its rows, in depths
     int size;                     ///< at most kMostPatch
-    const float *columns, *rows;  ///< eight each: their offsets from its first one, px
+    const float *columns, *rows;  ///< eight each: their offsets from its centre, px
 };
 
 struct DepthLimits {
@@ -263,8 +263,7 @@ struct Table {
     void (*nearestPoints)(const EdgeCells& cells, const float* u, const float* v, const float* nx,
                           const float* ny, std::size_t count, float radius, float min_cosine,
                           std::int32_t* found);
-    /// The nearest surface in a square, its plane (in inverse depth) evaluated at (u, v) from its first
-    /// depth, px.
+    /// The nearest surface in a square, its plane (in inverse depth) evaluated at (u, v) from the centre, px.
     void (*depthPatch)(const DepthSquare& square, const DepthLimits& limits, float u, float v,
                        DepthPatch& out);
     /// Adds what the normal of an edge's point passes on one side to its sums.

@@ -9,7 +9,6 @@ namespace {
 /// px, one sigma, of what a 640 pixels wide camera's pixel and Sobel's filter average over. An edge found
 /// over less of the scene is one of noise and rounding, in crooked pieces.
 constexpr double kAperture = 0.9;
-constexpr int kLeastPatch = 5;  ///< px: fewer depths do not tell a surface from noise
 
 }  // namespace
 
@@ -21,9 +20,7 @@ OdometryOptions scaledTo(const PinholeCamera& camera, OdometryOptions options) {
     const auto points = [&](int count) { return static_cast<int>(std::lround(sampling * count)); };
     options.edges.min_length = points(options.edges.min_length);
     options.edges.tangent_span = points(options.edges.tangent_span);
-    // Outlines and their depths are apart by what they are apart in the scene
-    const auto patch = static_cast<int>(std::lround(options.edges.depth_patch * camera.width / 640.));
-    options.edges.depth_patch = std::max(patch, std::min(options.edges.depth_patch, kLeastPatch));
+    options.edges.depth_patch_radius = points(options.edges.depth_patch_radius);
     const double finer = kAperture * std::sqrt(sampling * sampling - 1);
     options.edges.blur_sigma = std::hypot(options.edges.blur_sigma, finer);
     const int levels = static_cast<int>(std::lround(std::log2(sampling)));
