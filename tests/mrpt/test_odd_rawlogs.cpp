@@ -7,6 +7,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +16,7 @@
 
 #include "mrpt/synthetic_scan.h"
 #include "mrpt/test_helpers.h"
+#include "programs/memory_peak.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/rawlog_reader.h"
@@ -193,6 +195,22 @@ TEST_F(OddRawlog, FlagsOfADamagedFileAreTrueOrFalse) {
     unsigned char byte = 0;
     std::memcpy(&byte, &read->range_is_depth, sizeof byte);
     EXPECT_EQ(byte, 1) << "C++ knows only true and false";
+}
+
+TEST_F(OddRawlog, ATextIsNoLongerThanTheFileWhateverItsLengthSays) {
+    const std::string good = test::bytesOf(*scanAt(0, "a label like no other"));
+    const std::size_t label = good.find("a label like no other");
+    ASSERT_NE(label, std::string::npos);
+    for (const std::uint32_t length : {400u << 20, 0xfffffff0u}) {
+        std::string bad = good;
+        std::memcpy(&bad[label - sizeof length], &length, sizeof length);
+        test::writeFile(folder_ / "o.rawlog", good + bad);
+        const double before = memoryPeakMb();
+        RawlogReader reader(folder_ / "o.rawlog");
+        EXPECT_EQ(count(reader), 1u);
+        EXPECT_CONTAINS(reader.report().fault, "entry 2");
+        EXPECT_LT(memoryPeakMb() - before, 100) << "MB; room for a text that is not there";
+    }
 }
 
 TEST_F(OddRawlog, OtherObservationsAreShownInTheOrderOfTheFile) {

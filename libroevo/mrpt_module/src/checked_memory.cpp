@@ -1,14 +1,18 @@
 #include "checked_memory.h"
 
 #include <mrpt/core/aligned_allocator.h>
+#include <mrpt/serialization/CArchive.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 void* mrpt::aligned_malloc(size_t size, size_t alignment) {
     if (size > roevo::kLargestMrptBlock) throw std::length_error("more memory than any observation needs");
@@ -26,6 +30,21 @@ void* mrpt::aligned_calloc(size_t size, size_t alignment) {
 
 void mrpt::aligned_free(void* block) {
     std::free(block);
+}
+
+mrpt::serialization::CArchive& mrpt::serialization::operator>>(CArchive& archive, std::string& text) {
+    constexpr std::size_t kPiece = std::size_t{1} << 20;
+    std::uint32_t size = 0;
+    archive >> size;
+    if (size > roevo::kLargestMrptBlock) throw std::length_error("a longer text than any observation has");
+    text.clear();
+    while (text.size() < size) {
+        const std::size_t before = text.size();
+        text.resize(before + std::min(kPiece, size - before));
+        if (archive.ReadBuffer(text.data() + before, text.size() - before) != text.size() - before)
+            throw std::runtime_error("the file ends within a text");
+    }
+    return archive;
 }
 
 namespace roevo {
