@@ -46,7 +46,7 @@ target_include_directories(test_distance_field PRIVATE ${CMAKE_CURRENT_SOURCE_DI
 
 roevo_test(test_study_ablation
   SOURCES apps/test_study_ablation.cpp apps/test_study_efficiency.cpp apps/test_study_points.cpp
-          apps/test_study_viewpoint.cpp apps/test_study_ways.cpp apps/test_study_loop.cpp apps/test_study_gaps.cpp
+          apps/test_study_viewpoint.cpp apps/test_study_ways.cpp apps/test_study_loop.cpp apps/test_study_gaps.cpp apps/test_study_growth.cpp
   LIBS roevo_study roevo_simulator roevo_test_support)
 target_include_directories(test_study_ablation PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 

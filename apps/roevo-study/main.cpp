@@ -46,11 +46,15 @@ constexpr char kFooter[] =
     "  gaps           20, 60 and 120 frames cut out (--gap) at ten places; whether the camera is found "
     "again,\n"
     "                 error of the other frames against the uncut run's; gaps.*\n"
+    "  growth         the size of the images, 0.5 to 3 times, over the first 150 frames; number of edges, "
+    "length;\n"
+    "                 processor time per frame, memory; growth*.*\n"
     "loop, sigmas and distribution run in ba and in tr unless --mode says, and the last two forwards and\n"
     "backwards, from five starts each (0, 3, 6, 9 and 12 frames left out).\n"
     "Each writes CSV tables and SVG plots into the output folder; study.md there explains and lists them.\n"
-    "A recording that cannot be used is named, and the others go on. All but repeatability and efficiency\n"
-    "need ground truth for errors. Run on an idle machine for efficiency. Exit code 1 when an experiment\n"
+    "A recording that cannot be used is named, and the others go on. All but repeatability, efficiency and\n"
+    "growth need ground truth for errors. Run on an idle machine for efficiency and growth. Exit code 1 when "
+    "an experiment\n"
     "could use no recording or a plot is missing.";
 
 struct Study {
@@ -68,6 +72,7 @@ constexpr Study kStudies[] = {
     {"distribution", "Distribution of errors", studyDistribution, false},
     {"loop", "Paths that return", studyLoop, false},
     {"gaps", "Gaps in a recording", studyGaps, false},
+    {"growth", "Growth of time and memory", studyGrowth, false},
 };
 
 // What is wrong with the name of an experiment; empty when nothing is.
@@ -145,7 +150,7 @@ int run(int argc, char** argv) {
         kName);
     app.add_option("--experiment", experiments,
                    "canny, depth-weight, ablation, repeatability, efficiency or all; loop, sigmas, "
-                   "distribution, gaps; one or more, see below")
+                   "distribution, gaps, growth; one or more, see below")
         ->required()
         ->check(faultOfName, "");
     app.add_option("--input", settings.paths, "Recordings: .rawlog files, ROS bags or dataset folders")

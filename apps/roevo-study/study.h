@@ -69,6 +69,7 @@ StudyReport studySigmas(const std::vector<StudyInput>& inputs, const std::string
 StudyReport studyDistribution(const std::vector<StudyInput>& inputs, const std::string& folder);
 StudyReport studyLoop(const std::vector<StudyInput>& inputs, const std::string& folder);
 StudyReport studyGaps(const std::vector<StudyInput>& inputs, const std::string& folder);
+StudyReport studyGrowth(const std::vector<StudyInput>& inputs, const std::string& folder);
 
 /// Measures on each input. One that fails becomes a line of the report, and the others go on; `measure` must
 /// not have added anything to the tables by then.

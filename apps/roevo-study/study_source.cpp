@@ -1,6 +1,8 @@
 #include "study_source.h"
 
 #include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "programs/text.h"
@@ -53,6 +55,42 @@ class GappedSource : public ForwardingSource {
     std::size_t before_, cut_;
 };
 
+/// Grey and colour averaged or interpolated, depth and mask by the nearest pixel.
+class ResizedSource : public ForwardingSource {
+  public:
+    ResizedSource(std::unique_ptr<FrameSource> source, double factor)
+        : ForwardingSource(std::move(source)), camera_(ForwardingSource::camera()) {
+        camera_.width = static_cast<int>(std::lround(camera_.width * factor));
+        camera_.height = static_cast<int>(std::lround(camera_.height * factor));
+        const double across = static_cast<double>(camera_.width) / ForwardingSource::camera().width,
+                     down = static_cast<double>(camera_.height) / ForwardingSource::camera().height;
+        camera_.fx *= across, camera_.fy *= down;
+        camera_.cx = (camera_.cx + 0.5) * across - 0.5;  // pixel centres are at integers
+        camera_.cy = (camera_.cy + 0.5) * down - 0.5;
+    }
+
+    bool next(SourceFrame& frame) override {
+        if (!ForwardingSource::next(frame)) return false;
+        const int smooth =
+            camera_.width < ForwardingSource::camera().width ? cv::INTER_AREA : cv::INTER_CUBIC;
+        resize(frame.frame.grey, smooth);
+        resize(frame.frame.colour, smooth);
+        resize(frame.frame.depth, cv::INTER_NEAREST);
+        resize(frame.frame.mask, cv::INTER_NEAREST);
+        return true;
+    }
+    const PinholeCamera& camera() const override { return camera_; }
+
+  private:
+    void resize(cv::Mat& image, int interpolation) const {
+        if (image.empty()) return;
+        cv::Mat other;  // the source may show the same pixels again
+        cv::resize(image, other, {camera_.width, camera_.height}, 0, 0, interpolation);
+        image = other;
+    }
+    PinholeCamera camera_;
+};
+
 class WatchedSource : public ForwardingSource {
   public:
     WatchedSource(std::unique_ptr<FrameSource> source, std::shared_ptr<RecordingDamage> damage)
@@ -84,6 +122,10 @@ std::unique_ptr<FrameSource> firstFrames(std::unique_ptr<FrameSource> source, st
 std::unique_ptr<FrameSource> withoutFrames(std::unique_ptr<FrameSource> source, std::size_t first,
                                            std::size_t count) {
     return std::make_unique<GappedSource>(std::move(source), first, count);
+}
+
+std::unique_ptr<FrameSource> resized(std::unique_ptr<FrameSource> source, double factor) {
+    return std::make_unique<ResizedSource>(std::move(source), factor);
 }
 
 std::unique_ptr<FrameSource> watched(std::unique_ptr<FrameSource> source,

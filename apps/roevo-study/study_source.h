@@ -14,6 +14,9 @@ std::unique_ptr<FrameSource> firstFrames(std::unique_ptr<FrameSource> source, st
 std::unique_ptr<FrameSource> withoutFrames(std::unique_ptr<FrameSource> source, std::size_t first,
                                            std::size_t count);
 
+/// Images and camera of another size. @param factor  of width and height
+std::unique_ptr<FrameSource> resized(std::unique_ptr<FrameSource> source, double factor);
+
 /// Notes what is wrong with a recording once it has been read to its end.
 std::unique_ptr<FrameSource> watched(std::unique_ptr<FrameSource> source,
                                      std::shared_ptr<RecordingDamage> damage);
