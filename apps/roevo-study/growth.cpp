@@ -35,7 +35,6 @@ struct FrameCost {
 };
 
 struct SizedRun {
-    double factor = 1;
     PinholeCamera camera;
     std::vector<FrameCost> frames;
     StudyRun run;
@@ -75,7 +74,6 @@ SizedRun measure(const StudyInput& recording, double factor, std::size_t frames)
     };
     input.camera = input.open()->camera();
     SizedRun result;
-    result.factor = factor;
     result.camera = input.camera;
     const double memory_before = memoryInUseMb();
     double before = processorTime(CLOCK_THREAD_CPUTIME_ID);
@@ -116,7 +114,8 @@ struct Panel {
 void draw(StudyReport& report, const std::string& folder, const std::string& name, const std::string& title,
           const std::vector<std::string>& recordings, const std::vector<Panel>& panels) {
     std::string script = "set multiplot layout 1," + std::to_string(panels.size()) + " title " +
-                         gnuplotText(title) + "\nset yrange [0:*]\nset xrange [0:*]\nset key top left\n";
+                         gnuplotText(title) + "\nset yrange [0:*]\nset xrange [0:*]\nset key top left\n" +
+                         "set offsets 0, 0, graph 0.35, 0\n";
     for (std::size_t p = 0; p < panels.size(); ++p) {
         std::string plot;
         for (std::size_t i = 0; i < recordings.size(); ++i) {
@@ -129,6 +128,29 @@ void draw(StudyReport& report, const std::string& folder, const std::string& nam
                   gnuplotText(panels[p].y_label) + '\n' + plot + "\nset key off\n";
     }
     addPlot(report, folder, name, script + "unset multiplot\n", 980, 440);
+}
+
+void addSize(const std::string& recording, const SizedRun& run, CsvTable& table,
+             std::vector<std::vector<std::string>>& shown) {
+    const FrameCost& last = run.frames.back();
+    const auto ate = run.ate();
+    table.add({recording, std::to_string(run.camera.width), std::to_string(run.camera.height),
+               std::to_string(run.frames.size()), std::to_string(run.run.tracked),
+               std::to_string(last.keyframes), CsvTable::number(run.run.points),
+               CsvTable::number(run.medianMs(), 4), CsvTable::number(run.slowMs(), 4),
+               CsvTable::number(run.mappingMs(), 4), CsvTable::number(last.memory_mb, 4),
+               CsvTable::number(ate)});
+    shown.push_back({recording, format("%d x %d", run.camera.width, run.camera.height),
+                     format("%.0f", run.run.points), format("%.1f", run.medianMs()),
+                     format("%.1f", run.slowMs()), format("%.1f", run.mappingMs()),
+                     format("%.0f", last.memory_mb), ate ? format("%.2f", 100 * *ate) : "-"});
+}
+
+void addFrames(const std::string& recording, const std::vector<FrameCost>& frames, CsvTable& table) {
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        table.add({recording, std::to_string(i), CsvTable::number(frames[i].points),
+                   std::to_string(frames[i].keyframes), CsvTable::number(frames[i].ms, 4),
+                   CsvTable::number(frames[i].mapping_ms, 4), CsvTable::number(frames[i].memory_mb, 5)});
 }
 
 struct OfRecording {
@@ -183,26 +205,8 @@ StudyReport studyGrowth(const std::vector<StudyInput>& inputs, const std::string
             if (runs.sizes.back().frames.empty()) throw std::runtime_error("no frame could be read");
             progress.update(++done);
         }
-        for (const SizedRun& run : runs.sizes) {
-            const FrameCost& last = run.frames.back();
-            sizes.add({input.name, std::to_string(run.camera.width), std::to_string(run.camera.height),
-                       std::to_string(run.frames.size()), std::to_string(run.run.tracked),
-                       std::to_string(last.keyframes), CsvTable::number(run.run.points),
-                       CsvTable::number(run.medianMs(), 4), CsvTable::number(run.slowMs(), 4),
-                       CsvTable::number(run.mappingMs(), 4), CsvTable::number(last.memory_mb, 4),
-                       CsvTable::number(run.ate())});
-            const auto ate = run.ate();
-            shown.push_back({input.name, format("%d x %d", run.camera.width, run.camera.height),
-                             format("%.0f", run.run.points), format("%.1f", run.medianMs()),
-                             format("%.1f", run.slowMs()), format("%.1f", run.mappingMs()),
-                             format("%.0f", last.memory_mb), ate ? format("%.2f", 100 * *ate) : "-"});
-        }
-        for (std::size_t i = 0; i < runs.whole.frames.size(); ++i) {
-            const FrameCost& frame = runs.whole.frames[i];
-            of_frames.add({input.name, std::to_string(i), CsvTable::number(frame.points),
-                           std::to_string(frame.keyframes), CsvTable::number(frame.ms, 4),
-                           CsvTable::number(frame.mapping_ms, 4), CsvTable::number(frame.memory_mb, 5)});
-        }
+        for (const SizedRun& run : runs.sizes) addSize(input.name, run, sizes, shown);
+        addFrames(input.name, runs.whole.frames, of_frames);
         names.push_back(input.name);
         recordings.push_back(std::move(runs));
     });
