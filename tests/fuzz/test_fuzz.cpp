@@ -1,5 +1,6 @@
 // The fuzzers' targets on their seeds and on a few mutations of these, always the same ones: that they go on
-// working, and that what was found once stays mended. Finding more takes the preset fuzz (docs/developing.md).
+// working, and that what was found once stays mended. Finding more takes the preset fuzz
+// (docs/developing.md).
 #include <gtest/gtest.h>
 
 #include <algorithm>
