@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <ctime>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -9,24 +8,18 @@
 #include "registration_steps.h"
 #include "roevo-compare/methods/distance_field.h"
 #include "roevo/odometry.h"
+#include "stopwatch.h"
 #include "tracking/tracker.h"
 
 namespace roevo {
 namespace {
 
-/// Processor time of this thread, ms: other programs and the mapping thread do not count.
-double processorTime() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-/// Milliseconds of the processor that `work` takes.
+/// Milliseconds of the processor that `work` takes: other programs and the mapping thread do not count.
 template <class Work>
 double timed(Work&& work) {
-    const double start = processorTime();
+    const CpuStopwatch stopwatch;
     work();
-    return processorTime() - start;
+    return stopwatch.milliseconds();
 }
 
 /// OpenCV's threads put away while this lives.

@@ -6,10 +6,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "evaluation/error_statistics.h"
 #include "programs/gnuplot.h"
 #include "programs/progress.h"
 #include "programs/text.h"
-#include "roevo-compare/core_contention.h"
+#include "stopwatch.h"
 #include "study.h"
 #include "study_source.h"
 
@@ -47,12 +48,7 @@ struct SizedRun {
     double megapixels() const { return 1e-6 * camera.width * camera.height; }
     double medianMs() const { return median(values(&FrameCost::ms)).value_or(0); }
     /// ms that 95 % of the frames stay below.
-    double slowMs() const {
-        std::vector<double> all = values(&FrameCost::ms);
-        if (all.empty()) return 0;
-        std::sort(all.begin(), all.end());
-        return all[std::min(all.size() - 1, all.size() * 95 / 100)];
-    }
+    double slowMs() const { return percentile(values(&FrameCost::ms), 0.95); }
     double mappingMs() const {  ///< of a keyframe, mean
         double sum = 0, keyframes = 0;
         for (const FrameCost& frame : frames) {
@@ -76,14 +72,14 @@ SizedRun measure(const StudyInput& recording, double factor, std::size_t frames)
     SizedRun result;
     result.camera = input.camera;
     const double memory_before = memoryInUseMb();
-    double before = processorTime(CLOCK_THREAD_CPUTIME_ID);
+    CpuStopwatch stopwatch;
     std::size_t keyframes = 0;
     result.run = trackRecording(input, input.options, [&](const FrameResult& frame, const Odometry&) {
-        const double ms = processorTime(CLOCK_THREAD_CPUTIME_ID) - before;
+        const double ms = stopwatch.milliseconds();
         keyframes += frame.new_keyframe;
         result.frames.push_back({static_cast<double>(frame.num_points), ms, frame.ms.mapping_cpu,
                                  memoryInUseMb() - memory_before, keyframes});
-        before = processorTime(CLOCK_THREAD_CPUTIME_ID);
+        stopwatch = CpuStopwatch();
     });
     return result;
 }
