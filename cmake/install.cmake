@@ -6,6 +6,7 @@ set(core roevo)
 set(mrpt roevo_mrpt)
 set(recordings roevo_recordings roevo_datasets roevo_evaluation roevo_programs)
 foreach(component core mrpt recordings)
+  set_target_properties(${${component}} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # for users' plugins
   install(TARGETS ${${component}} EXPORT roevo_${component} COMPONENT dev)
   install(EXPORT roevo_${component} FILE roevo_${component}.cmake NAMESPACE roevo:: DESTINATION ${package} COMPONENT dev)
 endforeach()

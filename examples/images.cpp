@@ -39,6 +39,10 @@ int run(const char* const* arguments) {
         roevo::RgbdFrame frame = readFrame(colour[i], depth[i], std::atof(arguments[7]));
         frame.timestamp = static_cast<double>(i) * kFrameInterval;
         const roevo::FrameResult result = odometry.processFrame(frame);
+        if (!result.hasPose()) {
+            std::printf("%s %s\n", toString(result.status), result.reason.c_str());
+            continue;
+        }
         const Eigen::Vector3d& t = result.T_world_camera.translation();
         std::printf("%s %.4f %.4f %.4f +- %.4f %s\n", toString(result.status), t.x(), t.y(), t.z(),
                     result.sigmaTranslation(), result.reason.c_str());

@@ -1,3 +1,4 @@
+#include <pybind11/operators.h>
 #include <pybind11/stl.h>
 
 #include <sstream>
@@ -10,14 +11,16 @@ namespace py = pybind11;
 namespace roevo::python {
 namespace {
 
+/// What makes the same camera again: all digits that tell it from others.
 std::string toText(const PinholeCamera& camera) {
+    const auto exact = [](double value) { return std::string(py::repr(py::float_(value))); };
     std::ostringstream out;
     out << "roevo.Camera(" << camera.width << ", " << camera.height;
-    for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy}) out << ", " << value;
+    for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy}) out << ", " << exact(value);
     if (camera.isDistorted()) {
         const char* separator = ", distortion=[";
         for (const double value : camera.distortion) {
-            out << separator << value;
+            out << separator << exact(value);
             separator = ", ";
         }
         out << ']';
@@ -49,7 +52,7 @@ Pixel centres are at whole coordinates. Images may be distorted: they are undist
         .def_readonly("cx", &PinholeCamera::cx, "pixels")
         .def_readonly("cy", &PinholeCamera::cy, "pixels")
         .def_readonly("distortion", &PinholeCamera::distortion, "k1 k2 p1 p2 k3")
-        .def("__eq__", [](const PinholeCamera& a, const PinholeCamera& b) { return a == b; })
+        .def(py::self == py::self)
         .def("__repr__", &toText);
 }
 

@@ -23,7 +23,7 @@ OptionField fieldOf(OdometryOptions& options, const std::string& name) {
 
 void set(OdometryOptions& options, const std::string& name, const py::handle& value) {
     std::string text = py::str(value);
-    if (py::isinstance<py::bool_>(value)) text = value.cast<bool>() ? "true" : "false";
+    if (text == "True" || text == "False") text = text == "True" ? "true" : "false";  // NumPy's, too
     if (const std::string fault = setOption(options, name, text); !fault.empty())
         throw std::invalid_argument(fault);
 }

@@ -23,8 +23,12 @@ def recordings_in(folder):
 
 
 def recordings_of_list(file):
+    if os.path.basename(file) in PARTS_OF_A_RECORDING:
+        raise Fault(f"{file} is a part of a recording: give its folder")
     with open(file, encoding="utf-8", errors="surrogateescape") as lines:
         paths = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
+    if any("\0" in path for path in paths):
+        raise Fault(f"{file} is no list of recordings: it is no text")
     return [recording(os.path.join(os.path.dirname(file), path)) for path in paths]
 
 
@@ -76,8 +80,10 @@ def recordings(args):
             if not os.path.isdir(args.data):
                 raise Fault(f"--data {args.data}: there is no such folder")
             found, missing = recordings_of_json(args.input, args.data)
+        elif os.path.isdir(args.input):
+            found = recordings_in(args.input)
         else:
-            found = (recordings_in if os.path.isdir(args.input) else recordings_of_list)(args.input)
+            found = [recording(args.input)] if args.input.endswith(ENDINGS) else recordings_of_list(args.input)
     except OSError as e:
         raise Fault(f"cannot read {args.input}: {e.strerror}") from e
     except (ValueError, TypeError, AttributeError, IndexError) as e:

@@ -146,6 +146,18 @@ void removeHalfMade(const std::string& output) {
             if (run.path().extension() == ".partial") fs::remove_all(run, none);
 }
 
+/// A run that is interrupted leaves nothing, those before it do.
+template <typename Runs>
+void keepingRuns(const std::string& output, const Runs& runs) {
+    try {
+        runs();
+    } catch (const Interrupted&) {
+        const std::string runs_folder = (fs::path(output) / "runs").string();
+        throw Interrupted("interrupted: runs that were done are kept in " + runs_folder + "; --report " +
+                          runs_folder + " --output " + output + " makes a report of them");
+    }
+}
+
 ComparisonReport writeReport(std::vector<SequenceComparison> sequences, const std::string& output,
                              const std::string& command, const std::vector<std::string>& notes = {},
                              const std::vector<SequenceComparison>& baseline = {}) {
@@ -176,30 +188,34 @@ ComparisonReport compare(const CompareSettings& settings) {
     const FolderLock lock(settings.output);
     removeHalfMade(settings.output);
     saveConfigFile((fs::path(settings.output) / "config_used.ini").string(), settings.options);
-    for (std::size_t s = 0; s < sequences.size(); ++s)
-        for (const MethodInfo& method : settings.methods) {
-            if (!sequences[s].failure.empty()) continue;
-            SequenceComparison row = makeRun(settings, settings.sequences[s], method);
-            if (row.runs[0].ok()) {  // as a report of rows finds them, to the last digit
-                sequences[s].part = row.part;
-                sequences[s].reference = row.reference;
+    keepingRuns(settings.output, [&] {
+        for (std::size_t s = 0; s < sequences.size(); ++s)
+            for (const MethodInfo& method : settings.methods) {
+                if (!sequences[s].failure.empty()) continue;
+                SequenceComparison row = makeRun(settings, settings.sequences[s], method);
+                if (row.runs[0].ok()) {  // as a report of rows finds them, to the last digit
+                    sequences[s].part = row.part;
+                    sequences[s].reference = row.reference;
+                }
+                sequences[s].runs.push_back(std::move(row.runs[0]));
+                sequences[s].run_folders.push_back(row.run_folders[0]);
             }
-            sequences[s].runs.push_back(std::move(row.runs[0]));
-            sequences[s].run_folders.push_back(row.run_folders[0]);
-        }
+    });
     return writeReport(std::move(sequences), settings.output, settings.command);
 }
 
 void makeRows(const CompareSettings& settings) {
     const InterruptGuard guard;
     prepareOutputFolder(settings.output);
-    for (const SequenceInput& sequence : settings.sequences)
-        for (const MethodInfo& method : settings.methods) {
-            const SequenceComparison row = makeRun(settings, sequence, method);
-            if (row.runs[0].skipped.empty()) continue;  // else it is kept already
-            fs::create_directories(row.run_folders[0]);
-            writeRow(row.run_folders[0], row);
-        }
+    keepingRuns(settings.output, [&] {
+        for (const SequenceInput& sequence : settings.sequences)
+            for (const MethodInfo& method : settings.methods) {
+                const SequenceComparison row = makeRun(settings, sequence, method);
+                if (row.runs[0].skipped.empty()) continue;  // else it is kept already
+                fs::create_directories(row.run_folders[0]);
+                writeRow(row.run_folders[0], row);
+            }
+    });
 }
 
 ComparisonReport reportRows(const std::vector<std::string>& rows, const std::vector<std::string>& baseline,

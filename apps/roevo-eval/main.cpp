@@ -9,6 +9,7 @@
 #include "evaluation/trajectory_io.h"
 #include "page.h"
 #include "programs/atomic_file.h"
+#include "programs/output_folder.h"
 #include "programs/program.h"
 #include "programs/text.h"
 #include "tables.h"
@@ -137,6 +138,11 @@ int run(int argc, char** argv) {
         throw UsageError("--table: '" + settings.table + "' must end in .csv or .tex");
     if (!settings.plot.empty() && std::filesystem::path(settings.plot).extension() != ".html")
         throw UsageError("--plot: '" + settings.plot + "' must end in .html");
+    std::vector<std::string> inputs{settings.reference, settings.times};
+    for (const std::string& argument : settings.estimates) inputs.push_back(splitNamedFile(argument).file);
+    keepInputs("--json", settings.json, inputs);
+    keepInputs("--table", settings.table, inputs);
+    keepInputs("--plot", settings.plot, inputs);
 
     RowTimes times{{}, settings.reference};
     if (!settings.times.empty()) times = readRowTimes(settings.times);

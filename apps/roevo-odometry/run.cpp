@@ -56,15 +56,13 @@ bool isSameFile(const fs::path& a, const fs::path& b) {
 }
 
 // What is written besides the results must not take the place of what is read, or of a result.
-void checkNames(const RunSettings& settings) {
+void checkNames(const RunSettings& settings, const std::string& ground_truth) {
     const auto check = [&](const char* option, const std::string& file) {
         if (file.empty()) return;
         const auto refuse = [&](const std::string& what) {
             throw UsageError(std::string(option) + " " + file + " is " + what + "; give another name");
         };
-        if (isSameFile(file, settings.input) ||
-            (!settings.ground_truth.empty() && isSameFile(file, settings.ground_truth)))
-            refuse("an input");
+        keepInputs(option, file, {settings.input, ground_truth, settings.choice.mask});
         for (const std::string& name : kResults)
             if (isSameFile(file, fs::path(settings.output_dir) / name)) refuse("what the run writes itself");
     };
@@ -86,6 +84,18 @@ void open(std::optional<AtomicFile>& file, const std::string& name) {
 // Else the results would get their names, and this would not.
 void finish(std::optional<AtomicFile>& file, const std::string& name) {
     if (file && !file->stream().flush()) throw std::runtime_error("cannot write " + name);
+}
+
+/// @return why there is none: the other results are kept all the same
+std::string saveMap(const Odometry& odometry, const std::string& name, std::optional<AtomicFile>& file,
+                    RunReport& report) {
+    try {
+        report.map_out = {name, odometry.saveMap(file->stream())};
+        return {};
+    } catch (const std::runtime_error& error) {
+        file.reset();
+        return "cannot write " + name + ": " + error.what() + " (all other results are written)";
+    }
 }
 
 constexpr double kLongestGap = 1;  // s; a recording that stood still, or a stray stamp, is not waited for
@@ -283,8 +293,9 @@ SceneContent finishMap(Odometry& odometry, RunReport& report) {
 
 RunReport runOdometry(const RunSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
-    checkNames(settings);
     auto source = openSource(settings.input, settings.choice);
+    const GroundTruth ground_truth = groundTruthFor(settings.ground_truth, *source);
+    checkNames(settings, ground_truth.file);
     RunReport report = reportOn(*source, settings);
     Odometry odometry(source->camera(), settings.options);
     if (!settings.map_in.empty()) loadMap(settings, odometry, report);
@@ -295,7 +306,6 @@ RunReport runOdometry(const RunSettings& settings) {
     open(covariances, settings.covariances);
     MrptOutputs for_mrpt(settings, *source);
 
-    const GroundTruth ground_truth = groundTruthFor(settings.ground_truth, *source);
     report.ground_truth = ground_truth.file;
     if (!settings.quiet) printInput(report, notesOn(*source, ground_truth, !settings.ground_truth.empty()));
 
@@ -310,6 +320,7 @@ RunReport runOdometry(const RunSettings& settings) {
 
     const InterruptGuard guard;  // a signal does not leave half of the results
     const std::string failure = report.failure();
+    std::string no_map;
     if (failure.empty()) {
         evaluateRun(report, ground_truth);
         writeTumTrajectory(files.path("trajectory.txt"), report.trajectory);
@@ -319,7 +330,7 @@ RunReport runOdometry(const RunSettings& settings) {
             writeTumTrajectory(files.path("trajectory_robot.txt"),
                                robotTrajectory(report.trajectory, report.camera_on_robot));
         writeMap(files, report, odometry, std::move(content), alignedReference(report, ground_truth.poses));
-        if (map_file) report.map_out = {settings.map_out, odometry.saveMap(map_file->stream())};
+        if (map_file) no_map = saveMap(odometry, settings.map_out, map_file, report);
         for_mrpt.write(report, odometry);
     }
     saveConfigFile(files.path("config_used.ini"), odometry.options());
@@ -333,6 +344,7 @@ RunReport runOdometry(const RunSettings& settings) {
     for_mrpt.commit();
     if (covariances && failure.empty()) covariances->commit();
     if (!report.map_out.file.empty()) map_file->commit();
+    if (!no_map.empty()) throw std::runtime_error(no_map);
     if (!failure.empty())
         throw std::runtime_error(settings.input + ": " + failure + " (see " +
                                  (fs::path(settings.output_dir) / "frames.csv").string() + ")");

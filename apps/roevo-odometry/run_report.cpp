@@ -137,7 +137,7 @@ std::string RunReport::failure() const {
     for (const FrameRecord& f : frames)
         if (f.result.status != FrameStatus::kInitialised)
             reasons[reasonWithoutFile(f.result.reason)].push_back(&f);
-    if (reasons.empty()) return "the input has no frame";
+    if (reasons.empty()) return "there is no frame (after those that --skip leaves out)";
     const auto commonest = std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) {
         return a.second.size() < b.second.size();
     });

@@ -8,6 +8,7 @@
 #include "evaluation/trajectory_io.h"
 #include "picture.h"
 #include "programs/atomic_file.h"
+#include "programs/output_folder.h"
 #include "programs/program.h"
 #include "programs/text.h"
 #include "result_folder.h"
@@ -206,6 +207,7 @@ int run(int argc, char** argv) {
     if (auto code = parseCommandLine(app, argc, argv)) return *code;
 
     const std::string kind = fs::path(settings.output).extension().string();
+    keepInputs("--output", settings.output, {settings.scene});
     const bool is_page = kind == ".html", is_movie = kind == ".mp4";
     if (!is_page && !is_movie && kind != ".png")
         throw UsageError("--output: '" + settings.output + "' must end in .png, .mp4 or .html");

@@ -9,14 +9,12 @@
 #include <new>
 #include <system_error>
 
-#include "input/excerpt.h"
 #include "programs/atomic_file.h"
 
 namespace roevo {
 namespace {
 
 constexpr int kFailure = 1, kWrongUsage = 2;
-constexpr std::size_t kLongestMessage = 1500;  // characters; a path alone may have some hundreds
 
 const char* program_name = "";  // for terminate()
 
@@ -57,7 +55,10 @@ int runProgram(const char* name, const std::function<int()>& body) {
     program_name = name;
     std::set_terminate(onTerminate);
     try {
-        return body();
+        const int code = body();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            return fail(name, "cannot write to the standard output: is the disk full?", kFailure);
+        return code;
     } catch (const UsageError& e) {
         return fail(name, std::string(e.what()) + " (see " + name + " --help)", kWrongUsage);
     } catch (const CLI::Error& e) {
@@ -93,13 +94,6 @@ void printWarning(const char* name, const std::string& text) {
     std::fprintf(stderr, "%s: warning: %s\n", name, firstLine(text).c_str());
 }
 
-std::string firstLine(const std::string& message) {
-    const std::size_t begin = message.find_first_not_of(" \n\r\t");
-    if (begin == std::string::npos) return "unknown error";
-    const std::size_t end = message.find_first_of("\r\n", begin);
-    return excerpt(message.substr(begin, end == std::string::npos ? end : end - begin), kLongestMessage);
-}
-
 bool isOutOfMemory(const std::exception& fault) {
     if (dynamic_cast<const std::bad_alloc*>(&fault)) return true;
     // OpenCV's own type, which not every program knows; MRPT may have wrapped it
@@ -108,7 +102,8 @@ bool isOutOfMemory(const std::exception& fault) {
 
 std::string describe(const std::exception& fault) {
     if (isOutOfMemory(fault))
-        return "out of memory: close other programs, raise the limit (ulimit -v) or give smaller images";
+        return "out of memory: close other programs, raise the limit (ulimit -v, --memory) or give smaller "
+               "images";
     // Mostly a thread that has no room for its stack
     if (const auto* system = dynamic_cast<const std::system_error*>(&fault))
         if (system->code() == std::errc::resource_unavailable_try_again)

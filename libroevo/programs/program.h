@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "input/excerpt.h"  // firstLine()
+
 namespace CLI {
 class App;
 }
@@ -32,10 +34,6 @@ const char* versionText();
 
 /// `name: warning: …` on stderr, in one line.
 void printWarning(const char* name, const std::string& text);
-
-/// First meaningful line of an exception's text (MRPT's carry the source position and a call stack), fit for
-/// a terminal: printable, and not of hundreds of pages.
-std::string firstLine(const std::string& message);
 
 /// Whether it says that memory has run out, which is no fault of the input that was at hand.
 bool isOutOfMemory(const std::exception& fault);

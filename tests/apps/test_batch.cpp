@@ -233,6 +233,10 @@ TEST_F(Batch, WrongUsage) {
     expectError(run({"--baseline", data()}), 1, kName, {"--baseline", "run.json", data()});
     expectError(run(), 1, kName, {"no recording", data()});
     expectError(run({"--input", folder / "none"}), 1, kName, {folder / "none"});
+    writeFile(folder / "rgb.txt", "1 rgb/1.png\n");
+    expectError(run({"--input", folder / "rgb.txt"}), 1, kName, {"rgb.txt", "part of a recording"});
+    writeFile(folder / "odd.txt", std::string("a\0b\n", 4));
+    expectError(run({"--input", folder / "odd.txt"}), 1, kName, {"odd.txt", "no text"});
     EXPECT_FALSE(fs::exists(out()));
     writeFile(out(), "a file");
     clip("a");

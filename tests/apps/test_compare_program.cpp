@@ -337,7 +337,7 @@ TEST_F(Compare, AnInterruptKeepsWhatIsFinished) {
         for (int i = 0; i < 6000 && !fs::exists(first); ++i) usleep(5'000);
         kill(program, SIGINT);
     });
-    expectError(result, 1, kName, {"interrupted"});
+    expectError(result, 1, kName, {"interrupted", "runs that were done are kept", "--report"});
     EXPECT_TRUE(kept("quick", "roevo-tr").ok());
     EXPECT_FALSE(fs::exists(runFolder("slow", "roevo-tr")));
     for (const auto& entry : fs::recursive_directory_iterator(output()))

@@ -63,6 +63,24 @@ TEST(EvalProgram, FailuresAreOneLine) {
     expectError(with(folder / "r.txt", {"--max-dt", "much"}), 2, kName, {"--max-dt"});
     expectError(with(folder / "r.txt", {"--json", folder / "no/such/e.json"}), 1, kName,
                 {"cannot write", "e.json"});
+    for (const char* option : {"--json", "--table", "--plot"}) {
+        const std::string name = folder / (option + 2 == std::string("table")  ? "r.csv"
+                                           : option + 2 == std::string("plot") ? "r.html"
+                                                                               : "r.json");
+        writeFile(name, kReference);
+        expectError(with(name, {option, name}), 2, kName, {option, "an input"});
+        EXPECT_EQ(test::readFile(name), kReference);
+    }
+}
+
+TEST(EvalProgram, FiguresThatCannotBePrintedAreAFailure) {
+    const TemporaryFolder folder;
+    writeFile(folder / "r.txt", kReference);
+    const std::string command = std::string(ROEVO_BIN_DIR) + "/" + kName + " --reference " +
+                                (folder / "r.txt") + " --estimate " + (folder / "r.txt") +
+                                " > /dev/full 2> " + (folder / "err");
+    EXPECT_NE(std::system(command.c_str()), 0);
+    EXPECT_NE(test::readFile(folder / "err").find("cannot write to the standard output"), std::string::npos);
 }
 
 }  // namespace

@@ -213,6 +213,11 @@ TEST_F(OdometryProgram, CovariancesThatCannotBeWrittenCostNoWork) {
     refused(folder_.path().string(), {"cannot write", "it is a folder"});
     refused(output() + "/../out/frames.csv", {"--covariances", "frames.csv", "the run writes itself"});
     refused(folder_ / "recording", {"--covariances", "an input"});
+    const std::string list = readFile(folder_ / "recording/rgb.txt");
+    EXPECT_FALSE(list.empty());
+    refused(folder_ / "recording/rgb.txt", {"--covariances", "rgb.txt", "an input"});
+    refused(folder_ / "recording/depth/0000.png", {"--covariances", "0000.png", "an input"});
+    EXPECT_EQ(readFile(folder_ / "recording/rgb.txt"), list);
     // In the output folder is as good a place as any
     ASSERT_EQ(run(folder_ / "recording", {"--covariances", output() + "/c.txt"}).exit_code, 0);
     const std::string before = readFile(output() + "/c.txt");

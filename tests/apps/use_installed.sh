@@ -40,6 +40,8 @@ cmake --build "$work/examples"
 cmake -S "$sources/tests/apps/consumer" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" "$@"
 cmake --build "$work/consumer"
 "$work/consumer/consumer"
+cmake --build "$work/consumer" --target laid_out_otherwise >"$work/link.txt" 2>&1 && fail "other matrices do link"
+grep -q builtWithEigenAlignment "$work/link.txt" || fail "$work/link.txt does not say why other matrices do not link"
 
 camera() {
     sed -n "s/^$1: *\([^ ]*\).*/\1/p" "$work/room/camera.txt"

@@ -15,6 +15,7 @@ constexpr auto kLast = Fault::Kind::kTimeLeap;
 std::size_t numbersOf(Fault::Kind kind) {
     using Kind = Fault::Kind;
     switch (kind) {
+        case Kind::kGreySize:
         case Kind::kColourSize:
         case Kind::kDepthSize:
         case Kind::kMaskSize:
@@ -31,10 +32,12 @@ std::size_t numbersOf(Fault::Kind kind) {
             return 2;
         case Kind::kNone:
         case Kind::kTimeNotFinite:
+        case Kind::kTimeUnit:
         case Kind::kTimeRepeated:
         case Kind::kTimeBackward:
         case Kind::kNoColour:
         case Kind::kGreyType:
+        case Kind::kColourType:
         case Kind::kDepthType:
         case Kind::kMaskType:
         case Kind::kNoDepth:

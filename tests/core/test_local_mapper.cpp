@@ -1,5 +1,6 @@
 // The mapper as a whole: keyframes go in with drift, and come out at their places.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "core/support/mapping_world.h"
 #include "mapping/local_mapper.h"
@@ -276,6 +277,25 @@ TEST_F(Mapper, TellsWhichEdgesTheTrackerShouldTrustLess) {
         }
         EXPECT_GT(of_shadow, 100U);
     }
+}
+
+TEST_F(Mapper, TheMapTakesRoomForItsEdgesNotForPairsOfKeyframes) {
+    const auto peakMegabytes = [] {
+        rusage usage{};
+        getrusage(RUSAGE_SELF, &usage);
+        return static_cast<double>(usage.ru_maxrss) / 1024;
+    };
+    constexpr int kMany = 2000;  // 288 bytes for each pair of them were 1.1 GB
+    LocalMapper mapper(mappingCamera(), options_);
+    const TestKeyframe made = makeKeyframe(0, Pose(), {segment({-0.1, 0, 1.5}, {0.1, 0, 1.5})}, {{0}});
+    const KeptKeyframe kept{PackedKeyframe(made.keyframe), 1.5, RowMotion(), {-1}, {}, {}};
+    for (int id = 0; id < kMany; ++id) {
+        const Pose place(Eigen::Translation3d(id, 0, 0));
+        mapper.load({id, static_cast<double>(id), place}, KeptKeyframe(kept));
+    }
+    const double before = peakMegabytes();
+    EXPECT_EQ(mapper.fusedMap().size(), static_cast<std::size_t>(kMany));
+    EXPECT_LT(peakMegabytes() - before, 300);
 }
 
 }  // namespace

@@ -290,5 +290,39 @@ TEST(MotionModel, AGapIsWhatIsLongAndLongerThanUsual) {
     EXPECT_FALSE(isBlindAfter(slower)) << "the rate has changed";
 }
 
+TEST(MotionModel, FastCamerasHaveAVelocityToo) {
+    constexpr double kInterval = 1 / 240.0, kSpeed = 1;  // s, m/s
+    MotionModel model = makeModel();
+    const auto place = [&](double time) { return poseOf({kSpeed * time, 0, 0}, 0, {0, 0, 1}); };
+    for (int i = 0; i < 5; ++i) {
+        model.expect(i * kInterval);
+        if (i == 0) model.begin(0);
+        model.measure(i * kInterval, place(i * kInterval));
+    }
+    const Prediction next = model.predict(5 * kInterval);
+    EXPECT_NEAR(next.T_reference_camera.translation().x(), kSpeed * 5 * kInterval, 1e-9);
+    EXPECT_GT(next.shutter.since_previous, 0);
+}
+
+TEST(MotionModel, TheFirstRowsAreNotThoseOfTwoStampsThatNearlyCoincide) {
+    EXPECT_FALSE(makeModel().firstRows(1e-3, poseOf({0.002, 0, 0}, 0, {0, 0, 1})).known());
+    EXPECT_TRUE(makeModel().firstRows(0.03, poseOf({0.002, 0, 0}, 0, {0, 0, 1})).known());
+}
+
+TEST(MotionModel, HoweverLongItWasNotSeenACameraIsWithinReach) {
+    const MotionOptions options;
+    for (MotionModel model : {makeModel(), moving()}) {
+        model.anchor(10, kStart);
+        double before = 0;
+        for (const double away : {0.3, 0.6, 2.0, 120.0, 1e5, 1e9}) {
+            const PosePrior prior = model.predict(10 + away).prior;
+            EXPECT_GE(sigmaOfPosition(prior), before) << away << " s";
+            before = sigmaOfPosition(prior);
+            EXPECT_LE(before, options.acceleration + options.speed * std::min(away, 3600.0));
+            EXPECT_LE(sigmaOfOrientation(prior), 180.001 * kDegree);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace roevo

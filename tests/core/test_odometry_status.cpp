@@ -165,7 +165,33 @@ TEST_F(OdometryStatus, AnotherSizeOrTypeIsRejectedWithBothSizes) {
     EXPECT_EQ(feed(frame).status, FrameStatus::kRejected);
     frame.grey = cv::Mat();
     EXPECT_EQ(feed(frame).status, FrameStatus::kRejected);
+    for (const int type : {CV_8UC4, CV_32FC3, CV_8UC1}) {
+        frame = frameAt(3);
+        frame.colour = cv::Mat::zeros(240, 320, type);
+        EXPECT_NE(feed(frame).reason.find("colour image is not"), std::string::npos) << type;
+    }
+    frame.colour = cv::Mat::zeros(320, 240, CV_8UC3);
+    EXPECT_NE(feed(frame).reason.find("240x320"), std::string::npos);
     feedRoom(3, 6);
+}
+
+TEST_F(OdometryStatus, AFirstStampThatCountsNoSecondsDoesNotSpoilTheRest) {
+    // Nanoseconds, microseconds, milliseconds since 1970, and MRPT's time stamp that is none
+    for (const double bad : {1e300, 1.7e18, 1.7e15, 1.7e12, -11644473600.0}) {
+        RgbdFrame frame = frameAt(0);
+        frame.timestamp = bad;
+        const FrameResult result = feed(frame);
+        EXPECT_EQ(result.status, FrameStatus::kRejected) << bad;
+        EXPECT_NE(result.reason.find("seconds"), std::string::npos) << result.reason;
+    }
+    feedRoom(0, 3);
+}
+
+TEST_F(OdometryStatus, NoMotionIsKnownExactly) {
+    feedRoom(0, 3);
+    EXPECT_TRUE(odometry_.motionCovariance(1, 1).isZero(0));
+    EXPECT_GT(odometry_.motionCovariance(1, 2).trace(), 0);
+    EXPECT_THROW((void)odometry_.motionCovariance(3, 3), std::out_of_range);
 }
 
 TEST_F(OdometryStatus, ALongLossIsHeldAndReanchoredWithAReason) {

@@ -256,5 +256,29 @@ TEST(PinholeCamera, CheckNamesWhatIsWrongAndItsValue) {
     EXPECT_NE(PinholeCamera().check(), "");
 }
 
+TEST(PinholeCamera, FewerDigitsAreNoOtherCamera) {
+    const PinholeCamera camera{640,
+                               480,
+                               517.30642,
+                               516.46921,
+                               318.64312,
+                               255.31398,
+                               {0.262383, -0.953104, -0.005358, 0.002628, 1.163314}};
+    PinholeCamera rounded = camera;
+    for (double* value : {&rounded.fx, &rounded.fy, &rounded.cx, &rounded.cy})
+        *value = std::round(1000 * *value) / 1000;
+    EXPECT_FALSE(rounded == camera);
+    EXPECT_TRUE(rounded.seesAs(camera));
+    PinholeCamera other = camera;
+    other.fx += 0.1;  // 0.06 px at the border
+    EXPECT_FALSE(other.seesAs(camera));
+    other = camera;
+    other.distortion[0] += 1e-3;
+    EXPECT_FALSE(other.seesAs(camera));
+    other = camera;
+    other.height = 479;
+    EXPECT_FALSE(other.seesAs(camera));
+}
+
 }  // namespace
 }  // namespace roevo

@@ -9,6 +9,7 @@
 #include "core/support/simulated.h"
 #include "mapping/map_keyframe.h"
 #include "place/place_evidence.h"
+#include "tracking/camera_scale.h"
 
 namespace roevo {
 namespace {
@@ -53,20 +54,61 @@ TEST_F(PlaceRegistration, ConvergesFromWhatSimilarPointsTell) {
     }
 }
 
-TEST_F(PlaceRegistration, EdgesOfAThinnedKeyframeAreFoundAsThoseOfAWholeOne) {
-    constexpr std::size_t kEvery = 5;
+/// One of so many points of its edges.
+Keyframe thinnedBy(std::size_t every, const Keyframe& keyframe, const PinholeCamera& camera) {
+    const std::size_t whole = keyframe.edges.size();
+    const MapKeyframe kept =
+        toMapKeyframe(keyframe, std::vector<Rgb>(whole), camera, static_cast<int>(whole / every));
+    EXPECT_LT((every - 1) * kept.size(), whole);
     Keyframe thinned;
-    const EdgePoints3D& whole = keyframe_->keyframe.edges;
-    const std::vector<Rgb> colours(whole.size());
-    MapKeyframe kept =
-        toMapKeyframe(keyframe_->keyframe, colours, camera_, static_cast<int>(whole.size() / kEvery));
-    ASSERT_LT(kept.size(), whole.size() / 4);
     thinned.median_depth = kept.median_depth;
     thinned.edges.image = kept.image;
     thinned.edges.points = kept.points;
     thinned.edges.weight = kept.weight;
     thinned.edges.correction.assign(kept.size(), 0);
     for (int e = 0; e < kept.image.numEdges(); ++e) thinned.clusters.push_back(e);
+    return thinned;
+}
+
+TEST_F(PlaceRegistration, BentEdgesOfAThinnedKeyframeAreFoundInLargeImages) {
+    const PinholeCamera camera{1920, 1440, 1575, 1575, 959.5, 719.5, {}};
+    constexpr double kLength = 192, kBend = 40 * kDegree;  // px
+    std::mt19937 random(1);
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    Keyframe keyframe;
+    EdgePoints3D& edges = keyframe.edges;
+    for (int edge = 0; edge < 200; ++edge) {
+        double direction = uniform(0, 2 * kPi), u = uniform(220, 1700), v = uniform(220, 1220);
+        for (int i = 0; i < kLength; ++i) {
+            edges.image.addPoint(static_cast<float>(u), static_cast<float>(v),
+                                 static_cast<float>(-std::sin(direction)),
+                                 static_cast<float>(std::cos(direction)), 10);
+            edges.points.add(camera.backProject(u, v, uniform(1.5, 2.5)));
+            edges.weight.push_back(1);
+            edges.correction.push_back(0);
+            edges.source.push_back(static_cast<std::int32_t>(edges.source.size()));
+            direction += kBend / kLength;
+            u += std::cos(direction);
+            v += std::sin(direction);
+        }
+        edges.image.finishEdge();
+    }
+    computeNormals(edges.image, scaledTo(camera, {}).edges.tangent_span);
+    edges.points.pad();
+    keyframe.median_depth = 2;
+    Frame frame;
+    frame.edges = edges.image;
+    frame.grid.build(frame.edges, camera.width, camera.height);
+    const EdgeRegistration found = EdgeRegistrar(camera, OdometryOptions(), true)
+                                       .registerEdges(thinnedBy(15, keyframe, camera), frame, edges, Pose());
+    EXPECT_GT(found.keyframe_matched, 0.9);
+    EXPECT_LT(poseError(found.T_frame_keyframe, Pose()), 1e-3);
+}
+
+TEST_F(PlaceRegistration, EdgesOfAThinnedKeyframeAreFoundAsThoseOfAWholeOne) {
+    const Keyframe thinned = thinnedBy(5, keyframe_->keyframe, camera_);
     const auto matched = [&](bool says_so) {
         return EdgeRegistrar(camera_, OdometryOptions(), says_so)
             .registerEdges(thinned, frame_->frame, frame_->keyframe.edges, truth())

@@ -108,6 +108,9 @@ TEST(PreparedFrames, OneThatWasUsedOrIsLateIsNotTracked) {
     EXPECT_EQ(odometry.processFrame(std::move(second)).status, FrameStatus::kInitialised);
     EXPECT_EQ(odometry.processFrame(std::move(first)).status, FrameStatus::kRejected);
     EXPECT_THROW((void)odometry.processFrame(PreparedFrame()), std::logic_error);
+    Odometry other(spoilt().camera, OdometryOptions(), spoilt().start());
+    EXPECT_THROW((void)other.processFrame(odometry.prepareFrame(spoilt().frames[2])), std::logic_error);
+    EXPECT_EQ(odometry.processFrame(odometry.prepareFrame(spoilt().frames[3])).status, FrameStatus::kOk);
 }
 
 TEST(PreparedFrames, TheLongestEdgesAreKeptAsTheyAreAndInTheirOrder) {

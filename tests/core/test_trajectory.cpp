@@ -396,5 +396,41 @@ TEST(Trajectory, ALoopMovesNoOtherTrack) {
     EXPECT_NEAR(trajectory.keyframePose(21).translation().x(), 7, 1e-12);
 }
 
+TEST(Trajectory, AFrameThatWasTrackedBackwardsStaysWithItsKeyframe) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(-1));
+    trajectory.addFrame(0, from(0, at(0)));
+    trajectory.addFrame(9.9, from(0, at(0)), false);  // lost
+    trajectory.addKeyframe(10, from(0, at(1)), {});
+    trajectory.addFrame(10, from(1, at(0)));
+    trajectory.measureAfterwards(9.9, from(1, at(-0.3)));
+    trajectory.addKeyframe(11, from(1, at(0.3)), {});
+    trajectory.addFrame(11, from(2, at(0)));
+    MapUpdate update;
+    update.keyframe = 2;
+    update.poses = {{2, at(0.4)}};
+    trajectory.apply(update);
+    EXPECT_NEAR(trajectory.frames(false)[1].T_world_camera.translation().x(), -0.3, 1e-12);
+}
+
+TEST(Trajectory, AfterAJoinWhatWasRecognisedIsBetterKnownThanWhatIsFarFromIt) {
+    const auto variances = [](double position, double turn) {
+        Vector6d sigmas;
+        sigmas << Eigen::Vector3d::Constant(position), Eigen::Vector3d::Constant(turn);
+        return Matrix6d(sigmas.cwiseAbs2().asDiagonal());
+    };
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    trajectory.beginTrack(10, at(0), variances(10, 3));
+    trajectory.addKeyframe(20, {1, at(10), {variances(1e-3, 1e-5), {}}}, {});
+    trajectory.addFrame(20, from(2, at(0)));
+    const Matrix6d look = variances(0.01, 0.5 * kDegree);
+    trajectory.join(2, {0, at(2), {look, {}}});
+    EXPECT_NEAR(trajectory.worldCovariance(from(2, at(0))).trace(), look.trace(), 0.1 * look.trace());
+    // Half a degree over 10 m
+    const Matrix6d first = trajectory.worldCovariance(from(1, at(0)));
+    EXPECT_NEAR(std::sqrt(first(1, 1)), std::hypot(0.01, 10 * 0.5 * kDegree), 0.005);
+}
+
 }  // namespace
 }  // namespace roevo

@@ -97,6 +97,15 @@ TEST(ConfigFile, MrptOptionsRoundTripWithAndWithoutASection) {
         EXPECT_NE(errorOf([&] { in.loadFromConfigFile(file, section); }).find("'sensor.max_depth'"),
                   std::string::npos);
     }
+    for (const char* elsewhere : {"front", "front.fien"}) {
+        mrpt::config::CConfigFileMemory file;
+        file.write(elsewhere, "mode", "tr");
+        file.write("back", "mode", "somebody else's");
+        CRoevoOdometry::TOptions in;
+        EXPECT_NE(
+            errorOf([&] { in.loadFromConfigFile(file, "front"); }).find("[" + std::string(elsewhere) + "]"),
+            std::string::npos);
+    }
     std::ostringstream text;
     CRoevoOdometry::TOptions().dumpToTextStream(text);
     EXPECT_NE(text.str().find("max_depth"), std::string::npos);

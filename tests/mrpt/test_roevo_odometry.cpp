@@ -275,18 +275,42 @@ TEST_F(RoevoOdometryTest, BadObservationsAreRejectedWithAReason) {
          empty = laterScan(*scan_, 0.09);
     lost->intensityImage.setExternalStorage("/nowhere/lost.png");
     other_camera->cameraParamsIntensity.fx(400);
+    auto other_sensor = laterScan(*scan_, 0.1), no_image = laterScan(*scan_, 0.11);
+    other_sensor->sensorLabel = "BACK";
+    no_image->intensityImage = mrpt::img::CImage();  // MRPT throws a logic_error of many lines
     empty->cameraParamsIntensity = {};
     EXPECT_NE(errorOf([&] { odometry_.processObservation(*empty); }).find("no intrinsics"),
               std::string::npos);
     odometry_.processObservation(*scan_);
-    for (const auto& [bad, reason] :
-         {std::pair(lost, "lost.png"), {other_camera, "intrinsics changed"}, {empty, "no intrinsics"}}) {
+    for (const auto& [bad, reason] : {std::pair(lost, "lost.png"),
+                                      {other_camera, "intrinsics changed"},
+                                      {empty, "no intrinsics"},
+                                      {other_sensor, "'BACK'"},
+                                      {no_image, "image"}}) {
         const FrameResult result = odometry_.processObservation(*bad);
         EXPECT_EQ(result.status, FrameStatus::kRejected);
+        EXPECT_EQ(result.reason.find('\n'), std::string::npos) << result.reason;
         EXPECT_NE(result.reason.find(reason), std::string::npos) << result.reason;
     }
     EXPECT_EQ(odometry_.getTrajectory().size(), 1u);
     EXPECT_EQ(odometry_.processObservation(*laterScan(*scan_, 0.12)).status, FrameStatus::kOk);
+}
+
+TEST_F(RoevoOdometryTest, AScanThatIsRejectedMovesNothing) {
+    odometry_.processObservation(*scan_);
+    odometry_.processObservation(*laterScan(*scan_, 0.06));
+    auto late = laterScan(*scan_, 0.03);
+    late->sensorPose = CPose3D(5, 0, 0, 0, 0, 0);
+    EXPECT_EQ(odometry_.processObservation(*late).status, FrameStatus::kRejected);
+    for (const auto& [time, pose] : odometry_.getTrajectory()) EXPECT_LT(CPose3D(pose).norm(), 0.01);
+    EXPECT_LT(odometry_.getCurrentPoseEstimation()->getMeanVal().norm(), 0.01);
+}
+
+TEST_F(RoevoOdometryTest, TheCurrentPoseIsTheTrajectorysLast) {
+    for (int i = 0; i < 4; ++i) odometry_.processObservation(*laterScan(*scan_, 0.033 * i));
+    odometry_.refineAll();
+    const CPose3D last(odometry_.getTrajectory().rbegin()->second);
+    EXPECT_TRUE(toEigen(odometry_.getCurrentPoseEstimation()->getMeanVal()).isApprox(toEigen(last), 1e-12));
 }
 
 }  // namespace

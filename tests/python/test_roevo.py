@@ -280,6 +280,9 @@ class OptionsAndCamera(unittest.TestCase):
         options = roevo.Options({"odometry.mode": "tr", "loss.recognise": False, "edges.min_length": 12})
         self.assertEqual(options["odometry.mode"], "tr")
         self.assertIs(options["loss.recognise"], False)
+        options["loss.recognise"] = np.bool_(True)
+        self.assertIs(options["loss.recognise"], True)
+        options["loss.recognise"] = False
         self.assertEqual(options["edges.min_length"], 12)
         self.assertIn("px", options.describe("edges.min_length"))
         self.assertRegex(options.describe("loss.recognise"), ", True or False$")
@@ -299,6 +302,9 @@ class OptionsAndCamera(unittest.TestCase):
     def test_cameras_and_starts_are_checked(self):
         with self.assertRaisesRegex(ValueError, "fx"):
             roevo.Camera(640, 480, -525, 525, 319.5, 239.5)
+        camera = roevo.Camera(640, 480, 517.30642, 516.46921, 318.64312, 255.31398, [0.2624, -0.9531, 0, 0, 1.1633])
+        self.assertEqual(eval(repr(camera)), camera)
+        self.assertNotEqual(camera, None)
         self.assertEqual(roevo.Camera(640, 480, 525, 525, 319.5, 239.5, distortion=[0.1, 0, 0, 0, 0]).distortion[0], 0.1)
         start = np.eye(4)
         start[:3, 3] = 1, 2, 3

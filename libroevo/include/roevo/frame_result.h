@@ -32,7 +32,7 @@ struct FrameResult {
     std::string reason;                      ///< in words; empty only when all is well
     Pose T_world_camera = Pose::Identity();  ///< meaningless when rejected
     /// Of T_world_camera: position (m) then orientation (rad), both along the world's axes; the orientation
-    /// error phi is meant as R <- exp(phi) R.
+    /// error phi is meant as R <- exp(phi) R. Meaningless when rejected: ask hasPose() first.
     Matrix6d covariance = Matrix6d::Zero();
     bool new_keyframe = false;          ///< this frame brought a new keyframe: itself or the frame before it
     int num_edges = 0, num_points = 0;  ///< organized edges and their points in this frame

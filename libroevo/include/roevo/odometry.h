@@ -35,7 +35,10 @@ class PreparedFrame {
 };
 
 /// RGB-D visual odometry from organized edges (Liu et al., ROEVO). Feed frames in time order; not
-/// thread-safe, but for prepareFrame().
+/// thread-safe, but for prepareFrame(). What tells of the whole recording (trajectory, keyframes, map, edges,
+/// surface) changes no result, but waits for the mapping thread and takes time that grows with the recording:
+/// use FrameResult for every frame. With mapping in a thread (options().threads) it cannot be used
+/// or destroyed in a process that fork() made.
 class Odometry {
   public:
     /// @throws std::invalid_argument when the camera or an option is unusable (one line that names it).
@@ -76,7 +79,7 @@ class Odometry {
     [[nodiscard]] PreparedFrame prepareFrame(const RgbdFrame& frame);
     /// The same without a copy: keeps the images, which nobody may write to any more.
     [[nodiscard]] PreparedFrame prepareFrame(RgbdFrame&& frame);
-    /// @throws std::logic_error where there is nothing in it
+    /// @throws std::logic_error where there is nothing in it, or another odometry prepared it
     [[nodiscard]] FrameResult processFrame(PreparedFrame frame);
 
     /// Brings the map into agreement, at the end of a recording or whenever there is time: what is still
@@ -94,6 +97,7 @@ class Odometry {
     /// Covariance of the motion between two frames of liveTrajectory(), given by their places in it: of
     /// T_from_to, position (m), then orientation (rad), along the axes of the second camera. Infinite where
     /// tracking was begun anew between them.
+    /// @throws std::out_of_range where there is no such frame
     Matrix6d motionCovariance(std::size_t from, std::size_t to) const;
     /// T_from_to of the same frames as it is known by now. Live poses from before and after the map moved do
     /// not make a motion of the camera.

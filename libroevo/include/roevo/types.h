@@ -11,6 +11,13 @@ namespace roevo {
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kDegree = kPi / 180;  ///< rad
 
+/// Eigen lays out matrices otherwise under -mavx or -march=native. The library has this for what it was built
+/// with alone: where a program differs, it does not link, in place of reading garbage. Build both alike, or
+/// the program with -DEIGEN_MAX_ALIGN_BYTES=16.
+template <int bytes>
+bool builtWithEigenAlignment();
+inline const bool is_laid_out_alike = builtWithEigenAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>();
+
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <variant>
@@ -73,9 +74,9 @@ void loadConfigText(const std::string& text, const std::string& name, OdometryOp
 void loadConfigFile(const std::string& file, OdometryOptions& options) {
     requireRegularInput(file);
     std::ifstream in(file);
-    std::ostringstream text;
-    if (!in || !(text << in.rdbuf())) throw std::runtime_error("cannot read config file " + file);
-    loadConfigText(text.str(), file, options);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (!in.is_open() || in.bad()) throw std::runtime_error("cannot read config file " + file);
+    loadConfigText(text, file, options);
 }
 
 std::string toConfigText(const OdometryOptions& options) {

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "coloured_points.h"
+#include "input/excerpt.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/scene_builder.h"
@@ -32,6 +33,7 @@ void CRoevoOdometry::initialize(const mrpt::maps::CSimpleMap& initial_map, const
 void CRoevoOdometry::initialize(const mrpt::poses::CPose3D& robot_pose) {
     T_world_robot_start_ = toEigen(robot_pose);
     odometry_.reset();
+    sensor_label_.clear();
     context_ = {};
     latest_.reset();
     profiler_.clear();
@@ -49,22 +51,29 @@ FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
     const auto camera = [&] { return colourCameraOf(scan); };
     if (!odometry_) camera();  // without intrinsics nothing can begin
 
-    FrameResult rejected;
-    rejected.timestamp = timestamp;
+    FrameResult result;
+    result.timestamp = timestamp;
     try {
-        if (odometry_ && camera() != odometry_->camera())
+        if (odometry_ && scan.sensorLabel != sensor_label_)
+            throw std::runtime_error("of sensor '" + excerpt(scan.sensorLabel) +
+                                     "', this odometry follows '" + excerpt(sensor_label_) + "'");
+        if (odometry_ && !camera().seesAs(odometry_->camera()))
             throw std::runtime_error("the camera's intrinsics changed");
         const RgbdFrame frame = convert(scan);  // refuses poses that are none
         const Pose T_robot_camera = cameraOnRobot(scan);
-        if (!odometry_) odometry_.emplace(camera(), options.odometry, T_world_robot_start_ * T_robot_camera);
-        if (context_.mounts.empty() || !context_.mounts.rbegin()->second.isApprox(T_robot_camera))
-            context_.mounts[timestamp] = T_robot_camera;
+        if (!odometry_) {
+            odometry_.emplace(camera(), options.odometry, T_world_robot_start_ * T_robot_camera);
+            sensor_label_ = scan.sensorLabel;
+        }
         const mrpt::system::CTimeLoggerEntry entry(profiler_, "track");
-        return odometry_->processFrame(frame);
-    } catch (const std::runtime_error& error) {
-        rejected.reason = error.what();
-        return rejected;
+        result = odometry_->processFrame(frame);
+        if (result.hasPose() &&
+            (context_.mounts.empty() || !context_.mounts.rbegin()->second.isApprox(T_robot_camera)))
+            context_.mounts[timestamp] = T_robot_camera;
+    } catch (const std::exception& error) {  // MRPT's are of many kinds and lines
+        result.reason = firstLine(error.what());
     }
+    return result;
 }
 
 FrameResult CRoevoOdometry::processObservation(const CObservation3DRangeScan& scan) {
@@ -98,7 +107,9 @@ mrpt::poses::CPose3DPDF::Ptr CRoevoOdometry::getCurrentPoseEstimation() const {
 }
 
 void CRoevoOdometry::refineAll() {
-    if (odometry_) odometry_->refineAll();
+    if (!odometry_) return;
+    odometry_->refineAll();
+    if (latest_) latest_->T_world_camera = odometry_->trajectory().back().T_world_camera;
 }
 
 mrpt::poses::CPose3DInterpolator CRoevoOdometry::getTrajectory() const {

@@ -21,6 +21,17 @@ void CRoevoOdometry::TOptions::loadFromConfigFile(const mrpt::config::CConfigFil
     OdometryOptions changed = odometry;
     std::set<std::string> sections;
     for (const OptionField& field : optionFields(changed)) sections.insert(field.section);
+    std::vector<std::string> all;
+    if (!section.empty()) source.getAllSections(all);  // without a section, others' stand beside ours
+    for (const std::string& full : all) {
+        const bool ours = full.rfind(prefixOf(section), 0) == 0;
+        std::vector<std::string> keys;
+        source.getAllKeys(full, keys);
+        if (keys.empty() || (full != section && !ours)) continue;
+        if (full == section || sections.count(full.substr(section.size() + 1)) == 0)
+            throw std::runtime_error("[" + full + "]: no options stand here, but in sections like [" +
+                                     section + "." + *sections.begin() + "]");
+    }
     for (const std::string& name : sections) {
         const std::string full = prefixOf(section) + name;
         std::vector<std::string> keys;

@@ -140,6 +140,20 @@ std::string PinholeCamera::check() const {
     return fault.str();
 }
 
+bool PinholeCamera::seesAs(const PinholeCamera& other) const {
+    constexpr double kSame = 0.01;  // px
+    if (*this == other) return true;
+    if (width != other.width || height != other.height || lens != other.lens) return false;
+    for (const double u : {0.0, 0.5 * width, width - 1.0}) {
+        for (const double v : {0.0, 0.5 * height, height - 1.0}) {
+            const Eigen::Vector2d here = distortPixel({u, v});
+            const Eigen::Vector2d there = other.distortPixel(other.project(backProject(u, v, 1)));
+            if (!((here - there).norm() <= kSame)) return false;
+        }
+    }
+    return true;
+}
+
 bool PinholeCamera::operator==(const PinholeCamera& other) const {
     return width == other.width && height == other.height && fx == other.fx && fy == other.fy &&
            cx == other.cx && cy == other.cy && distortion == other.distortion &&

@@ -49,4 +49,14 @@ inline std::string excerpt(std::string_view text, std::size_t limit = 80) {
     return shown;
 }
 
+/// First meaningful line of an exception's text (MRPT's carry the source position and a call stack), fit for
+/// a terminal: printable, and not of hundreds of pages.
+inline std::string firstLine(const std::string& message) {
+    constexpr std::size_t kLongest = 1500;  // characters; a path alone may have some hundreds
+    const std::size_t begin = message.find_first_not_of(" \n\r\t");
+    if (begin == std::string::npos) return "unknown error";
+    const std::size_t end = message.find_first_of("\r\n", begin);
+    return excerpt(message.substr(begin, end == std::string::npos ? end : end - begin), kLongest);
+}
+
 }  // namespace roevo

@@ -60,7 +60,7 @@ std::optional<ColouredPoint> pointAt(const RgbdFrame& frame, const PinholeCamera
 }  // namespace
 
 Rgb colourAt(const RgbdFrame& frame, int u, int v) {
-    if (frame.colour.type() == CV_8UC3 && frame.colour.size() == frame.grey.size()) {
+    if (!frame.colour.empty()) {
         const auto& bgr = frame.colour.at<cv::Vec3b>(v, u);
         return {bgr[2], bgr[1], bgr[0]};
     }

@@ -77,6 +77,7 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
         rows_[s] = num_rows_;
         num_rows_ += 6;
     }
+    if (num_rows_ == 0) anchor_ = -1;  // nothing is held against it
     hessian.resize(num_rows_, num_rows_);
     gradient.resize(num_rows_);
     point_blocks_.resize(slots);
@@ -127,7 +128,7 @@ double WindowEquations::spread(std::int32_t slot, double least_scale) {
 }
 
 void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vector<Eigen::Vector3d>& points) {
-    blocks_.assign(rows_.size() * rows_.size(), Matrix6d::Zero());
+    blocks_.assign(num_rows_ == 0 ? 0 : rows_.size() * rows_.size(), Matrix6d::Zero());
     gradients_.assign(rows_.size(), Vector6d::Zero());
     edge_gradients_.assign(rows_.size(), Vector6d::Zero());
     pulls_.clear();

@@ -62,6 +62,7 @@ template <typename Take>
 PreparedFrame::Content FramePreparer::prepare(const RgbdFrame& images, const Take& take) {
     const Stopwatch watch;
     PreparedFrame::Content out;
+    out.by = this;
     out.timestamp = images.timestamp;
     out.fault = faultOf(images);
     if (out.fault) return out;

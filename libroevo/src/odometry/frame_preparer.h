@@ -16,8 +16,11 @@ namespace roevo {
 /// of equally long ones the first.
 void keepLongest(OrganizedEdges& edges, std::size_t most_points);
 
+class FramePreparer;
+
 /// What becomes of an image pair before anything is known of its pose.
 struct PreparedFrame::Content {
+    const FramePreparer* by = nullptr;
     double timestamp = 0;
     Fault fault;                   ///< why it cannot be processed; then there is no frame
     std::unique_ptr<Frame> frame;  ///< with its edges

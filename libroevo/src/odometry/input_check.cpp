@@ -8,7 +8,9 @@ namespace roevo {
 
 Fault inputFault(const RgbdFrame& frame, const PinholeCamera& camera, double last_timestamp) {
     using Kind = Fault::Kind;
+    constexpr double kLatest = 1e10;  // s, three hundred years after 1970
     if (!std::isfinite(frame.timestamp)) return {Kind::kTimeNotFinite, {}};
+    if (std::abs(frame.timestamp) > kLatest) return {Kind::kTimeUnit, {}};
     if (frame.timestamp == last_timestamp) return {Kind::kTimeRepeated, {}};
     if (frame.timestamp < last_timestamp) return {Kind::kTimeBackward, {}};
     if (frame.grey.empty()) return {Kind::kNoColour, {}};
@@ -19,7 +21,9 @@ Fault inputFault(const RgbdFrame& frame, const PinholeCamera& camera, double las
     const auto sizes = [&](Kind kind, const cv::Mat& image) {
         return Fault{kind, {image.cols, image.rows, camera.width, camera.height}};
     };
-    if (!fits(frame.grey)) return sizes(Kind::kColourSize, frame.grey);
+    if (!frame.colour.empty() && frame.colour.type() != CV_8UC3) return {Kind::kColourType, {}};
+    if (!frame.colour.empty() && !fits(frame.colour)) return sizes(Kind::kColourSize, frame.colour);
+    if (!fits(frame.grey)) return sizes(Kind::kGreySize, frame.grey);
     if (!frame.mask.empty() && frame.mask.type() != CV_8UC1) return {Kind::kMaskType, {}};
     if (!frame.mask.empty() && !fits(frame.mask)) return sizes(Kind::kMaskSize, frame.mask);
     if (frame.depth.empty()) return {};

@@ -58,6 +58,8 @@ PreparedFrame Odometry::prepareFrame(RgbdFrame&& images) {
 }
 FrameResult Odometry::processFrame(PreparedFrame prepared) {
     if (!prepared.content_) throw std::logic_error("there is nothing in this prepared frame");
+    if (prepared.content_->by != &impl_->preparer)
+        throw std::logic_error("this frame was prepared by another odometry");
     const Stopwatch watch;
     const double milliseconds = prepared.content_->milliseconds;
     FrameResult result = impl_->processFrame(std::move(*prepared.content_));

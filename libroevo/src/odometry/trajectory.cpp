@@ -147,11 +147,13 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
         placed = motion * placed;
         join.motions.emplace(id, motion);
     }
-    // As well known as what was recognised. A track is linked to what is older than all of it.
+    // As well known as what was recognised, seen from there. A track is linked to what is older than all of
+    // it
     RelativePose link = pose;
     while (link.keyframe > begin) link = compose(at(links_, link.keyframe), link);
-    at(links_, begin) = {
-        link.keyframe, keyframePose(link.keyframe).inverse() * keyframePose(begin), {link.covariance(), {}}};
+    at(links_, begin) = {link.keyframe,
+                         keyframePose(link.keyframe).inverse() * keyframePose(begin),
+                         {carried(link.covariance(), keyframe, begin), {}}};
     findTracks();
     for (const auto& [id, by] : join.motions) at(in_world_, id) = inWorld(at(links_, id)).uncertainty;
     for (const auto& [id, by] : join.motions)
@@ -259,6 +261,7 @@ Pose Trajectory::finalPose(const Frame& frame) const {
     const Pose from_parent = worldPose(link);
     const auto next = static_cast<std::size_t>(link.keyframe) + 1;
     if (next >= links_.size() || links_[next].keyframe != link.keyframe) return from_parent;
+    if (frame.timestamp < keyframes_[next - 1].timestamp) return from_parent;  // tracked backwards
     const Pose T_next_camera = links_[next].T_keyframe_camera.inverse() * link.T_keyframe_camera;
     const Pose from_next = keyframes_[next].T_world_camera * T_next_camera;
     // Where the camera hardly moves, changes are noise of tracking, and time shares better

@@ -53,7 +53,7 @@ bool World::remembersPlaces() const {
 }
 
 void World::load(StoredMap map, bool held) {
-    if (map.camera != camera_)
+    if (!map.camera.seesAs(camera_))
         throw std::runtime_error("the map is of another camera (" + describe(map.camera) + "; now " +
                                  describe(camera_) + ")");
     if (!options_.loss.recognise)
@@ -236,6 +236,7 @@ Matrix6d World::covariance(const RelativePose& pose) const {
 
 Matrix6d World::motionCovariance(std::size_t from, std::size_t to) const {
     const Pose motion = trajectory_.motion(from, to);
+    if (from == to) return Matrix6d::Zero();
     return trajectory_.motionCovariance(from, to) +
            byScale(motion.linear().transpose() * motion.translation(), options_.sensor.depth_scale_sigma);
 }
@@ -342,6 +343,7 @@ std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& 
 
 std::vector<MapRefusal> World::refineAll() {
     if (!reference_) return {};
+    recognise();
     std::vector<MapRefusal> before = std::exchange(change_.map_refusals, {});
     for (const MapUpdate& update : mapper_->refineAll()) takeUpdate(update);
     return std::exchange(change_.map_refusals, std::move(before));

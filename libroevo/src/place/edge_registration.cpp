@@ -22,9 +22,13 @@ constexpr double kLeastVisible = 0.25;
 constexpr double kMostSigmaTranslation = 0.02;  ///< m
 constexpr double kMostSigmaRotation = 1 * kDegree;
 
-OdometryOptions widened(OdometryOptions options, double scale, bool thinned) {
-    if (thinned) options.fine = forThinned(options.fine);
-    options.fine.search_radius = std::max(options.fine.search_radius, kSearchRadius * scale);
+OdometryOptions widened(const PinholeCamera& camera, const OdometryOptions& given, bool thinned) {
+    OdometryOptions options = scaledTo(camera, given);
+    if (thinned) {
+        options.fine = forThinned(options.fine);
+        options.edges.tangent_span = given.edges.tangent_span;  // points that lie far apart on any image
+    }
+    options.fine.search_radius = std::max(options.fine.search_radius, kSearchRadius * camera.pixelScale());
     options.fine.max_iterations = std::max(options.fine.max_iterations, kMostIterations);
     return options;
 }
@@ -33,7 +37,7 @@ OdometryOptions widened(OdometryOptions options, double scale, bool thinned) {
 
 EdgeRegistrar::EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions& options, bool thinned)
     : ideal_(camera.undistorted()),
-      options_(widened(scaledTo(camera, options), camera.pixelScale(), thinned)),
+      options_(widened(camera, options, thinned)),
       term_(camera, options_),
       associator_(ideal_, options_.fine, options_.edges.tangent_span) {}
 

@@ -13,6 +13,8 @@ std::string describe(const Fault& fault) {
             return {};
         case Kind::kTimeNotFinite:
             return "time stamp is not finite";
+        case Kind::kTimeUnit:
+            return "time stamp is no time in seconds (it may be missing, or count nanoseconds)";
         case Kind::kTimeRepeated:
             return "repeated time stamp";
         case Kind::kTimeBackward:
@@ -21,10 +23,14 @@ std::string describe(const Fault& fault) {
             return "no colour image";
         case Kind::kGreyType:
             return "grey image is not 8-bit with one channel";
+        case Kind::kGreySize:
+            return "grey image is " + sizes();
+        case Kind::kColourType:
+            return "colour image is not 8-bit with three channels";
         case Kind::kColourSize:
             return "colour image is " + sizes();
         case Kind::kDepthType:
-            return "depth image is not 32-bit float";
+            return "depth image is not 32-bit float with one channel";
         case Kind::kDepthSize:
             return "depth image is " + sizes();
         case Kind::kMaskType:

@@ -10,11 +10,14 @@ struct Fault {
         kNone,
         // of the input
         kTimeNotFinite,
+        kTimeUnit,
         kTimeRepeated,
         kTimeBackward,
         kNoColour,
         kGreyType,
-        kColourSize,  ///< numbers: width and height of the image, of the camera
+        kGreySize,  ///< numbers: width and height of the image, of the camera
+        kColourType,
+        kColourSize,  ///< the same
         kDepthType,
         kDepthSize,  ///< the same
         kMaskType,

@@ -12,13 +12,15 @@ namespace roevo {
 namespace {
 
 constexpr double kLongestPrediction = 0.5;  ///< s; nobody moves on evenly for longer
+constexpr double kLongestAway = 3600;       ///< s; by then it may be anywhere
+constexpr double kAnyTurn = 180;            ///< degrees
 constexpr double kUsual = 2.5;              ///< times the mean interval between frames: still a usual one
-constexpr double kShortestStep = 0.005,
-                 kLongestStep = 0.35;    ///< s between two poses that make a velocity
-constexpr double kLeastSigma = 1e-3;     ///< m and rad, of any motion
-constexpr double kSearchTurn = 20;       ///< degrees, one sigma, of a camera that is searched for
-constexpr double kLongestReadout = 0.1;  ///< s
-constexpr double kLearning = 0.2;        ///< share of the newest frame in means
+constexpr double kShortestStep = 0.005,     ///< s, or half of the usual interval
+    kLongestStep = 0.35;                    ///< s between two poses that make a velocity
+constexpr double kLeastSigma = 1e-3;        ///< m and rad, of any motion
+constexpr double kSearchTurn = 20;          ///< degrees, one sigma, of a camera that is searched for
+constexpr double kLongestReadout = 0.1;     ///< s
+constexpr double kLearning = 0.2;           ///< share of the newest frame in means
 
 /// By axis: linear, and of a turn in degrees (squared in radians).
 Vector6d squared(double linear, double turn_deg) {
@@ -66,7 +68,7 @@ void MotionModel::measure(double timestamp, const Pose& T_reference_camera,
     design_effect_ += kLearning * (uncertainty.designEffect() - design_effect_);
     const double interval = timestamp - last_timestamp_;
     // What moved between two stamps that nearly coincide is mostly their errors: the velocity stays
-    if (interval >= kShortestStep) {
+    if (interval >= shortestStep()) {
         step_ = T_reference_last_.inverse() * T_reference_camera;
         interval_ = interval <= kLongestStep ? interval : 0;
         covariance_before_ = covariance_;
@@ -104,13 +106,17 @@ Pose MotionModel::poseAt(double timestamp) const {
 PosePrior MotionModel::prior(double timestamp) const {
     const double dt = timestamp - last_timestamp_;
     const bool moving = interval_ > 0;
-    // A mean velocity is that of the middle of its interval: x(dt) - v dt = a dt (dt + interval) / 2
-    const double by_acceleration = dt * (dt + (moving ? interval_ : 0)) / 2, by_speed = moving ? 0 : dt;
-    const Matrix6d by_motion =
-        squared(motion_.acceleration * by_acceleration + motion_.speed * by_speed,
-                motion_.angular_acceleration_deg * by_acceleration + motion_.angular_speed_deg * by_speed)
-            .cwiseMax(kLeastSigma * kLeastSigma)
-            .asDiagonal();
+    // A mean velocity is that of the middle of its interval: x(dt) - v dt = a dt (dt + interval) / 2. In a
+    // longer time it says nothing, and a camera comes as far as its speed lets it
+    const double even = std::min(dt, kLongestPrediction), onwards = std::min(dt, kLongestAway) - even;
+    const double by_acceleration = even * (even + (moving ? interval_ : 0)) / 2;
+    const double by_speed = onwards > 0 ? even + onwards : moving ? 0 : even;
+    const Matrix6d by_motion = squared(motion_.acceleration * by_acceleration + motion_.speed * by_speed,
+                                       std::min(motion_.angular_acceleration_deg * by_acceleration +
+                                                    motion_.angular_speed_deg * by_speed,
+                                                kAnyTurn))
+                                   .cwiseMax(kLeastSigma * kLeastSigma)
+                                   .asDiagonal();
     const Pose mean = poseAt(timestamp);
     const Matrix6d onward = carriedTo(T_reference_last_.inverse() * mean);
     // The velocity errs by both poses that it is made of, the last one twice
@@ -131,7 +137,7 @@ RollingShutter MotionModel::shutter(double timestamp) const {
     shutter.rows = stillRows().at(secondsPerRow());
     if (sensor_.estimate_readout) shutter.readout_sigma = readout_.sigma();
     const double dt = timestamp - last_timestamp_;
-    const bool known = has_last_ && dt >= kShortestStep && dt <= kLongestStep;
+    const bool known = has_last_ && dt >= shortestStep() && dt <= kLongestStep;
     // A mean velocity is that of half the time ago
     shutter.velocity_variance =
         known ? squared(motion_.acceleration * dt / 2, motion_.angular_acceleration_deg * dt / 2)
@@ -162,11 +168,16 @@ Matrix6d MotionModel::velocityGain(double dt) const {
 
 RowMotion MotionModel::firstRows(double interval, const Pose& T_keyframe_next) const {
     RowMotion rows = stillRows().at(secondsPerRow());
-    if (!(interval > 0 && interval <= kLongestStep)) return rows;
+    if (!(interval >= kShortestStep && interval <= kLongestStep)) return rows;
     const Velocity velocity = velocityOf(T_keyframe_next, interval);
     rows.turn = velocity.turn;
     rows.velocity = T_keyframe_next.translation() / interval;
     return rows;
+}
+
+/// Between two stamps that nearly coincide, for this camera.
+double MotionModel::shortestStep() const {
+    return usual_interval_ > 0 ? std::min(kShortestStep, usual_interval_ / 2) : kShortestStep;
 }
 
 RowMotion MotionModel::stillRows() const {

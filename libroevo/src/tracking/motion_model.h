@@ -65,6 +65,7 @@ class MotionModel {
     PosePrior prior(double timestamp) const;
     PosePrior searchPrior(double timestamp) const;
     RollingShutter shutter(double timestamp) const;
+    double shortestStep() const;
     Matrix6d velocityGain(double dt) const;
 
     MotionOptions motion_;

@@ -60,6 +60,10 @@ struct PinholeCamera {
     /// Empty when usable, else one line naming what is wrong and its value.
     std::string check() const;
 
+    /// Whether both see every point in the same place, within 0.01 px: what is written with fewer digits is
+    /// no other camera.
+    bool seesAs(const PinholeCamera& other) const;
+
     bool operator==(const PinholeCamera& other) const;
     bool operator!=(const PinholeCamera& other) const { return !(*this == other); }
 };

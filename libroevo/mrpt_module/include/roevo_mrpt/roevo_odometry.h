@@ -32,8 +32,9 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     struct TOptions : public mrpt::config::CLoadableOptions {
         OdometryOptions odometry;
 
-        /// @throws std::runtime_error for an unknown key (naming the closest known one) or a value out of
-        /// range.
+        /// What is not there stays as it is.
+        /// @throws std::runtime_error for an unknown key (naming the closest known one), a value out of
+        /// range, and in or under a section that is given for whatever is no option.
         void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                                 const std::string& section) override;
         void saveToConfigFile(mrpt::config::CConfigFileBase& target,
@@ -60,7 +61,7 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     void setMask(const cv::Mat& mask) { mask_ = mask.clone(); }
 
     /// Tracks one observation. Observations that cannot be used come back kRejected with a reason and are
-    /// logged.
+    /// logged; so do those of another sensorLabel than the first one's: this follows one camera.
     /// @return T_world_camera and its covariance are of the optical frame of the colour camera, in the
     /// robot's world.
     /// @throws std::runtime_error or std::invalid_argument when the first observation's intrinsics or an
@@ -111,6 +112,7 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
 
     Pose T_world_robot_start_ = Pose::Identity();
     std::optional<Odometry> odometry_;
+    std::string sensor_label_;
     RobotContext context_;  // one mount unless the camera moves on the robot; covariances of frames
     std::optional<FrameResult> latest_;
     cv::Mat mask_;
