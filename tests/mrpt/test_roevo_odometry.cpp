@@ -286,7 +286,7 @@ TEST_F(RoevoOdometryTest, BadObservationsAreRejectedWithAReason) {
                                       {other_camera, "intrinsics changed"},
                                       {empty, "no intrinsics"},
                                       {other_sensor, "'BACK'"},
-                                      {no_image, "image"}}) {
+                                      {no_image, "no colour or grey image"}}) {
         const FrameResult result = odometry_.processObservation(*bad);
         EXPECT_EQ(result.status, FrameStatus::kRejected);
         EXPECT_EQ(result.reason.find('\n'), std::string::npos) << result.reason;

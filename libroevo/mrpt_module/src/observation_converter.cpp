@@ -32,13 +32,13 @@ void checkSize(int width, int height, const PinholeCamera& camera, const std::st
 
 /// The scan's image, shared where it is in memory; grey or BGR.
 cv::Mat imageOf(const CObservation3DRangeScan& scan) {
-    if (!scan.hasIntensityImage)
+    const bool in_file = scan.intensityImage.isExternallyStored();
+    if (!scan.hasIntensityImage || (!in_file && scan.intensityImage.isEmpty()))
         throw std::runtime_error(EmbeddedJpegs::isReplacement(scan.intensityImage)
                                      ? "the observation's colour image is damaged"
                                      : "the observation has no colour or grey image");
     // Not through CImage: it would keep the pixels in memory, and report a damaged file with a stack trace.
-    if (scan.intensityImage.isExternallyStored())
-        return readColourFile(scan.intensityImage.getExternalStorageFileAbsolutePath());
+    if (in_file) return readColourFile(scan.intensityImage.getExternalStorageFileAbsolutePath());
     const cv::Mat image = scan.intensityImage.asCvMatRef();
     const bool rgb = scan.intensityImage.getChannelsOrder().rfind("RGB", 0) == 0;
     cv::Mat bgr;

@@ -15,6 +15,13 @@ namespace {
 using mrpt::maps::CColouredPointsMap;
 using mrpt::obs::CObservation3DRangeScan;
 
+/// In one line. MRPT's own faults have a head, and a call stack after the message.
+std::string reasonOf(const std::exception& fault) {
+    const std::string text = fault.what(), mark = "Message:";
+    const std::size_t found = text.find(mark);
+    return firstLine(found == std::string::npos ? text : text.substr(found + mark.size()));
+}
+
 }  // namespace
 
 CRoevoOdometry::CRoevoOdometry()
@@ -70,8 +77,8 @@ FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
         if (result.hasPose() &&
             (context_.mounts.empty() || !context_.mounts.rbegin()->second.isApprox(T_robot_camera)))
             context_.mounts[timestamp] = T_robot_camera;
-    } catch (const std::exception& error) {  // MRPT's are of many kinds and lines
-        result.reason = firstLine(error.what());
+    } catch (const std::exception& fault) {  // MRPT's are of many kinds
+        result.reason = reasonOf(fault);
     }
     return result;
 }
