@@ -218,7 +218,13 @@ TEST_F(OdometryProgram, CovariancesThatCannotBeWrittenCostNoWork) {
     refused(folder_ / "recording/rgb.txt", {"--covariances", "rgb.txt", "an input"});
     refused(folder_ / "recording/depth/0000.png", {"--covariances", "0000.png", "an input"});
     EXPECT_EQ(readFile(folder_ / "recording/rgb.txt"), list);
-    // In the output folder is as good a place as any
+    // In the output folder is as good a place as any, also where that is inside of the recording
+    const std::string inside = folder_ / "recording/out";
+    for (int again = 0; again < 2; ++again)
+        ASSERT_EQ(test::runProgram(kName, {"--input", folder_ / "recording", "--output", inside,
+                                           "--covariances", inside + "/c.txt"})
+                      .exit_code,
+                  0);
     ASSERT_EQ(run(folder_ / "recording", {"--covariances", output() + "/c.txt"}).exit_code, 0);
     const std::string before = readFile(output() + "/c.txt");
     EXPECT_FALSE(before.empty());
