@@ -110,7 +110,7 @@ PosePrior MotionModel::prior(double timestamp) const {
     // longer time it says nothing, and a camera comes as far as its speed lets it
     const double even = std::min(dt, kLongestPrediction), onwards = std::min(dt, kLongestAway) - even;
     const double by_acceleration = even * (even + (moving ? interval_ : 0)) / 2;
-    const double by_speed = onwards > 0 ? even + onwards : moving ? 0 : even;
+    const double by_speed = (moving ? 0 : even) + onwards;
     const Matrix6d by_motion = squared(motion_.acceleration * by_acceleration + motion_.speed * by_speed,
                                        std::min(motion_.angular_acceleration_deg * by_acceleration +
                                                     motion_.angular_speed_deg * by_speed,
