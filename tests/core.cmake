@@ -19,7 +19,7 @@ roevo_test(test_core_mapping
           core/test_local_mapper.cpp core/test_packed_keyframe.cpp core/test_pose_graph.cpp
           core/test_window_posterior.cpp core/test_refine_all.cpp
   LIBS roevo_internal Ceres::ceres)
-add_executable(test_core_odometry core/test_trajectory.cpp core/test_motion_smoother.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp core/test_odometry_accuracy.cpp core/test_odometry_status.cpp core/test_frame_depth.cpp core/test_masks.cpp core/test_prepared_frames.cpp
+add_executable(test_core_odometry core/test_trajectory.cpp core/test_trajectory_joins.cpp core/test_motion_smoother.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp core/test_odometry_accuracy.cpp core/test_odometry_status.cpp core/test_frame_depth.cpp core/test_masks.cpp core/test_prepared_frames.cpp
                core/test_odometry_covariance.cpp core/test_odometry_semi_dense.cpp core/test_tracker_overrides.cpp)
 target_link_libraries(test_core_odometry PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
 roevo_suites(test_core_odometry Trajectory KeyframeChanges FineTracking OdometryAccuracy OdometryStatus FrameDepth Masks PreparedFrames OdometryCovariance OdometrySemiDense TrackerOverrides)

@@ -57,19 +57,15 @@ bool isSameFile(const fs::path& a, const fs::path& b) {
 
 // What is written besides the results must not take the place of what is read, or of a result.
 void checkNames(const RunSettings& settings, const std::string& ground_truth) {
-    // Results may lie inside of the recording
-    const auto isOfEarlierRun = [&](const fs::path& file) {
-        const fs::path folder = fs::weakly_canonical(settings.output_dir);
-        const fs::path from_there = fs::weakly_canonical(file).lexically_relative(folder);
-        return !isSameFile(folder, settings.input) && !from_there.empty() && *from_there.begin() != "..";
-    };
     const auto check = [&](const char* option, const std::string& file) {
         if (file.empty()) return;
         const auto refuse = [&](const std::string& what) {
             throw UsageError(std::string(option) + " " + file + " is " + what + "; give another name");
         };
         keepInputs(option, file, {ground_truth, settings.choice.mask});
-        if (!isOfEarlierRun(file)) keepInputs(option, file, {settings.input});
+        // Results may lie inside of the recording, and those of an earlier run be replaced
+        if (!isWithin(file, settings.output_dir) || isSameFile(settings.output_dir, settings.input))
+            keepInputs(option, file, {settings.input});
         for (const std::string& name : kResults)
             if (isSameFile(file, fs::path(settings.output_dir) / name)) refuse("what the run writes itself");
     };

@@ -20,20 +20,21 @@ void prepareOutputFolder(const std::string& folder) {
     probe.stream();
 }
 
+bool isWithin(const std::string& file, const std::string& folder) {
+    const fs::path from_there = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(folder));
+    return !from_there.empty() && *from_there.begin() != "..";
+}
+
 void keepInputs(const char* option, const std::string& output, const std::vector<std::string>& inputs) {
     if (output.empty()) return;
-    const fs::path file = fs::weakly_canonical(output);
-    const auto isIn = [&](const fs::path& folder) {
-        std::error_code none;
-        const fs::path from_there = file.lexically_relative(fs::weakly_canonical(folder));
-        return fs::is_directory(folder, none) && fs::exists(file, none) && !from_there.empty() &&
-               *from_there.begin() != "..";
-    };
+    std::error_code none;
+    const bool exists = fs::exists(output, none);
     for (const std::string& input : inputs) {
         if (input.empty()) continue;
         const fs::path path(input), images = path.parent_path() / (path.stem().string() + "_Images");
-        if (file == fs::weakly_canonical(path) || isIn(path) ||
-            (path.extension() == ".rawlog" && isIn(images)))
+        const bool among_files = exists && ((fs::is_directory(path, none) && isWithin(output, input)) ||
+                                            (path.extension() == ".rawlog" && isWithin(output, images)));
+        if (among_files || fs::weakly_canonical(output) == fs::weakly_canonical(path))
             throw UsageError(std::string(option) + " " + output + " is an input; give another name");
     }
 }

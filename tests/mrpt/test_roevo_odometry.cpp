@@ -277,7 +277,7 @@ TEST_F(RoevoOdometryTest, BadObservationsAreRejectedWithAReason) {
     other_camera->cameraParamsIntensity.fx(400);
     auto other_sensor = laterScan(*scan_, 0.1), no_image = laterScan(*scan_, 0.11);
     other_sensor->sensorLabel = "BACK";
-    no_image->intensityImage = mrpt::img::CImage();  // MRPT throws a logic_error of many lines
+    no_image->intensityImage = mrpt::img::CImage();  // of which MRPT throws
     empty->cameraParamsIntensity = {};
     EXPECT_NE(errorOf([&] { odometry_.processObservation(*empty); }).find("no intrinsics"),
               std::string::npos);
