@@ -62,16 +62,16 @@ std::vector<PosedScan> posedScans(const RunReport& report, const Odometry& odome
     return scans;
 }
 
-bool isSameFile(const std::string& a, const std::string& b) {
+bool isSameOutput(const std::string& a, const std::string& b) {
     return !a.empty() && !b.empty() &&
            std::filesystem::weakly_canonical(a) == std::filesystem::weakly_canonical(b);
 }
 
-void checkNames(const RunSettings& settings) {
+void checkOutputs(const RunSettings& settings) {
     const auto check = [](const char* option, const std::string& file,
                           std::initializer_list<std::pair<const char*, const std::string&>> others) {
         for (const auto& [other, name] : others)
-            if (isSameFile(file, name))
+            if (isSameOutput(file, name))
                 throw UsageError(std::string(option) + " " + file + " is what " + other +
                                  " names; give another name");
     };
@@ -89,7 +89,7 @@ void checkNames(const RunSettings& settings) {
 }  // namespace
 
 MrptOutputs::MrptOutputs(const RunSettings& settings, const FrameSource& source) : settings_(settings) {
-    checkNames(settings);
+    checkOutputs(settings);
     if (!settings.simple_map.empty()) simple_map_.emplace(settings.simple_map).stream();
     const std::string& rawlog = settings.rawlog_with_poses;
     if (rawlog.empty()) return;

@@ -12,7 +12,7 @@ namespace {
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr int kFine = 4;  // the strip is drawn this many times larger and shrunk
 // In units, a unit being the height of a capital letter
-constexpr double kLine = 2.4, kMargin = 1.4, kSwatch = 2.6, kGap = 0.8, kBetween = 2.2, kBar = 11,
+constexpr double kLine = 2.4, kBorder = 1.4, kSwatch = 2.6, kGap = 0.8, kBetween = 2.2, kBar = 11,
                  kBarRoom = 29;
 constexpr double kUnitShare = 1. / 66;  // of the picture's shorter side
 constexpr int kSmallestUnit = 7;        // pixels
@@ -50,7 +50,7 @@ Overlay::Overlay(std::vector<LegendEntry> entries, const Background& background,
     : entries_(std::move(entries)), background_(background), width_(size.width) {
     const int shorter = std::min(size.width, size.height);
     unit_ = std::max(kSmallestUnit, static_cast<int>(std::lround(kUnitShare * shorter)));
-    const double left = kMargin * unit_, right = width_ - left;
+    const double left = kBorder * unit_, right = width_ - left;
     double x = left;
     bool fits = kBarRoom * unit_ <= right - left;
     for (const LegendEntry& entry : entries_) {
@@ -61,7 +61,7 @@ Overlay::Overlay(std::vector<LegendEntry> entries, const Background& background,
         x += width + kBetween * unit_;
     }
     if (x > left && x + kBarRoom * unit_ > right) ++bar_line_;
-    const int height = static_cast<int>(((bar_line_ + 1) * kLine + kMargin) * unit_);
+    const int height = static_cast<int>(((bar_line_ + 1) * kLine + kBorder) * unit_);
     if (fits && height <= kLargestShare * size.height) height_ = height;
 }
 
@@ -69,7 +69,7 @@ cv::Mat Overlay::draw(double pixels_per_metre, bool exact) const {
     const int unit = unit_ * kFine, stroke = std::max(kFine, static_cast<int>(0.13 * unit));
     cv::Mat strip(height_ * kFine, width_ * kFine, CV_8UC3, bgr(background_.colour()));
     const cv::Scalar ink = bgr(background_.ink());
-    const auto baseline = [&](int line) { return static_cast<int>((line * kLine + kMargin + 0.5) * unit); };
+    const auto baseline = [&](int line) { return static_cast<int>((line * kLine + kBorder + 0.5) * unit); };
     const auto write = [&](const std::string& text, int x, int line) {
         cv::putText(strip, text, {x, baseline(line)}, kFont, fontScale(unit), ink, stroke, cv::LINE_AA);
     };
@@ -88,7 +88,7 @@ cv::Mat Overlay::draw(double pixels_per_metre, bool exact) const {
     const int length = static_cast<int>(std::lround(metres * pixels_per_metre * kFine));
     const std::string text = lengthText(metres) + (exact ? "" : " in the middle");
     const int text_left =
-                  (width_ * kFine) - static_cast<int>(kMargin * unit + kFine * textWidth(text, unit_)),
+                  (width_ * kFine) - static_cast<int>(kBorder * unit + kFine * textWidth(text, unit_)),
               right = text_left - static_cast<int>(kGap * unit), y = baseline(bar_line_) - unit / 2;
     cv::rectangle(strip, {right - length, y - stroke / 2}, {right - 1, y + stroke / 2}, ink, cv::FILLED);
     for (const int x : {right - length, right - stroke})

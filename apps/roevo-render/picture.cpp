@@ -20,7 +20,7 @@ namespace {
 
 constexpr float kPointSizeHeight = 800;  // pixels; in higher pictures points grow along
 constexpr double kTurn = 2 * 3.14159265358979323846;
-constexpr char kAllLayers[] = "all", kOrbit[] = "orbit", kFollow[] = "follow", kTop[] = "top";
+constexpr char kOrbit[] = "orbit", kFollow[] = "follow", kTop[] = "top";
 
 // The last camera of a trajectory, in the scene's axes (x forward, y left, z up) with an optical camera
 // frame.
@@ -55,7 +55,7 @@ void drawPicture(const PictureSettings& settings) {
     // Seen from above, the grid would reach beyond the picture
     if (settings.view == kTop && !settings.from) cropGrid(*scene, boundsOf(content));
     const float larger = std::max(1.f, static_cast<float>(settings.height) / kPointSizeHeight);
-    const bool all_layers = settings.layer == kAllLayers;
+    const bool all_layers = settings.layer == "all";
     const auto below = preparePoints(*scene, kSuperSampling * larger, background, all_layers);
     prepareGrid(*scene, background);
 

@@ -12,8 +12,8 @@ constexpr double kRadians = 3.14159265358979323846 / 180;
 constexpr double kDegrees = 1 / kRadians;
 // A stray lies farther from the middle than the nine tenths nearest to it, with a gap before it
 constexpr double kNeverStray = 0.9;
-constexpr float kGap = 1.5f;      // farther by this factor than the next nearer point
-constexpr double kMargin = 0.94;  // share of the picture that the content fills
+constexpr float kFartherBy = 1.5f;  // farther by this factor than the next nearer point
+constexpr double kFilled = 0.94;    // share of the picture that the content fills
 constexpr double kFov = 40, kParallelFov = 1, kFollowFov = 55;  // deg; from far off, rays are parallel
 constexpr double kIsoElevation = 38;                            // deg
 
@@ -49,7 +49,7 @@ std::vector<Eigen::Vector3f> withoutStrays(const ViewContent& content) {
     std::sort(values.begin(), values.end());
     auto last =
         values.begin() + static_cast<std::ptrdiff_t>(kNeverStray * static_cast<double>(values.size() - 1));
-    while (last + 1 != values.end() && last[1] <= kGap * last[0]) ++last;
+    while (last + 1 != values.end() && last[1] <= kFartherBy * last[0]) ++last;
     for (const auto& p : cloud)
         if ((p - middle).norm() <= *last) kept.push_back(p);
     return kept;
@@ -98,7 +98,7 @@ View frameContent(const ViewContent& all, const Eigen::Vector3d& direction, cons
                   double aspect, double vertical_fov_deg) {
     const auto content = withoutStrays(all);
     const Eigen::Matrix3d R = lookingAlong(direction, up);
-    const double tan_v = std::tan(vertical_fov_deg / 2 * kRadians) * kMargin, tan_h = tan_v * aspect;
+    const double tan_v = std::tan(vertical_fov_deg / 2 * kRadians) * kFilled, tan_h = tan_v * aspect;
 
     // A point is inside the picture's left border when x + z tan >= cx + cz tan, with (cx, cy, cz) the camera
     // in the axes R; likewise on the other sides. Two opposite borders that touch the content give cx and cz.
@@ -155,7 +155,7 @@ View lookAt(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
 View orbitView(const ViewContent& all, double aspect) {
     const auto content = withoutStrays(all);
     const Eigen::AlignedBox3f box = boundsOf(all);
-    const double tan_v = std::tan(kFov / 2 * kRadians) * kMargin, tan_h = tan_v * aspect;
+    const double tan_v = std::tan(kFov / 2 * kRadians) * kFilled, tan_h = tan_v * aspect;
     const auto lookingFrom = [](double azimuth_deg) {
         return lookingAlong(downwards(azimuth_deg, kIsoElevation), Eigen::Vector3d::UnitZ());
     };

@@ -2,7 +2,6 @@
 // recordings are a matter of luck, so every one is tracked several ways.
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "ablation_pieces.h"
 #include "bar_chart.h"
@@ -18,7 +17,6 @@ namespace {
 
 constexpr std::size_t kVariants = kAblationVariants;
 constexpr std::size_t kPiece = 120;  // frames that are held to be tracked backwards
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// Counts what it chooses.
 class CountingTracker : public CoarsePointsTracker {

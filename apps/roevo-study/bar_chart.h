@@ -16,7 +16,7 @@ struct BarChart {
     };
     struct Panel {
         std::string y_label;
-        std::vector<std::vector<double>> bars;          ///< by group, then series; NaN: none
+        std::vector<std::vector<double>> bars;          ///< by group, then series; kMissing: none
         std::vector<std::pair<double, double>> dots{};  ///< x as barAt() has it, y
     };
 

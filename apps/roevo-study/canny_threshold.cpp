@@ -16,20 +16,19 @@ constexpr double kFactors[] = {0.5, 0.7, 1, 1.5, 2, 2.8, 4, 5.6, 8};  // of otsu
 constexpr double kReference = 1;
 constexpr double kLowRatio = 0.5;  // of the low threshold to the high one, as in the paper
 constexpr double kNoFloor = 1;     // Sobel units: the factor alone is to decide
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-struct Errors {
+struct ThresholdErrors {
     std::optional<double> ate, rpe_translation, rpe_rotation;  // m, m/s, deg/s
 };
 
-struct Row {
+struct ThresholdRow {
     double factor = 0;
     StudyRun run;
-    Errors errors;
+    ThresholdErrors errors;
 };
 
-Errors errorsOf(const StudyRun& run) {
-    Errors errors;
+ThresholdErrors errorsOf(const StudyRun& run) {
+    ThresholdErrors errors;
     if (!run.evaluation) return errors;
     errors.ate = run.evaluation->ate.translation.rmse;
     if (run.evaluation->rpe_second.translation.count > 0) {
@@ -51,36 +50,38 @@ std::vector<double> factorsWith(double configured) {
     return factors;
 }
 
-const Row& atOtsu(const std::vector<Row>& rows) {
-    return *std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.factor == kReference; });
+const ThresholdRow& atOtsu(const std::vector<ThresholdRow>& rows) {
+    return *std::find_if(rows.begin(), rows.end(),
+                         [](const ThresholdRow& row) { return row.factor == kReference; });
 }
 
 // Over the recordings, of the ratio to the error at Otsu; a run that failed has an infinite error.
-double medianRatio(const std::vector<std::vector<Row>>& rows, std::size_t factor,
-                   std::optional<double> Errors::*member) {
+double medianRatio(const std::vector<std::vector<ThresholdRow>>& rows, std::size_t factor,
+                   std::optional<double> ThresholdErrors::*member) {
     std::vector<double> values;
-    for (const std::vector<Row>& of_input : rows)
+    for (const std::vector<ThresholdRow>& of_input : rows)
         values.push_back(ratio(of_input[factor].errors.*member, atOtsu(of_input).errors.*member)
                              .value_or(std::numeric_limits<double>::infinity()));
     return median(values).value_or(std::numeric_limits<double>::infinity());
 }
 
-Row trackAt(const StudyInput& input, double factor) {
+ThresholdRow trackAt(const StudyInput& input, double factor) {
     OdometryOptions options = input.options;
     options.edges.canny_factor = factor;
     options.edges.canny_low_ratio = kLowRatio;
     options.edges.min_high_threshold = kNoFloor;
     options.mapping.semi_dense_points = 0;  // costs time and moves no pose
-    Row row;
+    ThresholdRow row;
     row.factor = factor;
     row.run = trackRecording(input, options);
     row.errors = errorsOf(row.run);
     return row;
 }
 
-void addRows(CsvTable& table, const StudyInput& input, double configured, const std::vector<Row>& rows) {
-    const Errors reference = atOtsu(rows).errors;
-    for (const Row& row : rows)
+void addRows(CsvTable& table, const StudyInput& input, double configured,
+             const std::vector<ThresholdRow>& rows) {
+    const ThresholdErrors reference = atOtsu(rows).errors;
+    for (const ThresholdRow& row : rows)
         table.add({input.name, toString(input.options.mode), CsvTable::number(row.factor),
                    row.factor == configured ? "yes" : "no", CsvTable::number(row.errors.ate),
                    CsvTable::number(ratio(row.errors.ate, reference.ate)),
@@ -96,18 +97,18 @@ constexpr double kTop = 8;  // ratios beyond leave the plot: the odometry has lo
 
 struct Panel {
     std::string block, title, y_label;
-    std::optional<double> Errors::*member;
+    std::optional<double> ThresholdErrors::*member;
     double left = 0, right = 0;  // of the axes, shares of the width
 };
 
 // One thin line for each recording, a thick one for their median.
 std::string draw(const Panel& panel, const std::vector<double>& factors, double configured,
-                 const std::vector<std::string>& names, const std::vector<std::vector<Row>>& rows) {
+                 const std::vector<std::string>& names, const std::vector<std::vector<ThresholdRow>>& rows) {
     double low = 0.8, high = 1.25;
     std::vector<std::vector<double>> lines;
     for (std::size_t f = 0; f < factors.size(); ++f) {
         std::vector<double> line{factors[f], medianRatio(rows, f, panel.member)};
-        for (const std::vector<Row>& of_input : rows) {
+        for (const std::vector<ThresholdRow>& of_input : rows) {
             const auto value = ratio(of_input[f].errors.*panel.member, atOtsu(of_input).errors.*panel.member);
             line.push_back(value.value_or(kMissing));
             if (!value) continue;
@@ -133,7 +134,7 @@ std::string draw(const Panel& panel, const std::vector<double>& factors, double 
 
 void plot(StudyReport& report, const std::string& folder, const std::vector<double>& factors,
           double configured, const std::vector<std::string>& names,
-          const std::vector<std::vector<Row>>& rows) {
+          const std::vector<std::vector<ThresholdRow>>& rows) {
     const std::string script =
         "set logscale xy\nset xrange [0.45:9]\nset xtics (0.5, 0.7, 1, 1.5, 2, 2.8, 4, 5.6, 8)\n"
         "set ytics (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10, 20, 50, 100)\n"
@@ -143,10 +144,10 @@ void plot(StudyReport& report, const std::string& folder, const std::vector<doub
         format("set arrow from %g, graph 0 to %g, graph 1 nohead lw 1.5 dt 2 lc rgb '#888888'\n", configured,
                configured) +
         "set multiplot\n" +
-        draw({"ate", "Absolute trajectory error", "ATE / ATE at Otsu", &Errors::ate, 0.065, 0.365}, factors,
-             configured, names, rows) +
+        draw({"ate", "Absolute trajectory error", "ATE / ATE at Otsu", &ThresholdErrors::ate, 0.065, 0.365},
+             factors, configured, names, rows) +
         draw({"rpe", "Relative pose error over 1 s, translation", "RPE / RPE at Otsu",
-              &Errors::rpe_translation, 0.43, 0.735},
+              &ThresholdErrors::rpe_translation, 0.43, 0.735},
              factors, configured, names, rows) +
         "unset multiplot";
     addPlot(report, folder, "canny.svg", script, 1340, 460);
@@ -161,12 +162,12 @@ StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std
     CsvTable table({"recording", "mode", "factor", "configured", "ate_m", "ate_ratio",
                     "rpe_translation_m_per_s", "rpe_translation_ratio", "rpe_rotation_deg_per_s",
                     "rpe_rotation_ratio", "points_per_frame", "frames", "tracked", "note"});
-    std::vector<std::vector<Row>> plotted;
+    std::vector<std::vector<ThresholdRow>> plotted;
     std::vector<std::string> names;
     Progress progress("canny", inputs.size() * factors.size());
     std::size_t done = 0;
     forEachInput(inputs, report, [&](const StudyInput& input) {
-        std::vector<Row> rows;
+        std::vector<ThresholdRow> rows;
         for (const double factor : factors) {
             rows.push_back(trackAt(input, factor));
             progress.update(++done);
@@ -196,11 +197,13 @@ StudyReport studyCannyThreshold(const std::vector<StudyInput>& inputs, const std
 
     std::size_t best = 0, at_configured = 0;
     for (std::size_t f = 0; f < factors.size(); ++f) {
-        if (medianRatio(plotted, f, &Errors::ate) < medianRatio(plotted, best, &Errors::ate)) best = f;
+        if (medianRatio(plotted, f, &ThresholdErrors::ate) <
+            medianRatio(plotted, best, &ThresholdErrors::ate))
+            best = f;
         if (factors[f] == configured) at_configured = f;
     }
     const auto described = [&](std::size_t f) {
-        const double middle = medianRatio(plotted, f, &Errors::ate);
+        const double middle = medianRatio(plotted, f, &ThresholdErrors::ate);
         return format("%g x Otsu (", factors[f]) +
                (std::isfinite(middle) ? format("%.2f)", middle) : "most runs failed)");
     };

@@ -13,8 +13,6 @@
 namespace roevo {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 struct WeightSet {
     std::string name;
     double k = 0, min_depth = 0, max_depth = 0;  // 1/m, m, m
@@ -73,7 +71,7 @@ void drawCurves(StudyReport& report, const std::string& folder, const std::vecto
 }
 
 /// The errors on one recording under every set of weights.
-struct Errors {
+struct WeightErrors {
     std::vector<StudyRun> runs;  // in the order of the sets
 
     std::optional<double> ate(std::size_t set) const {  // m
@@ -88,7 +86,7 @@ struct Errors {
 };
 
 void addRows(CsvTable& table, const StudyInput& input, const std::vector<WeightSet>& sets,
-             const Errors& errors) {
+             const WeightErrors& errors) {
     for (std::size_t s = 0; s < sets.size(); ++s) {
         const StudyRun& run = errors.runs[s];
         std::optional<double> rpe_translation, rpe_rotation;
@@ -105,7 +103,7 @@ void addRows(CsvTable& table, const StudyInput& input, const std::vector<WeightS
 }
 
 void drawErrors(StudyReport& report, const std::string& folder, const std::vector<WeightSet>& sets,
-                const std::vector<std::string>& names, const std::vector<Errors>& errors) {
+                const std::vector<std::string>& names, const std::vector<WeightErrors>& errors) {
     BarChart chart;
     chart.title = "Error of the trajectory under the depth weight; in brackets k (1/m), d_min (m), d_max (m)";
     chart.unit_label = label(sets[0]);
@@ -113,7 +111,7 @@ void drawErrors(StudyReport& report, const std::string& folder, const std::vecto
     chart.panels = {{"ATE / ATE without weight", {}}};
     for (std::size_t s = 1; s < sets.size(); ++s)
         chart.series.push_back({label(sets[s]), static_cast<int>(s)});
-    for (const Errors& of_input : errors) {
+    for (const WeightErrors& of_input : errors) {
         chart.panels[0].bars.emplace_back();
         for (std::size_t s = 1; s < sets.size(); ++s)
             chart.panels[0].bars.back().push_back(of_input.ratio(s).value_or(kMissing));
@@ -130,12 +128,12 @@ StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::s
 
     CsvTable table({"recording", "mode", "weight", "k", "d_min_m", "d_max_m", "ate_m", "ate_ratio",
                     "rpe_translation_m_per_s", "rpe_rotation_deg_per_s", "frames", "tracked", "note"});
-    std::vector<Errors> measured;
+    std::vector<WeightErrors> measured;
     std::vector<std::string> names;
     Progress progress("depth-weight", inputs.size() * sets.size());
     std::size_t done = 0;
     forEachInput(inputs, report, [&](const StudyInput& input) {
-        Errors errors;
+        WeightErrors errors;
         for (const WeightSet& set : sets) {
             errors.runs.push_back(trackRecording(input, with(input.options, set)));
             progress.update(++done);
@@ -159,7 +157,7 @@ StudyReport studyDepthWeight(const std::vector<StudyInput>& inputs, const std::s
     report.summary = counted(names.size(), "recording") + ", ATE relative to no weight (median):";
     for (std::size_t s = 1; s < sets.size(); ++s) {
         std::vector<double> ratios;
-        for (const Errors& errors : measured)  // a run that failed has an infinite error
+        for (const WeightErrors& errors : measured)  // a run that failed has an infinite error
             ratios.push_back(errors.ratio(s).value_or(std::numeric_limits<double>::infinity()));
         const double middle = median(ratios).value_or(std::numeric_limits<double>::infinity());
         report.summary += format("%s %s ", s > 1 ? "," : "", sets[s].name.c_str()) +

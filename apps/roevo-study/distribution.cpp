@@ -2,7 +2,6 @@
 // die.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -177,8 +176,7 @@ void draw(StudyReport& report, const std::string& folder, const std::vector<Spre
         }
         const double x = chart.barAt(chart.groups.size() - 1, mode);
         const auto add = [&](BarChart::Panel& panel, const std::vector<double>& values, double unit) {
-            panel.bars.back().push_back(unit *
-                                        median(values).value_or(std::numeric_limits<double>::quiet_NaN()));
+            panel.bars.back().push_back(unit * median(values).value_or(kMissing));
             for (const double value : values) panel.dots.emplace_back(x, unit * value);
         };
         add(chart.panels[0], spreads[i].finals(), 100);

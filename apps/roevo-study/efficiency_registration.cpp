@@ -1,7 +1,5 @@
 #include "efficiency_registration.h"
 
-#include <limits>
-
 #include "bar_chart.h"
 #include "registration_steps.h"
 
@@ -45,7 +43,7 @@ Cost costOf(const Measured& measured, const Kind& kind) {
     return cost;
 }
 
-void addRows(CsvTable& table, const Measured& measured) {
+void addCosts(CsvTable& table, const Measured& measured) {
     for (const Kind& kind : kKinds) {
         const Cost cost = costOf(measured, kind);
         table.add({measured.name, kind.method, kind.setting, CsvTable::number(cost.ms, 4),
@@ -55,8 +53,7 @@ void addRows(CsvTable& table, const Measured& measured) {
 }
 
 /// Time of a registration, and of a point in a step.
-void draw(StudyReport& report, const std::string& folder, const std::vector<Measured>& all) {
-    constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+void drawCosts(StudyReport& report, const std::string& folder, const std::vector<Measured>& all) {
     constexpr int kColours[] = {1, 2, 6, 5};  // dark and light of each
     BarChart chart;
     chart.title =
@@ -106,10 +103,10 @@ std::string reportRegistrations(StudyReport& report, const std::string& folder,
                                 const FineOptions& options) {
     CsvTable table({"recording", "registration", "setting", "median_ms", "points_median", "steps_median",
                     "ns_per_point_and_step", "frames"});
-    for (const Measured& measured : all) addRows(table, measured);
-    if (all.size() > 1) addRows(table, together);
+    for (const Measured& measured : all) addCosts(table, measured);
+    if (all.size() > 1) addCosts(table, together);
     addTable(report, folder, "efficiency_registration.csv", table);
-    draw(report, folder, all);
+    drawCosts(report, folder, all);
     addNotes(report, options);
     const Cost ours = costOf(together, kKinds[2]), field = costOf(together, kKinds[3]);
     if (!ours.ms || !ours.ns || !field.ns) return "no frame on which both registrations converged alike";

@@ -17,10 +17,10 @@
 namespace roevo {
 namespace {
 
-constexpr double kFactors[] = {0.5, 0.75, 1, 1.5, 2, 3};  // of the images' width and height
-constexpr std::size_t kFramesOfSizes = 150;               // at each of these sizes
-constexpr std::size_t kFewestOfPiece = 25;                // frames that a point of a curve stands for
-constexpr std::size_t kMostPieces = 40;                   // of a curve
+constexpr double kSizes[] = {0.5, 0.75, 1, 1.5, 2, 3};  // of the images' width and height
+constexpr std::size_t kFramesOfSizes = 150;             // at each of these sizes
+constexpr std::size_t kFewestOfPiece = 25;              // frames that a point of a curve stands for
+constexpr std::size_t kMostPieces = 40;                 // of a curve
 
 /// Held by this process's allocator, images included, MB.
 double memoryInUseMb() {
@@ -102,13 +102,13 @@ std::vector<std::vector<double>> curve(const std::vector<FrameCost>& frames,
 }
 
 /// One line for each recording. @param rows  by recording: x, y
-struct Panel {
+struct GrowthPanel {
     std::string x_label, y_label;
     std::vector<std::vector<std::vector<double>>> rows;
 };
 
 void draw(StudyReport& report, const std::string& folder, const std::string& name, const std::string& title,
-          const std::vector<std::string>& recordings, const std::vector<Panel>& panels) {
+          const std::vector<std::string>& recordings, const std::vector<GrowthPanel>& panels) {
     std::string script = "set multiplot layout 1," + std::to_string(panels.size()) + " title " +
                          gnuplotText(title) + "\nset yrange [0:*]\nset xrange [0:*]\nset key top left\n" +
                          "set offsets 0, 0, graph 0.35, 0\n";
@@ -156,11 +156,11 @@ struct OfRecording {
 
 void drawAll(StudyReport& report, const std::string& folder, const std::vector<std::string>& names,
              const std::vector<OfRecording>& recordings) {
-    Panel time{"megapixels", "time per frame (ms), median", {}}, memory{"megapixels", "memory (MB)", {}},
-        edges{"points on edges", "time per frame (ms), median", {}},
+    GrowthPanel time{"megapixels", "time per frame (ms), median", {}},
+        memory{"megapixels", "memory (MB)", {}}, edges{"points on edges", "time per frame (ms), median", {}},
         late{"frame", "time per frame (ms), median", {}}, held{"frame", "memory (MB)", {}};
     for (const OfRecording& runs : recordings) {
-        for (Panel* panel : {&time, &memory}) panel->rows.emplace_back();
+        for (GrowthPanel* panel : {&time, &memory}) panel->rows.emplace_back();
         for (const SizedRun& run : runs.sizes) {
             time.rows.back().push_back({run.megapixels(), run.medianMs()});
             memory.rows.back().push_back({run.megapixels(), run.frames.back().memory_mb});
@@ -191,12 +191,12 @@ StudyReport studyGrowth(const std::vector<StudyInput>& inputs, const std::string
          "ms per keyframe, mapping", "memory at the end, MB", "ATE, cm"}};
     std::vector<std::string> names;
     std::vector<OfRecording> recordings;
-    Progress progress("growth", inputs.size() * std::size(kFactors));
+    Progress progress("growth", inputs.size() * std::size(kSizes));
     std::size_t done = 0;
     forEachInput(inputs, report, [&](const StudyInput& input) {
         OfRecording runs;
         runs.whole = measure(input, 1, std::numeric_limits<std::size_t>::max());
-        for (const double factor : kFactors) {
+        for (const double factor : kSizes) {
             runs.sizes.push_back(measure(input, factor, kFramesOfSizes));
             if (runs.sizes.back().frames.empty()) throw std::runtime_error("no frame could be read");
             progress.update(++done);
@@ -211,7 +211,7 @@ StudyReport studyGrowth(const std::vector<StudyInput>& inputs, const std::string
     addTable(report, folder, "growth_frames.csv", of_frames);
     drawAll(report, folder, names, recordings);
     report.summary =
-        counted(recordings.size(), "recording") + " at " + std::to_string(std::size(kFactors)) + " sizes";
+        counted(recordings.size(), "recording") + " at " + std::to_string(std::size(kSizes)) + " sizes";
     report.table = markdownTable(shown);
     report.notes.push_back(
         "Times are processor time, without decoding: of the thread that tracks, and of mapping beside it. "

@@ -2,7 +2,6 @@
 // each recording.
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <stdexcept>
 
 #include "bar_chart.h"
@@ -45,7 +44,7 @@ struct Judged {
 };
 
 /// The same as figures.
-struct Row {
+struct SigmaRow {
     std::string recording;
     Mode mode = Mode::kBundleAdjustment;
     std::array<NeesStatistics, kIntervals.size()> statistics;
@@ -104,11 +103,11 @@ void addRows(CsvTable& table, const StudyInput& input, Mode mode, const std::str
     }
 }
 
-std::string shown(const std::vector<Row>& rows) {
+std::string shown(const std::vector<SigmaRow>& rows) {
     std::vector<std::vector<std::string>> lines{{"recording", "mode"}};
     for (const Interval& interval : kIntervals)
         lines[0].push_back(interval.seconds > 0 ? std::string("over ") + interval.name : "from the start");
-    for (const Row& row : rows) {
+    for (const SigmaRow& row : rows) {
         std::vector<std::string> line{row.recording, toString(row.mode)};
         for (const NeesStatistics& s : row.statistics)
             line.push_back(s.count == 0 ? ""
@@ -119,9 +118,9 @@ std::string shown(const std::vector<Row>& rows) {
     return markdownTable(lines);
 }
 
-std::string summaryOf(const std::vector<Row>& rows) {
+std::string summaryOf(const std::vector<SigmaRow>& rows) {
     std::size_t judged = 0, right = 0;
-    for (const Row& row : rows)
+    for (const SigmaRow& row : rows)
         for (const NeesStatistics& s : row.statistics) {
             judged += s.count > 0;
             right += s.count > 0 && s.mean.nees >= kLeast && s.mean.nees <= kMost;
@@ -130,7 +129,7 @@ std::string summaryOf(const std::vector<Row>& rows) {
                   judged, kLeast, kMost);
 }
 
-void draw(StudyReport& report, const std::string& folder, const std::vector<Row>& rows,
+void draw(StudyReport& report, const std::string& folder, const std::vector<SigmaRow>& rows,
           const std::vector<Mode>& modes) {
     BarChart chart;
     chart.title = "Squared error of the motion over what its covariance says, per degree of freedom";
@@ -146,8 +145,7 @@ void draw(StudyReport& report, const std::string& folder, const std::vector<Row>
         for (std::size_t k = 0; k < kIntervals.size(); ++k) {
             if (first) chart.panels[k].bars.emplace_back();
             const NeesStatistics& s = rows[r].statistics[k];
-            chart.panels[k].bars.back().push_back(s.count > 0 ? s.mean.nees
-                                                              : std::numeric_limits<double>::quiet_NaN());
+            chart.panels[k].bars.back().push_back(s.count > 0 ? s.mean.nees : kMissing);
         }
     }
     addBarChart(report, folder, "sigmas.svg", chart);
@@ -174,7 +172,7 @@ StudyReport studySigmas(const std::vector<StudyInput>& inputs, const std::string
                                         "truth_sigma_m",
                                         "truth_sigma_deg"};
     CsvTable pooled(head), of_runs(head);
-    std::vector<Row> rows;
+    std::vector<SigmaRow> rows;
     Progress progress("sigmas", 0);
     std::size_t done = 0;
     forEachInput(inputs, report, [&](const StudyInput& input) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,9 @@
 #include "roevo/types.h"
 
 namespace roevo {
+
+/// In the place of a figure that there is none of.
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// What is wrong with a recording that can be used.
 struct RecordingDamage {

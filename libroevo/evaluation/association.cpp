@@ -7,8 +7,7 @@
 namespace roevo {
 namespace {
 
-constexpr double kLargestGap = 0.1;    // s
-constexpr double kClockJitter = 2e-3;  // s
+constexpr double kLargestGap = 0.1;  // s
 
 }  // namespace
 

@@ -7,6 +7,9 @@
 
 namespace roevo {
 
+constexpr double kClockJitter = 2e-3;       ///< s: time stamps of one moment differ by less
+constexpr double kIntervalTolerance = 0.1;  ///< share of an interval that its end may be off
+
 /// A pair of positions in two lists of time stamps.
 struct StampMatch {
     std::size_t first = 0, second = 0;

@@ -12,7 +12,6 @@ namespace roevo {
 namespace {
 
 constexpr double kChiSquare95 = 12.591587;  // of six degrees of freedom
-constexpr double kIntervalTolerance = 0.1;  // share of the interval
 
 using Block = Eigen::Matrix3d;
 

@@ -7,8 +7,6 @@ namespace roevo {
 namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
-constexpr double kIntervalTolerance = 0.1;  // share of the interval
-constexpr double kClockJitter = 2e-3;       // s
 
 using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 

@@ -7,7 +7,7 @@
 namespace roevo {
 namespace {
 
-constexpr std::size_t kMinPairs = 30;
+constexpr std::size_t kEnoughPairs = 30;
 constexpr double kMinPath = 0.3;      // m, of the reference
 constexpr double kMaxFactor = 1.5;    // tracking alone is never that wrong over a path of the same shape
 constexpr double kMaxResidual = 0.3;  // of the reference's own spread: the share that is not explained
@@ -16,7 +16,7 @@ constexpr double kMaxResidual = 0.3;  // of the reference's own spread: the shar
 
 std::string scaleContradiction(const std::vector<StampedPose>& reference,
                                const std::vector<StampedPose>& estimate, const std::vector<PosePair>& pairs) {
-    if (pairs.size() < kMinPairs) return {};
+    if (pairs.size() < kEnoughPairs) return {};
     const auto count = static_cast<Eigen::Index>(pairs.size());
     Eigen::Matrix3Xd from(3, count), to(3, count);
     for (Eigen::Index i = 0; i < count; i++) {

@@ -13,6 +13,7 @@
 
 #include "input/excerpt.h"
 #include "input/regular_file.h"
+#include "recordings/depth_scale.h"
 #include "recordings/lens.h"
 
 namespace fs = std::filesystem;
@@ -20,9 +21,9 @@ namespace fs = std::filesystem;
 namespace roevo {
 namespace {
 
-using Names = std::initializer_list<const char*>;
+using KeyNames = std::initializer_list<const char*>;
 
-constexpr std::uintmax_t kLargest = 16 << 20;  // bytes: Record3D's has all poses, too
+constexpr std::uintmax_t kLargestFile = 16 << 20;  // bytes: Record3D's has all poses, too
 
 std::string lowerName(const fs::path& path) {
     std::string name = path.string();
@@ -31,13 +32,13 @@ std::string lowerName(const fs::path& path) {
     return name;
 }
 
-bool hasOneOf(const std::string& text, Names words) {
+bool hasOneOf(const std::string& text, KeyNames words) {
     return std::any_of(words.begin(), words.end(),
                        [&](const char* word) { return text.find(word) != std::string::npos; });
 }
 
 /// A map's first entry under one of these names. ORB-SLAM's have "Camera." or "Camera1." before them.
-YAML::Node entryOf(const YAML::Node& map, Names names) {
+YAML::Node entryOf(const YAML::Node& map, KeyNames names) {
     for (const std::string prefix : {"", "Camera.", "Camera1.", "RGBD."})
         for (const char* name : names)
             if (const YAML::Node found = map[prefix + name]; found.IsDefined() && !found.IsNull())
@@ -51,7 +52,7 @@ double numberOf(const YAML::Node& node) {
     return value;
 }
 
-double numberIn(const YAML::Node& map, Names names, double otherwise) {
+double numberIn(const YAML::Node& map, KeyNames names, double otherwise) {
     const YAML::Node found = entryOf(map, names);
     return found.IsDefined() && found.IsScalar() ? numberOf(found) : otherwise;
 }
@@ -95,11 +96,10 @@ std::vector<double> namedTerms(const YAML::Node& map, bool fisheye) {
 }
 
 /// RealSense tells metres per unit, others units per metre.
-double unitsPerMetre(double scale) {
+double unitsOf(double scale) {
     if (scale < 0) throw std::runtime_error("the depth scale is below 0");
     if (scale == 0 || scale >= 1) return scale;
-    const double units = 1 / scale, whole = std::round(units);
-    return std::abs(units - whole) < 1e-5 * whole ? whole : units;  // a float stands for it
+    return unitsPerMetre(scale);
 }
 
 /// The camera that a part of a file describes, or nothing.
@@ -132,7 +132,7 @@ std::optional<CameraDescription> cameraIn(const YAML::Node& map) {
     setLens(model, list.IsDefined() ? numbersOf(list) : namedTerms(map, fisheye), camera);
 
     out.depth_scale =
-        unitsPerMetre(numberIn(map, {"DepthMapFactor", "depth_scale", "png_depth_scale", "scale"}, 0));
+        unitsOf(numberIn(map, {"DepthMapFactor", "depth_scale", "png_depth_scale", "scale"}, 0));
     if (const double rate = numberIn(map, {"fps", "frame_rate"}, 0); rate > 0) out.frame_rate = rate;
     return out;
 }
@@ -146,7 +146,7 @@ std::optional<CameraDescription> findCamera(const YAML::Node& root, int levels) 
         if (const YAML::Node inner = root[part]; inner.IsDefined() && inner.IsMap())
             if (auto found = findCamera(inner, levels - 1)) {
                 if (!(found->depth_scale > 0))
-                    found->depth_scale = unitsPerMetre(numberIn(root, {"depth_scale", "png_depth_scale"}, 0));
+                    found->depth_scale = unitsOf(numberIn(root, {"depth_scale", "png_depth_scale"}, 0));
                 return found;
             }
     return std::nullopt;
@@ -154,7 +154,7 @@ std::optional<CameraDescription> findCamera(const YAML::Node& root, int levels) 
 
 std::string readText(const std::string& file) {
     requireRegularInput(file);
-    if (fs::file_size(file) > kLargest) throw std::runtime_error("it is larger than any calibration");
+    if (fs::file_size(file) > kLargestFile) throw std::runtime_error("it is larger than any calibration");
     std::ifstream in(file, std::ios::binary);
     if (!in) throw std::runtime_error("it cannot be read");
     std::string text{std::istreambuf_iterator<char>(in), {}};

@@ -57,6 +57,11 @@ std::string likelyDepthScales(double median_units) {
     return text;
 }
 
+double unitsPerMetre(double metres_per_unit) {
+    const double units = 1 / metres_per_unit, whole = std::round(units);
+    return std::abs(units - whole) < 1e-5 * whole ? whole : units;
+}
+
 cv::Mat depthInUnits(const cv::Mat& depth, double units, std::size_t& too_far) {
     cv::Mat out(depth.size(), CV_16UC1);
     too_far = 0;

@@ -19,6 +19,9 @@ bool isPlausibleMedianDepth(double metres);
 /// 2 m first, and "" where none is.
 std::string likelyDepthScales(double median_units);
 
+/// PNG units per metre for a unit in metres: whole numbers are meant where a float stands for them.
+double unitsPerMetre(double metres_per_unit);
+
 /// Depths in floats as 16-bit units, rounded; what is no depth becomes 0, and so does what 16 bits cannot
 /// hold.
 /// @param depth  CV_32FC1. @param too_far  is set to how many were beyond

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace roevo {
 namespace {
 
-constexpr double kRate = 30;  // Hz, the rate at which the dataset was rendered
+constexpr double kRenderedRate = 30;  // Hz, the rate at which the dataset was rendered
 
 bool isWhole(double value) {
     return value >= 0 && value == std::floor(value);
@@ -91,7 +91,7 @@ void numbersToSeconds(std::vector<StampedPose>& poses) {
     const bool whole = std::all_of(poses.begin(), poses.end(),
                                    [](const StampedPose& pose) { return isWhole(pose.timestamp); });
     for (StampedPose& pose : poses)
-        if (whole) pose.timestamp = roundToMicroseconds(pose.timestamp / kRate);
+        if (whole) pose.timestamp = roundToMicroseconds(pose.timestamp / kRenderedRate);
 }
 
 void findGroundTruth(DatasetDescription& out) {
@@ -150,19 +150,19 @@ DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions&
                                          ": ICL-NUIM counts frames in whole numbers; these are times "
                                          "(--format tum reads them)");
         for (DatasetEntry& frame : out.frames) {
-            frame.timestamp /= kRate;
-            frame.depth_timestamp /= kRate;
+            frame.timestamp /= kRenderedRate;
+            frame.depth_timestamp /= kRenderedRate;
         }
     } else if (fs::is_directory(folder / "rgb") && fs::is_directory(folder / "depth")) {
         const NamedImages colours = imagesIn(folder / "rgb"), depths = imagesIn(folder / "depth");
         requireImages(colours, (folder / "rgb").string());
         requireImages(depths, (folder / "depth").string());
-        pairByName(colours, depths, kRate, options.max_time_difference, out);
+        pairByName(colours, depths, kRenderedRate, options.max_time_difference, out);
         out.notes.push_back("no associations.txt: colour and depth were paired by file name");
     } else {
         throw std::runtime_error(folder_name + " has no associations.txt, nor rgb/ and depth/");
     }
-    out.frame_rate = kRate;
+    out.frame_rate = kRenderedRate;
     finishFrames(out);
     out.notes.push_back("times are frame numbers at 30 Hz");
     setCamera(findCamera(folder_name, options), out);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace roevo {
 namespace {
 
-constexpr double kUsualRate = 60;  // Hz
+constexpr double kPhoneRate = 60;  // Hz
 constexpr double kQuaternionTolerance = 0.05;
 constexpr char kWhose[] = "ARKit's poses, which are an estimate themselves";
 
@@ -175,7 +175,7 @@ DatasetDescription loadRecord3d(const std::string& folder_name, const DatasetOpt
     if (!camera) throw std::runtime_error(where + ": no camera in it");
     readPairs(options, out);
     const double rate =
-        options.folder.frame_rate > 0 ? options.folder.frame_rate : camera->frame_rate.value_or(kUsualRate);
+        options.folder.frame_rate > 0 ? options.folder.frame_rate : camera->frame_rate.value_or(kPhoneRate);
     try {
         const auto poses = metadata.value("poses", std::vector<std::vector<double>>());
         const Pose T_arkit_optical(Eigen::Quaterniond(0, 1, 0, 0),

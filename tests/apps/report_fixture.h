@@ -14,6 +14,8 @@
 
 namespace roevo::test {
 
+inline constexpr char kPython[] = "/usr/bin/python3";
+
 /// A square of 2 m, a corner every half second, camera not turning. Corners alternately `d` too high and too
 /// low cannot be aligned any better, so: ATE is d (RMSE, mean, median and maximum), RPE per frame 2 d, RPE
 /// over 1 s zero, rotations zero.

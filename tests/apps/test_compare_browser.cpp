@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::string kLong = "x<y_with_a_name_that_is_as_long_as_names_may_be_at_all_here_";
+const std::string kLongName = "x<y_with_a_name_that_is_as_long_as_names_may_be_at_all_here_";
 
 class CompareReportFiles : public test::CompareProgram {
   protected:
@@ -20,7 +20,7 @@ class CompareReportFiles : public test::CompareProgram {
         const std::string input = clip("a clip", 32);
         fs::copy_file(input + "/groundtruth.txt", folder / "given.txt");
         const auto result = run({input}, {"--methods", "roevo-ba,roevo-tr", "--trajectory",
-                                          kLong + "=" + (folder / "given.txt")});
+                                          kLongName + "=" + (folder / "given.txt")});
         ASSERT_EQ(result.exit_code, 0) << result.all();
     }
 };
@@ -37,7 +37,7 @@ TEST_F(CompareReportFiles, ViewAndFiguresLieBesideIt) {
         roles.push_back(path["role"]);
         EXPECT_EQ(path["count"], 32) << path["name"];
     }
-    EXPECT_EQ(names, (std::vector<std::string>{"ROEVO TR+BA", "ROEVO TR", kLong, "ground truth"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"ROEVO TR+BA", "ROEVO TR", kLongName, "ground truth"}));
     EXPECT_EQ(roles, (std::vector<std::string>{"final", "other", "other", "truth"}));
     EXPECT_NEAR(view["paths"][2]["ate"].get<double>(), 0, 1e-6) << "the ground truth itself";
     EXPECT_GT(test::pointsOf(test::layerOf(view, "edges")).size(), 100u);

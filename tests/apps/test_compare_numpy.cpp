@@ -20,19 +20,20 @@ using test::makeRun;
 using test::makeSequence;
 using test::TemporaryFolder;
 
-constexpr char kPython[] = "/usr/bin/python3";
 constexpr double kTolerance = 1e-6;  // m, deg
 
 class AgainstNumpy : public testing::Test {
   protected:
     void SetUp() override {
-        if (!fs::exists(kPython) || test::runProgram(kPython, {"-c", "import numpy"}).exit_code != 0)
-            GTEST_SKIP() << "no numpy for " << kPython << " (package python3-numpy)";
+        if (!fs::exists(test::kPython) ||
+            test::runProgram(test::kPython, {"-c", "import numpy"}).exit_code != 0)
+            GTEST_SKIP() << "no numpy for " << test::kPython << " (package python3-numpy)";
     }
 
     static nlohmann::json recompute(const std::string& reference, const std::string& estimate) {
         const auto result = test::runProgram(
-            kPython, {std::string(ROEVO_SOURCE_DIR) + "/tests/evaluate_with_numpy.py", reference, estimate});
+            test::kPython,
+            {std::string(ROEVO_SOURCE_DIR) + "/tests/evaluate_with_numpy.py", reference, estimate});
         EXPECT_EQ(result.exit_code, 0) << result.all();
         return nlohmann::json::parse(result.out, nullptr, false);
     }

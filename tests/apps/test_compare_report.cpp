@@ -30,8 +30,6 @@ using test::skippedRun;
 using test::TemporaryFolder;
 using test::WrittenComparison;
 
-constexpr char kPython[] = "/usr/bin/python3";
-
 /// Programs are looked for there while it is alive.
 class WithPath {
   public:
@@ -48,16 +46,16 @@ class WithPath {
 class WellFormedReport : public testing::Test {
   protected:
     void SetUp() override {
-        if (!std::filesystem::exists(kPython)) GTEST_SKIP() << "no " << kPython;
+        if (!std::filesystem::exists(test::kPython)) GTEST_SKIP() << "no " << test::kPython;
     }
     static void expectWellFormed(const WrittenComparison& out) {
         const auto result = test::runProgram(
-            kPython, {"-c",
-                      "import sys, collections, xml.etree.ElementTree as E\n"
-                      "ids = [e.get('id') for e in E.parse(sys.argv[1]).iter() if e.get('id')]\n"
-                      "twice = [i for i, n in collections.Counter(ids).items() if n > 1]\n"
-                      "sys.exit(f'twice: {twice}' if twice else 0)\n",
-                      out.path("report.html")});
+            test::kPython, {"-c",
+                            "import sys, collections, xml.etree.ElementTree as E\n"
+                            "ids = [e.get('id') for e in E.parse(sys.argv[1]).iter() if e.get('id')]\n"
+                            "twice = [i for i, n in collections.Counter(ids).items() if n > 1]\n"
+                            "sys.exit(f'twice: {twice}' if twice else 0)\n",
+                            out.path("report.html")});
         EXPECT_EQ(result.exit_code, 0) << result.all();
     }
 };

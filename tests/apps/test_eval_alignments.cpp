@@ -15,7 +15,7 @@ namespace {
 
 using test::expectError;
 
-constexpr char kName[] = "roevo-eval";
+constexpr char kEvalProgram[] = "roevo-eval";
 
 // A curve that uses all axes, 10 Hz, 4 s.
 std::vector<StampedPose> curve() {
@@ -108,7 +108,7 @@ TEST(EvalAlignment, WhoNeverMovesHasNoScale) {
 }
 
 /// A reference, an estimate that is it at 2/5 of the size, and one that is all right.
-class EvalSeveral : public testing::Test {
+class EvalSeveral : public ::testing::Test {
   protected:
     EvalSeveral() {
         writeTumTrajectory(folder_ / "truth.txt", moved(kTilted, 2.5, curve()));
@@ -121,7 +121,7 @@ class EvalSeveral : public testing::Test {
         std::vector<std::string> arguments{"--reference", folder_ / "truth.txt", "--estimate"};
         arguments.insert(arguments.end(), estimates.begin(), estimates.end());
         arguments.insert(arguments.end(), more.begin(), more.end());
-        return test::runProgram(kName, arguments);
+        return test::runProgram(kEvalProgram, arguments);
     }
     std::string named(const std::string& name, const std::string& file) const {
         return name + "=" + (folder_ / file);
@@ -166,15 +166,17 @@ TEST_F(EvalSeveral, ATableForAPaperHasTheBestInBoldAndNamesAsTheyAre) {
 }
 
 TEST_F(EvalSeveral, FailuresAreOneLine) {
-    expectError(eval({folder_ / "right.txt"}, {"--align", "affine"}), 2, kName, {"--align", "sim3"});
-    expectError(eval({folder_ / "right.txt"}, {"--table", folder_ / "t.txt"}), 2, kName, {"--table", ".tex"});
-    expectError(eval({folder_ / "right.txt"}, {"--table", folder_ / "no/t.csv"}), 1, kName,
+    expectError(eval({folder_ / "right.txt"}, {"--align", "affine"}), 2, kEvalProgram, {"--align", "sim3"});
+    expectError(eval({folder_ / "right.txt"}, {"--table", folder_ / "t.txt"}), 2, kEvalProgram,
+                {"--table", ".tex"});
+    expectError(eval({folder_ / "right.txt"}, {"--table", folder_ / "no/t.csv"}), 1, kEvalProgram,
                 {"cannot write", "t.csv"});
-    expectError(eval({folder_ / "right.txt", folder_ / "late.txt"}, {"--table", folder_ / "t.csv"}), 1, kName,
-                {"late.txt: no pose", "902.000000"});
+    expectError(eval({folder_ / "right.txt", folder_ / "late.txt"}, {"--table", folder_ / "t.csv"}), 1,
+                kEvalProgram, {"late.txt: no pose", "902.000000"});
     test::writeFile(folder_ / "far.txt", "100 0 0 0 0 0 0 1\n101 1e200 0 0 0 0 0 1\n102 0 1e200 0 0 0 0 1\n");
-    expectError(eval({folder_ / "far.txt"}), 1, kName, {"far.txt: its errors are too large to be computed"});
-    expectError(eval({"=" + (folder_ / "right.txt")}), 2, kName, {"is not NAME=FILE"});
+    expectError(eval({folder_ / "far.txt"}), 1, kEvalProgram,
+                {"far.txt: its errors are too large to be computed"});
+    expectError(eval({"=" + (folder_ / "right.txt")}), 2, kEvalProgram, {"is not NAME=FILE"});
     EXPECT_FALSE(std::filesystem::exists(folder_ / "t.csv"));
 }
 

@@ -21,7 +21,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 }
 
 /// A reference and an estimate that goes up and down by 1 cm beside it, at half the size.
-class EvalPage : public testing::Test {
+class EvalPage : public ::testing::Test {
   protected:
     EvalPage() {
         std::vector<StampedPose> poses;

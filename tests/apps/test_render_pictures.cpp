@@ -10,7 +10,7 @@ namespace {
 
 using test::expectError;
 
-constexpr char kName[] = "roevo-render";
+constexpr char kRender[] = "roevo-render";
 constexpr int kWidth = 800, kHeight = 600, kStrip = 60;  // px; the legend is in the strip
 
 class RenderPictures : public test::RenderProgram {
@@ -124,8 +124,8 @@ TEST_F(RenderPictures, ThePointToLookAtIsInTheMiddle) {
 
 TEST_F(RenderPictures, AMovieIsOneTurn) {
     const std::string file = folder_ / "room.mp4";
-    const auto result = test::runProgram(kName, {"--scene", folder_ / "room.3Dscene", "--output", file,
-                                                 "--size", "200x150", "--seconds", "1"});
+    const auto result = test::runProgram(kRender, {"--scene", folder_ / "room.3Dscene", "--output", file,
+                                                   "--size", "200x150", "--seconds", "1"});
     if (result.all().find("no FFmpeg") != std::string::npos) GTEST_SKIP() << result.all();
     ASSERT_EQ(result.exit_code, 0) << result.all();
     cv::VideoCapture movie(file);
@@ -153,7 +153,7 @@ TEST_F(RenderPictures, AMovieIsOneTurn) {
 TEST_F(RenderPictures, WrongCamerasAndColoursAreOneLine) {
     const auto refused = [&](const std::vector<std::string>& arguments,
                              const std::vector<std::string>& words) {
-        expectError(render(arguments), 2, kName, words);
+        expectError(render(arguments), 2, kRender, words);
     };
     refused({"--background", "#12345g"}, {"--background", "#12345g"});
     refused({"--background", "blue"}, {"--background", "blue"});
@@ -167,13 +167,13 @@ TEST_F(RenderPictures, WrongCamerasAndColoursAreOneLine) {
     const auto movie = [&](const std::vector<std::string>& more, const std::string& file) {
         std::vector<std::string> arguments{"--scene", folder_ / "room.3Dscene", "--output", file};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        return test::runProgram(kName, arguments);
+        return test::runProgram(kRender, arguments);
     };
     const std::string file = folder_ / "room.mp4";
-    expectError(movie({"--view", "top"}, file), 2, kName, {"top", "orbit"});
-    expectError(movie({"--size", "201x150"}, file), 2, kName, {"--size", "201x150", "even"});
-    expectError(movie({"--seconds", "0"}, file), 2, kName, {"--seconds"});
-    expectError(movie({}, folder_ / "no/such/room.mp4"), 1, kName, {"room.mp4"});
+    expectError(movie({"--view", "top"}, file), 2, kRender, {"top", "orbit"});
+    expectError(movie({"--size", "201x150"}, file), 2, kRender, {"--size", "201x150", "even"});
+    expectError(movie({"--seconds", "0"}, file), 2, kRender, {"--seconds"});
+    expectError(movie({}, folder_ / "no/such/room.mp4"), 1, kRender, {"room.mp4"});
     EXPECT_FALSE(std::filesystem::exists(file));
 }
 

@@ -14,7 +14,7 @@ using test::expectError;
 using test::readFile;
 using test::writeFile;
 
-constexpr char kName[] = "roevo-render";
+constexpr char kRenderProgram[] = "roevo-render";
 
 class RenderProgram : public test::RenderProgram {};
 
@@ -120,29 +120,32 @@ TEST_F(RenderProgram, OnWhiteEvenWhiteEdgesAreSeen) {
 
 TEST_F(RenderProgram, FailuresAreOneLine) {
     namespace fs = std::filesystem;
-    expectError(render({"--size", "1000"}), 2, kName, {"--size", "1000"});
-    expectError(render({"--size", "8x8"}), 2, kName, {"16"});
-    expectError(render({"--view", "inside"}), 2, kName, {"--view"});
-    expectError(render({"--view", "follow", "--trajectory", folder_ / "none.txt"}), 1, kName, {"none.txt"});
+    expectError(render({"--size", "1000"}), 2, kRenderProgram, {"--size", "1000"});
+    expectError(render({"--size", "8x8"}), 2, kRenderProgram, {"16"});
+    expectError(render({"--view", "inside"}), 2, kRenderProgram, {"--view"});
+    expectError(render({"--view", "follow", "--trajectory", folder_ / "none.txt"}), 1, kRenderProgram,
+                {"none.txt"});
     // This scene has edges only
     EXPECT_EQ(render({"--layer", "all"}).exit_code, 0);
     for (const std::string layer : {"covisibility", "semi-dense", "pseudo-edges"})
-        expectError(render({"--layer", layer}), 1, kName, {"no layer '" + layer + "'", "it has edges"});
-    expectError(render({"--layer", "walls"}), 2, kName, {"--layer", "walls"});
+        expectError(render({"--layer", layer}), 1, kRenderProgram,
+                    {"no layer '" + layer + "'", "it has edges"});
+    expectError(render({"--layer", "walls"}), 2, kRenderProgram, {"--layer", "walls"});
     const std::string png = folder_ / "x.png";
-    expectError(test::runProgram(kName, {"--scene", folder_ / "none.3Dscene", "--output", png}), 1, kName,
-                {"none.3Dscene", "No such file"});
-    expectError(test::runProgram(kName, {"--scene", folder_ / "trajectory.txt", "--output", png}), 1, kName,
-                {"not a whole MRPT .3Dscene"});
+    expectError(test::runProgram(kRenderProgram, {"--scene", folder_ / "none.3Dscene", "--output", png}), 1,
+                kRenderProgram, {"none.3Dscene", "No such file"});
+    expectError(test::runProgram(kRenderProgram, {"--scene", folder_ / "trajectory.txt", "--output", png}), 1,
+                kRenderProgram, {"not a whole MRPT .3Dscene"});
     fs::copy_file(folder_ / "room.3Dscene", folder_ / "cut.3Dscene");
     fs::resize_file(folder_ / "cut.3Dscene", fs::file_size(folder_ / "cut.3Dscene") / 2);
-    expectError(test::runProgram(kName, {"--scene", folder_ / "cut.3Dscene", "--output", png}), 1, kName,
-                {"cut.3Dscene"});
-    expectError(
-        test::runProgram(kName, {"--scene", folder_ / "room.3Dscene", "--output", folder_ / "no/such/x.png"}),
-        1, kName, {"cannot write"});
-    expectError(test::runProgram(kName, {"--scene", folder_ / "room.3Dscene", "--output", folder_ / "x.txt"}),
-                2, kName, {".png"});
+    expectError(test::runProgram(kRenderProgram, {"--scene", folder_ / "cut.3Dscene", "--output", png}), 1,
+                kRenderProgram, {"cut.3Dscene"});
+    expectError(test::runProgram(kRenderProgram, {"--scene", folder_ / "room.3Dscene", "--output",
+                                                  folder_ / "no/such/x.png"}),
+                1, kRenderProgram, {"cannot write"});
+    expectError(test::runProgram(kRenderProgram,
+                                 {"--scene", folder_ / "room.3Dscene", "--output", folder_ / "x.txt"}),
+                2, kRenderProgram, {".png"});
     EXPECT_FALSE(fs::exists(png));
 }
 
@@ -151,7 +154,8 @@ TEST_F(RenderProgram, AForeignSceneIsShownAsItIsButHasNoLayers) {
     scene->removeObject(scene->getByName(SceneNames::kEdges));
     saveScene(folder_ / "room.3Dscene", *scene);
     for (const std::string layer : {"edges", "covisibility", "semi-dense", "pseudo-edges", "all"})
-        expectError(render({"--layer", layer}), 1, kName, {"no layer '" + layer + "'", "it has none"});
+        expectError(render({"--layer", layer}), 1, kRenderProgram,
+                    {"no layer '" + layer + "'", "it has none"});
 }
 
 // From the recording to the picture.

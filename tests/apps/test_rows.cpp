@@ -17,7 +17,7 @@ using test::readFile;
 using test::TemporaryFolder;
 using test::writeFile;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 class Row : public testing::Test {
   protected:
@@ -121,10 +121,10 @@ TEST_F(Row, NoFigureThatIsNotANumberIsKept) {
     for (double MethodRun::*member : {&MethodRun::cpu_ms_per_frame, &MethodRun::background_ms,
                                       &MethodRun::memory_peak_mb, &MethodRun::core_lost}) {
         SequenceComparison bad = sequence;
-        bad.runs[0].*member = kNaN;
+        bad.runs[0].*member = kNoNumber;
         EXPECT_THROW(writeRow(path(), bad), std::runtime_error);
     }
-    run.stages[1].p95 = kNaN;
+    run.stages[1].p95 = kNoNumber;
     EXPECT_THROW(writeRow(path(), sequence), std::runtime_error);
     EXPECT_TRUE(fs::is_empty(folder.path()));
 }

@@ -84,13 +84,13 @@ TEST(AtomicFile, SaysWhyItCannotBeWritten) {
 
 TEST(Program, TurnsExceptionsIntoExitCodes) {
     EXPECT_EQ(runProgram("p", [] { return 0; }), 0);
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     EXPECT_EQ(
         runProgram("p", []() -> int { throw std::runtime_error("\n what happened \nstack\nof calls"); }), 1);
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "p: error: what happened \n");
-    testing::internal::CaptureStderr();
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "p: error: what happened \n");
+    ::testing::internal::CaptureStderr();
     EXPECT_EQ(runProgram("p", []() -> int { throw UsageError("--x is wrong"); }), 2);
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "p: error: --x is wrong (see p --help)\n");
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "p: error: --x is wrong (see p --help)\n");
 }
 
 // In a process of its own, which the signal ends.

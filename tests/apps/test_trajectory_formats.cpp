@@ -15,7 +15,7 @@ using test::expectError;
 using test::TemporaryFolder;
 using test::writeFile;
 
-constexpr char kName[] = "roevo-eval";
+constexpr char kEval[] = "roevo-eval";
 constexpr double kStart = 1403636579.75;  // s
 
 // A helix with turns about an odd axis, 20 Hz.
@@ -50,7 +50,7 @@ void expectSame(const std::vector<StampedPose>& found, const std::vector<Stamped
     }
 }
 
-class TrajectoryFormats : public testing::Test {
+class TrajectoryFormats : public ::testing::Test {
   protected:
     std::string file(const std::string& name, const std::string& text) const {
         writeFile(folder_ / name, text);
@@ -72,7 +72,7 @@ class TrajectoryFormats : public testing::Test {
     test::ProgramResult eval(const std::string& reference, const std::vector<std::string>& rest) const {
         std::vector<std::string> arguments{"--reference", reference, "--estimate"};
         arguments.insert(arguments.end(), rest.begin(), rest.end());
-        return test::runProgram(kName, arguments);
+        return test::runProgram(kEval, arguments);
     }
 
     TemporaryFolder folder_;
@@ -149,26 +149,26 @@ TEST_F(TrajectoryFormats, AGroundTruthOfKittiNeedsItsListOfTimes) {
     const std::string truth = file("00.txt", kitti(helix())), estimate = file("mine.txt", kitti(helix()));
     std::string times;
     for (int i = 0; i < 60; ++i) times += std::to_string(0.1 * i) + "\n";
-    expectError(eval(truth, {estimate}), 1, kName, {"00.txt: a KITTI file has no times", "--times"});
+    expectError(eval(truth, {estimate}), 1, kEval, {"00.txt: a KITTI file has no times", "--times"});
     const auto run = eval(truth, {estimate, "--times", file("times.txt", times)});
     EXPECT_EQ(run.exit_code, 0) << run.all();
     EXPECT_NE(run.out.find("60 of 60"), std::string::npos) << run.out;
-    expectError(eval(truth, {estimate, "--times", file("times.txt", times + "7\n")}), 1, kName,
+    expectError(eval(truth, {estimate, "--times", file("times.txt", times + "7\n")}), 1, kEval,
                 {"00.txt:60: the last of 60 rows", "expected 61", "times.txt"});
 }
 
 TEST_F(TrajectoryFormats, FailuresOfThePrograms) {
     const std::string bad = file("bad.csv", test::eurocText(helix(5)) + "1403636580000000000,0,0\r\n");
-    expectError(eval(truth(), {bad}), 1, kName, {"bad.csv:7: expected 8 or more numbers", "found 3"});
-    expectError(eval(truth(), {file("k.txt", kitti(helix(59)))}), 1, kName,
+    expectError(eval(truth(), {bad}), 1, kEval, {"bad.csv:7: expected 8 or more numbers", "found 3"});
+    expectError(eval(truth(), {file("k.txt", kitti(helix(59)))}), 1, kEval,
                 {"k.txt:59:", "expected 60", "truth.txt"});
-    expectError(eval(truth(), {truth(), "--format", "kitti"}), 1, kName,
+    expectError(eval(truth(), {truth(), "--format", "kitti"}), 1, kEval,
                 {"truth.txt:2: expected 12 numbers", "found 8"});
-    expectError(eval(truth(), {truth(), "--format", "bag"}), 2, kName, {"--format", "euroc"});
-    expectError(eval(truth(), {truth(), "--times", folder_ / "none"}), 1, kName, {"cannot read", "none"});
+    expectError(eval(truth(), {truth(), "--format", "bag"}), 2, kEval, {"--format", "euroc"});
+    expectError(eval(truth(), {truth(), "--times", folder_ / "none"}), 1, kEval, {"cannot read", "none"});
     auto late = helix();
     for (StampedPose& pose : late) pose.timestamp += 500;
-    expectError(eval(truth(), {file("late.csv", test::eurocText(late))}), 1, kName,
+    expectError(eval(truth(), {file("late.csv", test::eurocText(late))}), 1, kEval,
                 {"no pose has a reference", "--offset"});
 }
 

@@ -10,7 +10,7 @@
 namespace roevo {
 namespace {
 
-const PinholeCamera kCamera{160, 120, 130, 132, 79.2, 60.4, {}};
+const PinholeCamera kDepthCamera{160, 120, 130, 132, 79.2, 60.4, {}};
 
 /// Depth at pixel (u, v) of the plane n . p = d.
 double planeDepth(const PinholeCamera& camera, const Eigen::Vector3d& n, double d, double u, double v) {
@@ -34,12 +34,12 @@ Pose moved(double x, double y, double z) {
 }
 
 TEST(RegisterDepth, SameCameraGivesTheSameImageHolesIncluded) {
-    cv::Mat depth = planeImage(kCamera, {0.2, -0.1, 1}, 2);
+    cv::Mat depth = planeImage(kDepthCamera, {0.2, -0.1, 1}, 2);
     depth.at<float>(30, 40) = 0;
     depth.at<float>(31, 40) = std::numeric_limits<float>::quiet_NaN();
     depth.at<float>(32, 40) = std::numeric_limits<float>::infinity();
     depth.at<float>(33, 40) = -1;
-    const cv::Mat registered = registerDepth(depth, kCamera, kCamera, Pose::Identity());
+    const cv::Mat registered = registerDepth(depth, kDepthCamera, kDepthCamera, Pose::Identity());
     for (int v = 30; v < 34; ++v) depth.at<float>(v, 40) = 0;
     EXPECT_EQ(cv::norm(registered, depth, cv::NORM_INF), 0);
 }
@@ -48,8 +48,8 @@ TEST(RegisterDepth, SideStepMovesAFrontalPlaneByItsDisparity) {
     cv::Mat depth = cv::Mat::zeros(120, 160, CV_32FC1);
     depth(cv::Rect(60, 40, 20, 30)).setTo(2.0F);
     // 10 px of disparity at 2 m
-    const Pose T_colour_depth = moved(10 * 2.0 / kCamera.fx, 0, 0);
-    const cv::Mat registered = registerDepth(depth, kCamera, kCamera, T_colour_depth);
+    const Pose T_colour_depth = moved(10 * 2.0 / kDepthCamera.fx, 0, 0);
+    const cv::Mat registered = registerDepth(depth, kDepthCamera, kDepthCamera, T_colour_depth);
     cv::Mat expected = cv::Mat::zeros(120, 160, CV_32FC1);
     expected(cv::Rect(70, 40, 20, 30)).setTo(2.0F);
     EXPECT_EQ(cv::norm(registered, expected, cv::NORM_INF), 0);
@@ -59,11 +59,11 @@ TEST(RegisterDepth, NearestWins) {
     // Two spots that fall on one pixel of the colour camera: 1 m and 2 m, whichever comes first in the image
     for (const bool near_first : {true, false}) {
         cv::Mat depth = cv::Mat::zeros(120, 160, CV_32FC1);
-        const double step = (near_first ? 1 : -1) * 20 / kCamera.fx;  // 20 px at 1 m, 10 px at 2 m
+        const double step = (near_first ? 1 : -1) * 20 / kDepthCamera.fx;  // 20 px at 1 m, 10 px at 2 m
         const int sign = near_first ? 1 : -1;
         depth.at<float>(60, 80 - 20 * sign) = 1;
         depth.at<float>(60, 80 - 10 * sign) = 2;
-        const cv::Mat registered = registerDepth(depth, kCamera, kCamera, moved(step, 0, 0));
+        const cv::Mat registered = registerDepth(depth, kDepthCamera, kDepthCamera, moved(step, 0, 0));
         EXPECT_FLOAT_EQ(registered.at<float>(60, 80), 1);
         EXPECT_EQ(cv::countNonZero(registered), 1);
     }
@@ -75,7 +75,8 @@ TEST(RegisterDepth, ADifferentCameraSeesTheSamePlane) {
     T_colour_depth.setRotation(
         Eigen::AngleAxisd(0.02, Eigen::Vector3d(1, 2, 0.5).normalized()).toRotationMatrix());
     const Eigen::Vector3d n(0.1, 0.05, 1);
-    const cv::Mat registered = registerDepth(planeImage(kCamera, n, 2), kCamera, colour, T_colour_depth);
+    const cv::Mat registered =
+        registerDepth(planeImage(kDepthCamera, n, 2), kDepthCamera, colour, T_colour_depth);
     // The plane in the colour camera: n' = R n, d' = d + n' . t
     const Eigen::Vector3d n2 = T_colour_depth.linear() * n;
     const double d2 = 2 + n2.dot(T_colour_depth.translation());
@@ -100,14 +101,14 @@ TEST(RegisterDepth, APixelCoversAsMuchAsItDoesInTheColourCamera) {
     for (const int scale : {1, 2, 3, 5}) {
         const PinholeCamera colour{160 * scale,
                                    120 * scale,
-                                   kCamera.fx * scale,
-                                   kCamera.fy * scale,
-                                   (kCamera.cx + 0.5) * scale - 0.5,
-                                   (kCamera.cy + 0.5) * scale - 0.5,
+                                   kDepthCamera.fx * scale,
+                                   kDepthCamera.fy * scale,
+                                   (kDepthCamera.cx + 0.5) * scale - 0.5,
+                                   (kDepthCamera.cy + 0.5) * scale - 0.5,
                                    {}};
         cv::Mat depth = cv::Mat::zeros(120, 160, CV_32FC1);
         depth.at<float>(50, 70) = 2;
-        const cv::Mat registered = registerDepth(depth, kCamera, colour, Pose::Identity());
+        const cv::Mat registered = registerDepth(depth, kDepthCamera, colour, Pose::Identity());
         const cv::Rect box = cv::boundingRect(registered > 0);
         EXPECT_EQ(cv::countNonZero(registered), box.area()) << scale;
         EXPECT_NEAR(box.width, scale, 1) << scale;
@@ -141,18 +142,18 @@ TEST(RegisterDepth, WhatALensThatFoldsCannotSeeIsNotPaintedIntoItsMiddle) {
 }
 
 TEST(RegisterDepth, TheColourLensMovesPixels) {
-    PinholeCamera colour = kCamera;
+    PinholeCamera colour = kDepthCamera;
     colour.distortion = {0.2, 0, 0, 0, 0};
     cv::Mat depth = cv::Mat::zeros(120, 160, CV_32FC1);
     depth.at<float>(20, 20) = 1.5F;
-    const cv::Mat registered = registerDepth(depth, kCamera, colour, Pose::Identity());
+    const cv::Mat registered = registerDepth(depth, kDepthCamera, colour, Pose::Identity());
     const Eigen::Vector2d where = colour.distortPixel({20, 20});
     EXPECT_GT((where - Eigen::Vector2d(20, 20)).norm(), 2);
     EXPECT_FLOAT_EQ(registered.at<float>(static_cast<int>(std::lround(where.y())),
                                          static_cast<int>(std::lround(where.x()))),
                     1.5F);
     // and back: a distorted depth camera is undone
-    const cv::Mat back = registerDepth(registered, colour, kCamera, Pose::Identity());
+    const cv::Mat back = registerDepth(registered, colour, kDepthCamera, Pose::Identity());
     cv::Point peak;
     cv::minMaxLoc(back, nullptr, nullptr, nullptr, &peak);
     EXPECT_LE(std::abs(peak.x - 20) + std::abs(peak.y - 20), 1);
@@ -160,28 +161,28 @@ TEST(RegisterDepth, TheColourLensMovesPixels) {
 
 TEST(RegisterDepth, PointsBehindTheColourCameraVanish) {
     const cv::Mat depth(120, 160, CV_32FC1, cv::Scalar(1.0F));
-    EXPECT_EQ(cv::countNonZero(registerDepth(depth, kCamera, kCamera, moved(0, 0, -2))), 0);
+    EXPECT_EQ(cv::countNonZero(registerDepth(depth, kDepthCamera, kDepthCamera, moved(0, 0, -2))), 0);
 }
 
 TEST(RegisterDepth, RefusesAnImageOfAnotherSizeOrType) {
-    EXPECT_THROW(registerDepth(cv::Mat(10, 10, CV_32FC1), kCamera, kCamera, Pose::Identity()),
+    EXPECT_THROW(registerDepth(cv::Mat(10, 10, CV_32FC1), kDepthCamera, kDepthCamera, Pose::Identity()),
                  std::invalid_argument);
-    EXPECT_THROW(registerDepth(cv::Mat(120, 160, CV_16UC1), kCamera, kCamera, Pose::Identity()),
+    EXPECT_THROW(registerDepth(cv::Mat(120, 160, CV_16UC1), kDepthCamera, kDepthCamera, Pose::Identity()),
                  std::invalid_argument);
 }
 
 TEST(RangeToDepth, RangesToAPlaneBecomeItsDepth) {
     const Eigen::Vector3d n(0.1, -0.2, 1);
-    const cv::Mat depth = planeImage(kCamera, n, 1.5);
+    const cv::Mat depth = planeImage(kDepthCamera, n, 1.5);
     cv::Mat range = depth.clone();
     for (int v = 0; v < range.rows; ++v) {
         for (int u = 0; u < range.cols; ++u) {
             range.at<float>(v, u) = static_cast<float>(
-                kCamera.backProject(u, v, static_cast<double>(depth.at<float>(v, u))).norm());
+                kDepthCamera.backProject(u, v, static_cast<double>(depth.at<float>(v, u))).norm());
         }
     }
     range.at<float>(5, 5) = 0;
-    rangeToDepth(range, kCamera);
+    rangeToDepth(range, kDepthCamera);
     EXPECT_EQ(range.at<float>(5, 5), 0);
     range.at<float>(5, 5) = depth.at<float>(5, 5);
     EXPECT_LT(cv::norm(range, depth, cv::NORM_INF), 1e-6);

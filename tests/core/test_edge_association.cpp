@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 240, kSpan = 4;
 constexpr double kRadius = 6;
-const PinholeCamera kCamera{kWidth, kHeight, 260, 260, 160, 120, {}};
+const PinholeCamera kFlatCamera{kWidth, kHeight, 260, 260, 160, 120, {}};
 
 /// Straight edge of `count` points 1 px apart in x about (u, v), rising by `degrees`; `side` +1: brighter
 /// below.
@@ -47,7 +47,7 @@ EdgeMatches match(OrganizedEdges reference, OrganizedEdges current,
     for (const float x : reference.x) projected.u.push_back(x + shift.x());
     for (const float y : reference.y) projected.v.push_back(y + shift.y());
     const Pose turn(Eigen::AngleAxisd(turn_deg * kDegree, Eigen::Vector3d::UnitZ()));
-    EdgeAssociator associator(kCamera, options, kSpan);
+    EdgeAssociator associator(kFlatCamera, options, kSpan);
     EdgeMatches matches;
     associator.associate(reference, projected, turn, current, grid, kRadius, matches);
     EXPECT_EQ(matches.reference.size(), matches.current.size());

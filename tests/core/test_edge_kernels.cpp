@@ -9,21 +9,15 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "core/support/kernel_tables.h"
 #include "edges/gradient.h"
 #include "edges/organized_edges.h"
-#include "kernels/kernels.h"
 #include "nearest.h"
 
 namespace roevo {
 namespace {
 
 using Floats = std::vector<float>;
-
-std::vector<const kernels::Table*> tables() {
-    std::vector<const kernels::Table*> all{&kernels::baseline()};
-    if (kernels::avx2() != nullptr) all.push_back(kernels::avx2());
-    return all;
-}
 
 cv::Mat smoothNoise(int width, int height, unsigned seed) {
     cv::Mat image(height, width, CV_8UC1), smooth;

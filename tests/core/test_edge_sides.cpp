@@ -13,10 +13,10 @@
 namespace roevo {
 namespace {
 
-const PinholeCamera kCamera{200, 160, 180, 180, 99.5, 79.5, {}};
+const PinholeCamera kSmallCamera{200, 160, 180, 180, 99.5, 79.5, {}};
 
 /// A straight edge through the image's middle, its image, and what is found along it.
-class EdgeSidesTest : public testing::Test {
+class EdgeSidesTest : public ::testing::Test {
   protected:
     /// @param degrees  direction of the edge's normal
     void drawEdge(double degrees) {
@@ -40,29 +40,29 @@ class EdgeSidesTest : public testing::Test {
     /// @param noise    one sigma, relative
     void drawDepth(const std::function<double(double, double)>& depthAt, double noise = 0) {
         std::normal_distribution<double> error(0, 1);
-        depth_.create(kCamera.height, kCamera.width, CV_32FC1);
-        for (int v = 0; v < kCamera.height; ++v) {
-            for (int u = 0; u < kCamera.width; ++u)
+        depth_.create(kSmallCamera.height, kSmallCamera.width, CV_32FC1);
+        for (int v = 0; v < kSmallCamera.height; ++v) {
+            for (int u = 0; u < kSmallCamera.width; ++u)
                 depth_.at<float>(v, u) =
                     static_cast<float>(depthAt(distanceFromEdge(u, v), v) * (1 + noise * error(random_)));
         }
     }
 
     /// Where the lens puts the edge's points.
-    std::vector<Eigen::Vector2d> pixels(const PinholeCamera& lens = kCamera) const {
+    std::vector<Eigen::Vector2d> pixels(const PinholeCamera& lens = kSmallCamera) const {
         std::vector<Eigen::Vector2d> seen;
         for (std::size_t i = 0; i < edges_.size(); ++i)
             seen.push_back(lens.distortPixel({edges_.x[i], edges_.y[i]}));
         return seen;
     }
-    std::vector<float> patches(const PinholeCamera& lens = kCamera) const {
+    std::vector<float> patches(const PinholeCamera& lens = kSmallCamera) const {
         const ForegroundDepth foreground(depth_, EdgeOptions(), SensorOptions());
         std::vector<float> z;
         for (const Eigen::Vector2d& p : pixels(lens))
             z.push_back(foreground.at(static_cast<float>(p.x()), static_cast<float>(p.y())));
         return z;
     }
-    void correct(std::vector<float>& z, const PinholeCamera& lens = kCamera) {
+    void correct(std::vector<float>& z, const PinholeCamera& lens = kSmallCamera) {
         correctBySides(edges_, 0, pixels(lens), depth_, static_cast<float>(EdgeOptions().depth_jump), 1, z);
     }
     std::vector<float> corrected() {
@@ -237,14 +237,14 @@ TEST_F(EdgeSidesTest, StaysFiniteOnWhateverTheDepthImageHolds) {
 
 TEST_F(EdgeSidesTest, FollowsALensThatDistorts) {
     // The edge is straight in ideal pixels; what the camera saw is bent
-    PinholeCamera lens = kCamera;
+    PinholeCamera lens = kSmallCamera;
     lens.distortion = {0.2, -0.1, 0, 0, 0};
     drawEdge(0);
-    depth_.create(kCamera.height, kCamera.width, CV_32FC1);
-    for (int v = 0; v < kCamera.height; ++v) {
+    depth_.create(kSmallCamera.height, kSmallCamera.width, CV_32FC1);
+    for (int v = 0; v < kSmallCamera.height; ++v) {
         // The step runs where the lens puts the edge's column
         const double seen = lens.distortPixel({99.7, static_cast<double>(v)}).x();
-        for (int u = 0; u < kCamera.width; ++u)
+        for (int u = 0; u < kSmallCamera.width; ++u)
             depth_.at<float>(v, u) = static_cast<float>(frameOnWall(u - seen, v));
     }
     std::vector<float> z = patches(lens);

@@ -14,14 +14,14 @@ using testing::TrackedRun;
 
 const cv::Rect kArm(90, 130, 130, 110);
 
-const Sequence& room() {
+const Sequence& unmasked() {
     static const Sequence sequence = testing::simulate(testing::smallRoom(), 40);
     return sequence;
 }
 
 /// With a striped arm that stays where it is in the image, 0.5 m before the camera.
 Sequence withArm() {
-    Sequence sequence = room();
+    Sequence sequence = unmasked();
     for (RgbdFrame& frame : sequence.frames) {
         frame.grey = frame.grey.clone();
         frame.depth = frame.depth.clone();
@@ -47,12 +47,12 @@ Sequence masked(Sequence sequence) {
 
 TEST(Masks, AnArmThatIsMaskedCostsNoMoreThanTheViewThatItCovers) {
     const TrackedRun misled = track(withArm()), run = track(masked(withArm())),
-                     covered = track(masked(room()));
-    EXPECT_GT(testing::positionError(misled, room()), 0.05) << "else the arm is no test";
+                     covered = track(masked(unmasked()));
+    EXPECT_GT(testing::positionError(misled, unmasked()), 0.05) << "else the arm is no test";
     EXPECT_EQ(run.count(FrameStatus::kOk), 39);
-    EXPECT_LT(testing::positionError(run, room()), 0.005);
+    EXPECT_LT(testing::positionError(run, unmasked()), 0.005);
     // Nothing of it counts: not its edges, not its depth, not the threshold that its contrast would raise
-    EXPECT_LT(testing::positionError(run, room()), 1.5 * testing::positionError(covered, room()));
+    EXPECT_LT(testing::positionError(run, unmasked()), 1.5 * testing::positionError(covered, unmasked()));
 }
 
 TEST(Masks, NoEdgeOfTheMapIsOfWhatIsMasked) {
@@ -73,7 +73,7 @@ TEST(Masks, NoEdgeOfTheMapIsOfWhatIsMasked) {
 }
 
 TEST(Masks, AWhiteMaskAndNoneAreTheSame) {
-    Sequence sequence = room();
+    Sequence sequence = unmasked();
     const TrackedRun plain = track(sequence);
     for (RgbdFrame& frame : sequence.frames) frame.mask = cv::Mat(240, 320, CV_8UC1, cv::Scalar(1));
     const TrackedRun white = track(sequence);
@@ -100,11 +100,11 @@ TEST(Masks, OfFramesWithoutDepthOrOfNothingAtAll) {
     EXPECT_EQ(run.results[20].status, FrameStatus::kOk) << run.results[20].reason;
     EXPECT_EQ(run.results[30].status, FrameStatus::kPredicted);
     EXPECT_EQ(run.results[39].status, FrameStatus::kOk) << run.results[39].reason;
-    EXPECT_LT(testing::positionError(run, room()), 0.01);
+    EXPECT_LT(testing::positionError(run, unmasked()), 0.01);
 }
 
 TEST(Masks, AnotherSizeOrTypeIsRejected) {
-    Sequence sequence = room();
+    Sequence sequence = unmasked();
     sequence.frames[3].mask = cv::Mat::zeros(480, 640, CV_8UC1);
     sequence.frames[4].mask = cv::Mat::zeros(240, 320, CV_32FC1);
     const TrackedRun run = track(sequence);

@@ -11,10 +11,10 @@ namespace {
 
 using testing::uniform;
 
-const PinholeCamera kCamera{640, 480, 525, 540, 319.5, 239.5, {}};
+const PinholeCamera kTallCamera{640, 480, 525, 540, 319.5, 239.5, {}};
 constexpr double kSeconds = 0.005;
 
-RowMotion randomMotion(std::mt19937& random) {
+RowMotion randomRows(std::mt19937& random) {
     RowMotion rows;
     for (int k = 0; k < 3; ++k) {
         rows.velocity[k] = uniform(random, -0.5, 0.5);
@@ -31,7 +31,9 @@ Eigen::Vector3d randomPoint(std::mt19937& random) {
 /// Image velocity of a static point by differences, px/s.
 Eigen::Vector2d imageVelocity(const RowMotion& rows, const Eigen::Vector3d& point) {
     constexpr double kStep = 1e-5;  // s
-    const auto pixel = [&](double time) { return kCamera.project(point + time * rows.pointVelocity(point)); };
+    const auto pixel = [&](double time) {
+        return kTallCamera.project(point + time * rows.pointVelocity(point));
+    };
     return (pixel(kStep) - pixel(-kStep)) / (2 * kStep);
 }
 
@@ -40,30 +42,31 @@ double varianceOf(const RowMotion& rows, const Eigen::Vector3d& p, const Eigen::
     const Eigen::Vector3f q = p.cast<float>();
     const Eigen::Vector2f n = normal.cast<float>();
     return static_cast<double>(
-        MotionBlur(rows, kCamera, seconds).variance(q.x(), q.y(), q.z(), n.x(), n.y()));
+        MotionBlur(rows, kTallCamera, seconds).variance(q.x(), q.y(), q.z(), n.x(), n.y()));
 }
 
 TEST(MotionBlur, IsTheSameInALargerImageOfTheSameScene) {
-    PinholeCamera large = kCamera;
+    PinholeCamera large = kTallCamera;
     large.width *= 3, large.height *= 3;
     large.fx *= 3, large.fy *= 3;
     std::mt19937 random(18);
-    const RowMotion rows = randomMotion(random);
+    const RowMotion rows = randomRows(random);
     const Eigen::Vector3f p = randomPoint(random).cast<float>();
     EXPECT_NEAR(MotionBlur(rows, large, kSeconds).variance(p.x(), p.y(), p.z(), 0.6F, 0.8F),
-                MotionBlur(rows, kCamera, kSeconds).variance(p.x(), p.y(), p.z(), 0.6F, 0.8F), 1e-5F);
+                MotionBlur(rows, kTallCamera, kSeconds).variance(p.x(), p.y(), p.z(), 0.6F, 0.8F), 1e-5F);
 }
 
 TEST(MotionBlur, IsHowFarTheEdgeMovesAcrossItselfInThatTime) {
     std::mt19937 random(17);
     double largest = 0;
     for (int i = 0; i < 500; ++i) {
-        const RowMotion rows = randomMotion(random);
+        const RowMotion rows = randomRows(random);
         const Eigen::Vector3d point = randomPoint(random);
         const Eigen::Vector2d velocity = imageVelocity(rows, point);
         const double angle = uniform(random, 0, 2 * M_PI);
         const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
-        const double expected = std::pow(normal.dot(velocity) * kSeconds / MotionBlur::atRest(kCamera), 2);
+        const double expected =
+            std::pow(normal.dot(velocity) * kSeconds / MotionBlur::atRest(kTallCamera), 2);
         EXPECT_NEAR(varianceOf(rows, point, normal), expected, 1e-3 * expected + 1e-3);
         largest = std::max(largest, expected);
         const Eigen::Vector2d along = velocity.normalized();
@@ -76,13 +79,13 @@ TEST(MotionBlur, NeedsMotionAndTime) {
     std::mt19937 random(18);
     const Eigen::Vector3d point = randomPoint(random);
     EXPECT_EQ(varianceOf(RowMotion(), point, {1, 0}), 0);
-    EXPECT_EQ(varianceOf(randomMotion(random), point, {1, 0}, 0), 0);
+    EXPECT_EQ(varianceOf(randomRows(random), point, {1, 0}, 0), 0);
 }
 
 TEST(MotionBlur, DoesNotDependOnTheUnitOfLength) {
     std::mt19937 random(19);
     for (int i = 0; i < 50; ++i) {
-        RowMotion rows = randomMotion(random);
+        RowMotion rows = randomRows(random);
         const Eigen::Vector3d point = randomPoint(random);
         const double metres = varianceOf(rows, point, {0.6, 0.8});
         rows.velocity *= 7;

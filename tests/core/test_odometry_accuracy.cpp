@@ -19,7 +19,7 @@ using testing::smallRoom;
 using testing::track;
 using testing::TrackedRun;
 
-const Sequence& room() {
+const Sequence& clean() {
     static const Sequence sequence = simulate(smallRoom(), 40);
     return sequence;
 }
@@ -32,20 +32,20 @@ void expectAllOk(const TrackedRun& run) {
 }
 
 TEST(OdometryAccuracy, WithoutNoiseTheErrorIsAFewMillimetres) {
-    ASSERT_GT(pathLength(room().truth), 0.2);
+    ASSERT_GT(pathLength(clean().truth), 0.2);
     for (const Mode mode : {Mode::kTracking, Mode::kCoarse}) {
         OdometryOptions options;
         options.mode = mode;
-        const TrackedRun run = track(room(), options);
+        const TrackedRun run = track(clean(), options);
         expectAllOk(run);
         RecordProperty(mode == Mode::kTracking ? "tr_mm" : "ct_mm",
-                       std::to_string(1000 * positionError(run, room())));
-        EXPECT_LT(positionError(run, room()), mode == Mode::kTracking ? 0.003 : 0.006) << toString(mode);
+                       std::to_string(1000 * positionError(run, clean())));
+        EXPECT_LT(positionError(run, clean()), mode == Mode::kTracking ? 0.003 : 0.006) << toString(mode);
     }
 }
 
 TEST(OdometryAccuracy, ADepthInEverySixteenthPixelIsEnough) {
-    Sequence sparse = room();
+    Sequence sparse = clean();
     for (RgbdFrame& frame : sparse.frames) frame.depth = testing::everyNth(frame.depth, 4, 1);
     const TrackedRun run = track(sparse);
     expectAllOk(run);
@@ -55,11 +55,11 @@ TEST(OdometryAccuracy, ADepthInEverySixteenthPixelIsEnough) {
 
 TEST(OdometryAccuracy, TheSameImageAgainDoesNotMoveThePose) {
     Sequence still;
-    still.camera = room().camera;
+    still.camera = clean().camera;
     for (int i = 0; i < 10; ++i) {
-        still.frames.push_back(room().frames.front());
+        still.frames.push_back(clean().frames.front());
         still.frames.back().timestamp = 1 + i / 30.0;
-        still.truth.push_back(room().truth.front());
+        still.truth.push_back(clean().truth.front());
     }
     const TrackedRun run = track(still);
     expectAllOk(run);
@@ -72,10 +72,10 @@ TEST(OdometryAccuracy, TheSameImageAgainDoesNotMoveThePose) {
 }
 
 TEST(OdometryAccuracy, AWorldTwiceAsLargeGivesATrajectoryTwiceAsLarge) {
-    Sequence large = room();
+    Sequence large = clean();
     OdometryOptions options;
     makeTwiceAsLarge(large, options);
-    const TrackedRun once = track(room()), twice = track(large, options);
+    const TrackedRun once = track(clean()), twice = track(large, options);
     expectAllOk(twice);
     for (std::size_t i = 0; i < once.results.size(); ++i) {
         const Pose &a = once.results[i].T_world_camera, &b = twice.results[i].T_world_camera;
@@ -85,12 +85,12 @@ TEST(OdometryAccuracy, AWorldTwiceAsLargeGivesATrajectoryTwiceAsLarge) {
 }
 
 TEST(OdometryAccuracy, GainAndOffsetHardlyMatter) {
-    Sequence dim = room();
+    Sequence dim = clean();
     for (std::size_t i = 0; i < dim.frames.size(); ++i) {
         const double gain =
             0.75 + 0.15 * std::sin(0.3 * static_cast<double>(i));  // drifts from frame to frame
         dim.frames[i].grey = cv::Mat();                            // its own memory
-        room().frames[i].grey.convertTo(dim.frames[i].grey, CV_8U, gain, 10);
+        clean().frames[i].grey.convertTo(dim.frames[i].grey, CV_8U, gain, 10);
     }
     const TrackedRun run = track(dim);
     expectAllOk(run);
@@ -99,12 +99,12 @@ TEST(OdometryAccuracy, GainAndOffsetHardlyMatter) {
 }
 
 TEST(OdometryAccuracy, BackwardsIsTheInverseMotion) {
-    Sequence back = room();
+    Sequence back = clean();
     std::reverse(back.frames.begin(), back.frames.end());
     std::reverse(back.truth.begin(), back.truth.end());
     for (std::size_t i = 0; i < back.frames.size(); ++i)
-        back.frames[i].timestamp = room().frames[i].timestamp;
-    const TrackedRun forth = track(room()), run = track(back);
+        back.frames[i].timestamp = clean().frames[i].timestamp;
+    const TrackedRun forth = track(clean()), run = track(back);
     expectAllOk(run);
     const Pose there = forth.results.front().T_world_camera.inverse() * forth.results.back().T_world_camera;
     const Pose here = run.results.front().T_world_camera.inverse() * run.results.back().T_world_camera;
@@ -118,10 +118,10 @@ TEST(OdometryAccuracy, StartPoseOnlyMovesTheTrajectory) {
     Pose start = Pose::Identity();
     start.translation() = Eigen::Vector3d(3, -2, 1);
     start.setRotation(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 1, 0).normalized()).toRotationMatrix());
-    Odometry a(room().camera, OdometryOptions()), b(room().camera, OdometryOptions(), start);
+    Odometry a(clean().camera, OdometryOptions()), b(clean().camera, OdometryOptions(), start);
     for (std::size_t i = 0; i < 12; ++i) {
-        const Pose first = a.processFrame(room().frames[i]).T_world_camera;
-        const Pose second = b.processFrame(room().frames[i]).T_world_camera;
+        const Pose first = a.processFrame(clean().frames[i]).T_world_camera;
+        const Pose second = b.processFrame(clean().frames[i]).T_world_camera;
         EXPECT_LT(((start * first).matrix() - second.matrix()).norm(), 1e-4);
     }
 }
@@ -138,7 +138,7 @@ TEST(OdometryAccuracy, ADistortedLensIsUndone) {
 }
 
 TEST(OdometryAccuracy, TwoRunsGiveTheSameBytes) {
-    const TrackedRun a = track(room()), b = track(room());
+    const TrackedRun a = track(clean()), b = track(clean());
     ASSERT_EQ(a.trajectory.size(), b.trajectory.size());
     for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
         EXPECT_EQ(a.trajectory[i].T_world_camera.matrix(), b.trajectory[i].T_world_camera.matrix())
@@ -148,19 +148,19 @@ TEST(OdometryAccuracy, TwoRunsGiveTheSameBytes) {
 }
 
 TEST(OdometryAccuracy, MapEdgesLieOnTheSurfaces) {
-    Odometry odometry(room().camera, OdometryOptions(), room().start());
-    (void)odometry.processFrame(room().frames[0]);
+    Odometry odometry(clean().camera, OdometryOptions(), clean().start());
+    (void)odometry.processFrame(clean().frames[0]);
     const EdgeMap map = odometry.map();
     ASSERT_GT(map.size(), 20U);
-    const cv::Mat& depth = room().frames[0].depth;
-    const Pose T_camera_world = room().start().inverse();
+    const cv::Mat& depth = clean().frames[0].depth;
+    const Pose T_camera_world = clean().start().inverse();
     int on_surface = 0, all = 0;
     for (const auto& edge : map) {
         EXPECT_EQ(edge.points.size(), edge.colours.size());
         EXPECT_EQ(edge.keyframe_id, 0);
         for (const auto& point : edge.points) {
             const Eigen::Vector3d p = T_camera_world * point.cast<double>();
-            const Eigen::Vector2d pixel = room().camera.project(p);
+            const Eigen::Vector2d pixel = clean().camera.project(p);
             double nearest = 1e9;  // of the depths within two pixels
             for (int dy = -2; dy <= 2; ++dy) {
                 for (int dx = -2; dx <= 2; ++dx) {

@@ -47,7 +47,7 @@ double distanceToScene(const simulator::Scene& scene, const Eigen::Vector3d& poi
     return nearest;
 }
 
-simulator::SimulationOptions noisyRoom() {
+simulator::SimulationOptions colouredNoise() {
     simulator::SimulationOptions options = smallRoom();
     options.useKinectNoise();
     return options;
@@ -66,12 +66,12 @@ Sequence inColour(const simulator::SimulationOptions& options, int count) {
     return sequence;
 }
 
-const Sequence& room() {
+const Sequence& colouredRoom() {
     static const Sequence sequence = inColour(smallRoom(), 40);
     return sequence;
 }
 const Sequence& noisy() {
-    static const Sequence sequence = inColour(noisyRoom(), 40);
+    static const Sequence sequence = inColour(colouredNoise(), 40);
     return sequence;
 }
 
@@ -116,7 +116,7 @@ std::vector<std::array<float, 6>> flat(const std::vector<ColouredPoint>& points)
 TEST(OdometrySemiDense, LiesOnTheRoomsSurfacesInEveryMode) {
     const simulator::Simulator simulator(smallRoom());
     for (const Mode mode : {Mode::kBundleAdjustment, Mode::kTracking, Mode::kCoarse}) {
-        const auto odometry = run(room(), manyKeyframes(mode));
+        const auto odometry = run(colouredRoom(), manyKeyframes(mode));
         const auto points = odometry->semiDense();
         EXPECT_GE(odometry->keyframes().size(), 4u);
         ASSERT_EQ(points.size(), kPoints * odometry->keyframes().size()) << toString(mode);
@@ -128,7 +128,7 @@ TEST(OdometrySemiDense, LiesOnTheRoomsSurfacesInEveryMode) {
 }
 
 TEST(OdometrySemiDense, WithAKinectsNoiseLiesWithinIt) {
-    const simulator::Simulator simulator(noisyRoom());
+    const simulator::Simulator simulator(colouredNoise());
     const auto odometry = run(noisy(), manyKeyframes());
     const auto points = odometry->semiDense();
     ASSERT_GE(points.size(), 4u * kPoints);
@@ -191,7 +191,7 @@ TEST(OdometrySemiDense, LeavesOutMixedPixelsAndUnsureDepths) {
             frame.grey.at<std::uint8_t>(v, u) = (u / 20 + v / 20) % 2 == 0 ? 40 : 200;
             frame.depth.at<float>(v, u) = u < 119 ? 1.f : u < 121 ? 1.5f : u < 220 ? 2.f : 5.5f;
         }
-    Odometry odometry(room().camera, OdometryOptions());
+    Odometry odometry(colouredRoom().camera, OdometryOptions());
     ASSERT_EQ(odometry.processFrame(frame).status, FrameStatus::kInitialised);
     const auto points = odometry.semiDense();
     const auto at = [&](float depth) {
@@ -216,7 +216,7 @@ TEST(OdometrySemiDense, NoneWhenSwitchedOffAndNothingElseChanges) {
         for (std::size_t i = 0; i < a.size(); ++i)
             EXPECT_EQ(a[i].T_world_camera.matrix(), b[i].T_world_camera.matrix());
     }
-    Odometry fresh(room().camera, OdometryOptions());
+    Odometry fresh(colouredRoom().camera, OdometryOptions());
     EXPECT_TRUE(fresh.semiDense().empty());
 }
 
@@ -224,11 +224,11 @@ TEST(OdometrySemiDense, EveryRunGivesTheSamePointsHoweverOftenOneAsks) {
     OdometryOptions options = manyKeyframes(Mode::kTracking);
     options.keyframe.max_rotation_deg = 0.1;  // nearly every frame: sampling falls behind
     options.mapping.semi_dense_points = 50000;
-    const auto once = run(room(), options);
+    const auto once = run(colouredRoom(), options);
     EXPECT_GT(once->keyframes().size(), 30u);
-    Odometry asked(room().camera, options, room().start());
+    Odometry asked(colouredRoom().camera, options, colouredRoom().start());
     std::size_t before = 0;
-    for (const RgbdFrame& frame : room().frames) {
+    for (const RgbdFrame& frame : colouredRoom().frames) {
         (void)asked.processFrame(frame);
         const std::size_t now = asked.semiDense().size();
         EXPECT_GE(now, before);

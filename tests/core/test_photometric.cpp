@@ -11,7 +11,7 @@
 namespace roevo {
 namespace {
 
-const PinholeCamera kCamera{320, 240, 260, 262, 158.7, 120.4, {}};
+const PinholeCamera kHalfCamera{320, 240, 260, 262, 158.7, 120.4, {}};
 
 /// Keyframe points on a lattice over the plane, as if edges ran there.
 struct World {
@@ -22,7 +22,7 @@ struct World {
 
     /// @param contrast, offset  of the image's grey levels
     explicit World(double contrast = 1, double offset = 0) {
-        const cv::Mat image = plane.grey(kCamera, Pose::Identity(), contrast, offset);
+        const cv::Mat image = plane.grey(kHalfCamera, Pose::Identity(), contrast, offset);
         pyramid.build(image, 3);
         Gradient gradient;
         computeGradient(image, 0, gradient);
@@ -34,7 +34,8 @@ struct World {
                                      static_cast<float>(gradient.gx.at<std::int16_t>(v, u)) / magnitude,
                                      static_cast<float>(gradient.gy.at<std::int16_t>(v, u)) / magnitude,
                                      magnitude / 8);
-                edges.points.add(kCamera.backProject(u, v, plane.depth(kCamera, Pose::Identity(), u, v)));
+                edges.points.add(
+                    kHalfCamera.backProject(u, v, plane.depth(kHalfCamera, Pose::Identity(), u, v)));
                 edges.weight.push_back(1);
             }
             edges.image.finishEdge();
@@ -49,7 +50,7 @@ TEST(Photometric, SameImageAtIdentityHasNoResidualOnAnyLevel) {
     ASSERT_GT(world.points.size(), 500U);
     for (int level = 0; level < 3; ++level) {
         PhotometricResiduals residuals;
-        const PinholeCamera camera = kCamera.atPyramidLevel(level);
+        const PinholeCamera camera = kHalfCamera.atPyramidLevel(level);
         residuals.evaluate(world.points, level, world.pyramid.level(level), camera, Pose::Identity(),
                            RowMotion(), {});
         EXPECT_GT(residuals.numVisible(), static_cast<int>(world.points.size()) * 9 / 10);
@@ -69,7 +70,7 @@ TEST(Photometric, GradientPredictsHowThePoseErrorShows) {
     const World world;
     std::mt19937 random(111);
     for (int level = 0; level < 2; ++level) {
-        const PinholeCamera camera = kCamera.atPyramidLevel(level);
+        const PinholeCamera camera = kHalfCamera.atPyramidLevel(level);
         for (int k = 0; k < 12; ++k) {
             Vector6d xi = Vector6d::Zero();
             xi[k / 2] = (k % 2 == 0 ? 1 : -1) * (k / 2 < 3 ? 0.003 : 0.002);
@@ -99,7 +100,8 @@ class Gains : public ::testing::TestWithParam<double> {
     Brightness brightness() const { return {GetParam(), 128 - 65 * GetParam()}; }
     cv::Mat seenFrom(const Pose& T_world_camera) const {
         const auto [gain, offset] = brightness();
-        cv::Mat image = world_.plane.grey(kCamera, T_world_camera, gain * kContrast, gain * kDark + offset);
+        cv::Mat image =
+            world_.plane.grey(kHalfCamera, T_world_camera, gain * kContrast, gain * kDark + offset);
         double least = 0, most = 0;
         cv::minMaxLoc(image, &least, &most);
         EXPECT_GT(least, 0);
@@ -117,7 +119,7 @@ class HeldCost {
              const Brightness& brightness)
         : points_(points), image_(image), brightness_(brightness) {
         PhotometricResiduals residuals;
-        residuals.evaluate(points, 0, image, kCamera, pose, RowMotion(), brightness);
+        residuals.evaluate(points, 0, image, kHalfCamera, pose, RowMotion(), brightness);
         const double scale = std::max(1.0, residuals.cost());  // grey levels
         const double information = 1 / (scale * scale);
         for (const kernels::PatchResidual& patch : patchesAt(pose)) {
@@ -141,7 +143,7 @@ class HeldCost {
         const std::size_t n = points_.size();
         std::vector<float> axis_x(n), axis_y(n);
         ProjectedPoints3 projected;
-        project(points_.points, pose, kCamera, RowMotion(), projected);
+        project(points_.points, pose, kHalfCamera, RowMotion(), projected);
         const Eigen::Vector2f turn = imageRotation(pose);
         for (std::size_t i = 0; i < n; ++i) {
             axis_x[i] = turn.x() * points_.axis_x[i] - turn.y() * points_.axis_y[i];
@@ -170,9 +172,9 @@ Pose moved(const Pose& pose, int axis, double by) {
 PoseSystem accumulated(const World& world, const cv::Mat& image, const Pose& pose,
                        const Brightness& brightness) {
     PhotometricResiduals residuals;
-    residuals.evaluate(world.points, 0, image, kCamera, pose, RowMotion(), brightness);
+    residuals.evaluate(world.points, 0, image, kHalfCamera, pose, RowMotion(), brightness);
     kernels::NormalEquations equations;
-    residuals.accumulate(world.points, 0, kCamera, 1, equations);
+    residuals.accumulate(world.points, 0, kHalfCamera, 1, equations);
     PoseSystem system;
     system.add(equations);
     return system;
@@ -232,10 +234,10 @@ TEST_P(Gains, AFewStepsFindThePoseAndTheBrightness) {
         const Pose T_world_camera = testing::randomPose(random, 0.01, 0.005);
         const cv::Mat image = seenFrom(T_world_camera);
         PhotometricResiduals residuals;
-        PhotometricTerm photometric(residuals, world_.points, 0, image, kCamera,
+        PhotometricTerm photometric(residuals, world_.points, 0, image, kHalfCamera,
                                     {0.97 * GetParam(), brightness().offset});  // of the frame before
         DampingTerm damping(0.4, 0.2);
-        const GaussNewtonOptions options{12, kCamera.fx, 2};
+        const GaussNewtonOptions options{12, kHalfCamera.fx, 2};
         const GaussNewtonResult found =
             minimise(Pose::Identity(), RollingShutter(), {&photometric, &damping}, options);
         EXPECT_TRUE(found.complete);
@@ -255,14 +257,14 @@ TEST(Photometric, RepeatedStepsFindTheTruthFromANewView) {
     std::mt19937 random(113);
     for (int repeat = 0; repeat < 5; ++repeat) {
         const Pose T_world_camera = testing::randomPose(random, 0.03, 0.02);
-        const cv::Mat image = world.plane.grey(kCamera, T_world_camera);
+        const cv::Mat image = world.plane.grey(kHalfCamera, T_world_camera);
         const Pose truth = T_world_camera.inverse();
         Pose pose = Pose::Identity();
         PhotometricResiduals residuals;
         for (int i = 0; i < 12; ++i) {
-            residuals.evaluate(world.points, 0, image, kCamera, pose, RowMotion(), {});
+            residuals.evaluate(world.points, 0, image, kHalfCamera, pose, RowMotion(), {});
             kernels::NormalEquations equations;
-            residuals.accumulate(world.points, 0, kCamera, 1, equations);
+            residuals.accumulate(world.points, 0, kHalfCamera, 1, equations);
             PoseSystem system;
             system.add(equations);
             pose = poseIncrement(system.solve()) * pose;
@@ -281,7 +283,7 @@ TEST(Photometric, BrightnessFitRecoversGainAndOffset) {
         PhotometricResiduals residuals;
         Brightness fitted;
         for (int i = 0; i < 3; ++i) {
-            residuals.evaluate(world.points, 0, image, kCamera, Pose::Identity(), RowMotion(), fitted);
+            residuals.evaluate(world.points, 0, image, kHalfCamera, Pose::Identity(), RowMotion(), fitted);
             fitted = residuals.fitBrightness(world.points, 0, fitted);
         }
         EXPECT_NEAR(fitted.gain, gain, 0.01);
@@ -297,7 +299,7 @@ TEST(Photometric, WithoutContrastTheBrightnessStaysAsItWas) {
         patch.sum_squared = 80000;
     }
     PhotometricResiduals residuals;
-    residuals.evaluate(world.points, 0, world.pyramid.level(0), kCamera, Pose::Identity(), RowMotion(),
+    residuals.evaluate(world.points, 0, world.pyramid.level(0), kHalfCamera, Pose::Identity(), RowMotion(),
                        {1.3, 7});
     const Brightness fitted = residuals.fitBrightness(world.points, 0, {1.3, 7});
     EXPECT_EQ(fitted.gain, 1.3);
@@ -309,10 +311,10 @@ TEST(Photometric, NothingVisibleCarriesNoInformation) {
     Pose away = Pose::Identity();
     away.translation().x() = 50;
     PhotometricResiduals residuals;
-    residuals.evaluate(world.points, 0, world.pyramid.level(0), kCamera, away, RowMotion(), {});
+    residuals.evaluate(world.points, 0, world.pyramid.level(0), kHalfCamera, away, RowMotion(), {});
     EXPECT_EQ(residuals.numVisible(), 0);
     kernels::NormalEquations equations;
-    residuals.accumulate(world.points, 0, kCamera, 1, equations);
+    residuals.accumulate(world.points, 0, kHalfCamera, 1, equations);
     for (const double value : equations.hessian) EXPECT_EQ(value, 0);
     for (const double value : equations.gradient) EXPECT_EQ(value, 0);
 }
@@ -347,13 +349,13 @@ TEST(CoarseTracker, FindsALargeMotionOverThePyramidWithChangedBrightness) {
     std::mt19937 random(114);
     for (int repeat = 0; repeat < 5; ++repeat) {
         const Pose T_world_camera = testing::randomPose(random, 0.06, 0.04);
-        cv::Mat image = world.plane.grey(kCamera, T_world_camera);
+        cv::Mat image = world.plane.grey(kHalfCamera, T_world_camera);
         image.convertTo(image, CV_8U, 0.8, 15);
         ImagePyramid pyramid;
         pyramid.build(image, 3);
         CoarseTracker tracker{CoarseOptions()};
         const CoarseResult result =
-            tracker.track(keyframe, pyramid, kCamera, RollingShutter(), {Pose::Identity()}, Brightness());
+            tracker.track(keyframe, pyramid, kHalfCamera, RollingShutter(), {Pose::Identity()}, Brightness());
         ASSERT_TRUE(result.converged);
         const Pose error = result.T_current_keyframe * T_world_camera;
         EXPECT_LT(error.translation().norm(), 3e-3);
@@ -369,7 +371,7 @@ TEST(CoarseTracker, TooFewPointsDoNotConvergeAndKeepTheGuess) {
     keyframe.median_depth = 2;
     Pose guess = Pose::Identity();
     guess.translation().x() = 0.1;
-    const CoarseResult result = CoarseTracker{CoarseOptions()}.track(keyframe, world.pyramid, kCamera,
+    const CoarseResult result = CoarseTracker{CoarseOptions()}.track(keyframe, world.pyramid, kHalfCamera,
                                                                      RollingShutter(), {guess}, Brightness());
     EXPECT_FALSE(result.converged);
     EXPECT_EQ((result.T_current_keyframe.matrix() - guess.matrix()).norm(), 0);

@@ -6,17 +6,11 @@
 #include <random>
 
 #include "camera/undistorter.h"
+#include "core/support/kernel_tables.h"
 #include "edges/gradient.h"
-#include "kernels/kernels.h"
 
 namespace roevo {
 namespace {
-
-std::vector<const kernels::Table*> tables() {
-    std::vector<const kernels::Table*> all{&kernels::baseline()};
-    if (kernels::avx2() != nullptr) all.push_back(kernels::avx2());
-    return all;
-}
 
 cv::Mat noise(int width, int height, int levels = 256) {
     cv::Mat image(height, width, CV_8UC1);

@@ -9,7 +9,7 @@ namespace {
 using testing::Sequence;
 using testing::simulate;
 
-const Sequence& room() {
+const Sequence& livingroom() {
     static const Sequence sequence = [] {
         simulator::SimulationOptions options;
         options.useKinectNoise();
@@ -29,7 +29,7 @@ const Sequence& otherRoom() {
 
 class Relocalisation : public ::testing::TestWithParam<Mode> {
   protected:
-    Relocalisation() : odometry_(room().camera, options(), room().start()) {}
+    Relocalisation() : odometry_(livingroom().camera, options(), livingroom().start()) {}
     static OdometryOptions options() {
         OdometryOptions options;
         options.mode = GetParam();
@@ -45,9 +45,9 @@ class Relocalisation : public ::testing::TestWithParam<Mode> {
         EXPECT_TRUE(result.covariance.allFinite());
         return result;
     }
-    FrameResult showRoom(std::size_t i) { return show(room().frames[i]); }
+    FrameResult showRoom(std::size_t i) { return show(livingroom().frames[i]); }
     static double errorOf(const Pose& pose, std::size_t i) {
-        return (pose.translation() - room().truth[i].T_world_camera.translation()).norm();
+        return (pose.translation() - livingroom().truth[i].T_world_camera.translation()).norm();
     }
     double time_ = 100;
     Odometry odometry_;

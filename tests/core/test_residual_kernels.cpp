@@ -287,7 +287,7 @@ TEST_P(ResidualKernels, FollowedMatchesMoveAlongTheirEdgesToTheNearestPoint) {
 }
 
 /// Photometric points with what their patches came to, some of them outside the image.
-struct PatchScene {
+struct ResidualScene {
     std::mt19937 random{9};
     std::vector<Patch> patches;
     std::vector<PatchResidual> residuals;
@@ -297,7 +297,7 @@ struct PatchScene {
     PatchSums sums{};
     Rows rows;
 
-    explicit PatchScene(const Table& table) {
+    explicit ResidualScene(const Table& table) {
         for (std::size_t i = 0; i < kPadded; ++i) {
             const double angle = uniform(random, -4, 4);
             axis_x.push_back(static_cast<float>(std::cos(angle)));
@@ -325,7 +325,7 @@ struct PatchScene {
 };
 
 TEST_P(ResidualKernels, PatchesAreWeighedSummedAndLifted) {
-    const PatchScene s(table());
+    const ResidualScene s(table());
     double weights = 0, slopes = 0, reference = 0, squares = 0, image = 0, cross = 0;
     for (std::size_t i = 0; i < kPadded; ++i) {
         const PatchResidual& residual = s.residuals[i];
@@ -369,7 +369,7 @@ TEST(ResidualKernelTables, Avx2GivesTheSameBytesAsTheBaseline) {
     if (avx2() == nullptr) GTEST_SKIP() << "this processor has no AVX2";
     const Scene scene;
     const Results a(baseline(), scene), b(*avx2(), scene);
-    const PatchScene c(baseline()), d(*avx2());
+    const ResidualScene c(baseline()), d(*avx2());
     const auto same = [](const Floats& one, const Floats& other) {
         return one.size() == other.size() &&
                std::memcmp(one.data(), other.data(), one.size() * sizeof(float)) == 0;

@@ -13,14 +13,14 @@ namespace {
 
 using testing::uniform;
 
-const PinholeCamera kCamera{640, 480, 525, 525, 319.5, 239.5, {}};
+const PinholeCamera kPlainCamera{640, 480, 525, 525, 319.5, 239.5, {}};
 
 Eigen::Vector2d projectOne(const Pose& pose, const RowMotion& rows, const Eigen::Vector3d& point) {
     alignas(32) float x[8] = {}, y[8] = {}, z[8] = {}, ox[8], oy[8], oz[8], u[8], v[8];
     x[0] = static_cast<float>(point.x());
     y[0] = static_cast<float>(point.y());
     z[0] = static_cast<float>(point.z());
-    kernels::baseline().project(makeProjection(pose, kCamera, rows), x, y, z, 8, {ox, oy, oz, u, v});
+    kernels::baseline().project(makeProjection(pose, kPlainCamera, rows), x, y, z, 8, {ox, oy, oz, u, v});
     return {static_cast<double>(u[0]), static_cast<double>(v[0])};
 }
 
@@ -42,8 +42,8 @@ TEST(RowMotion, APointBroughtToTheReferenceRowIsSeenWhereItWasSeen) {
         const RowMotion rows = randomMotion(random);
         const double u = uniform(random, 20, 620), v = uniform(random, 20, 460),
                      depth = uniform(random, 0.8, 5);
-        const Eigen::Vector3d at_reference = rows.toReference(kCamera.backProject(u, v, depth), v);
-        moved = std::max(moved, (kCamera.project(at_reference) - Eigen::Vector2d(u, v)).norm());
+        const Eigen::Vector3d at_reference = rows.toReference(kPlainCamera.backProject(u, v, depth), v);
+        moved = std::max(moved, (kPlainCamera.project(at_reference) - Eigen::Vector2d(u, v)).norm());
         worst = std::max(worst,
                          (projectOne(Pose::Identity(), rows, at_reference) - Eigen::Vector2d(u, v)).norm());
     }
@@ -60,7 +60,7 @@ TEST(RowMotion, AtOrdinarySpeedTheRoundTripIsExactToATwentiethOfAPixel) {
         rows.turn *= 0.3;
         const double u = uniform(random, 20, 620), v = uniform(random, 20, 460),
                      depth = uniform(random, 1, 5);
-        const Eigen::Vector3d at_reference = rows.toReference(kCamera.backProject(u, v, depth), v);
+        const Eigen::Vector3d at_reference = rows.toReference(kPlainCamera.backProject(u, v, depth), v);
         EXPECT_LT((projectOne(Pose::Identity(), rows, at_reference) - Eigen::Vector2d(u, v)).norm(), 0.05);
     }
 }
@@ -74,16 +74,16 @@ TEST(RowMotion, IsWhatAMovingCameraSees) {
         rows.velocity *= 0.3;
         rows.turn *= 0.3;
         const Eigen::Vector3d point =
-            kCamera.backProject(uniform(random, 50, 590), uniform(random, 50, 430), 2);
+            kPlainCamera.backProject(uniform(random, 50, 590), uniform(random, 50, 430), 2);
         const auto poseAfter = [&](double seconds) {  // camera pose relative to the reference row's
             Vector6d xi;
             xi << rows.velocity * seconds, rows.turn * seconds;
             return poseIncrement(xi);
         };
-        Eigen::Vector2d pixel = kCamera.project(point);
+        Eigen::Vector2d pixel = kPlainCamera.project(point);
         for (int k = 0; k < 20; ++k) {
             const double seconds = (pixel.y() - rows.reference_row) * rows.seconds_per_row;
-            pixel = kCamera.project(poseAfter(seconds).inverse() * point);
+            pixel = kPlainCamera.project(poseAfter(seconds).inverse() * point);
         }
         EXPECT_LT((projectOne(Pose::Identity(), rows, point) - pixel).norm(), 0.05);
     }
@@ -95,18 +95,18 @@ TEST(RowMotion, NoReadoutTimeChangesNothing) {
     rows.seconds_per_row = 0;
     const Eigen::Vector3d point(0.3, -0.2, 1.7);
     EXPECT_EQ(rows.toReference(point, 17), point);
-    EXPECT_LT((projectOne(Pose::Identity(), rows, point) - kCamera.project(point)).norm(), 1e-3);
+    EXPECT_LT((projectOne(Pose::Identity(), rows, point) - kPlainCamera.project(point)).norm(), 1e-3);
 }
 
 TEST(RowMotion, PyramidLevelsSeeTheSameShift) {
     std::mt19937 random(95);
     const RowMotion rows = randomMotion(random);
-    const Eigen::Vector3d point = kCamera.backProject(500, 400, 2);
-    const Eigen::Vector2d shift = projectOne(Pose::Identity(), rows, point) - kCamera.project(point);
+    const Eigen::Vector3d point = kPlainCamera.backProject(500, 400, 2);
+    const Eigen::Vector2d shift = projectOne(Pose::Identity(), rows, point) - kPlainCamera.project(point);
     for (int level = 1; level < 4; ++level) {
-        const PinholeCamera camera = kCamera.atPyramidLevel(level);
+        const PinholeCamera camera = kPlainCamera.atPyramidLevel(level);
         const RowMotion scaled = rows.atPyramidLevel(level);
-        EXPECT_NEAR(scaled.seconds_per_row * camera.height, rows.seconds_per_row * kCamera.height, 1e-9);
+        EXPECT_NEAR(scaled.seconds_per_row * camera.height, rows.seconds_per_row * kPlainCamera.height, 1e-9);
         alignas(32) float x[8] = {}, y[8] = {}, z[8] = {}, ox[8], oy[8], oz[8], u[8], v[8];
         x[0] = static_cast<float>(point.x());
         y[0] = static_cast<float>(point.y());

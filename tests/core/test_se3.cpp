@@ -6,12 +6,9 @@
 namespace roevo {
 namespace {
 
+using testing::difference;
 using testing::randomPose;
 using testing::uniform;
-
-double difference(const Pose& a, const Pose& b) {
-    return (a.matrix() - b.matrix()).norm();
-}
 
 TEST(Se3, IncrementOfZeroIsIdentity) {
     EXPECT_EQ(difference(poseIncrement(Vector6d::Zero()), Pose::Identity()), 0);

@@ -8,7 +8,7 @@
 namespace roevo {
 namespace {
 
-constexpr int kFrames = 130, kBorder = 2;  // px; as simulator::SimulatedFrame::shadow_border
+constexpr int kShadowFrames = 130, kBorder = 2;  // px; as simulator::SimulatedFrame::shadow_border
 
 /// Whether the pixel lies within kBorder of where one object ends and another begins.
 bool onObjectBorder(const cv::Mat& objects, int u, int v) {
@@ -44,7 +44,7 @@ TEST(ShadowEdges, ThoseOfMovingShadowsAreKeptOutAndOthersAreNot) {
     std::map<double, Masks> masks;  // by the stamp of the frame
     Odometry odometry(simulator.camera(), OdometryOptions());
     double longest_readout = 0;
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kShadowFrames; ++i) {
         const simulator::SimulatedFrame frame = simulator.frame(i);
         (void)odometry.processFrame({frame.timestamp, frame.grey, frame.depth_noisy, cv::Mat()});
         longest_readout = std::max(longest_readout, std::abs(odometry.readoutTime()));

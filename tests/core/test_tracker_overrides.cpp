@@ -12,16 +12,16 @@
 namespace roevo {
 namespace {
 
-const testing::Sequence& room() {
+const testing::Sequence& recording() {
     static const testing::Sequence sequence = testing::simulate(testing::smallRoom(), 30);
     return sequence;
 }
 
 /// @param tracker  nullptr: ROEVO's own
 std::vector<FrameResult> run(const OdometryOptions& options, std::unique_ptr<Tracker> tracker = nullptr) {
-    Odometry odometry(room().camera, options, room().start(), std::move(tracker));
+    Odometry odometry(recording().camera, options, recording().start(), std::move(tracker));
     std::vector<FrameResult> results;
-    for (const RgbdFrame& frame : room().frames) results.push_back(odometry.processFrame(frame));
+    for (const RgbdFrame& frame : recording().frames) results.push_back(odometry.processFrame(frame));
     return results;
 }
 
@@ -41,7 +41,7 @@ void expectSame(const std::vector<FrameResult>& a, const std::vector<FrameResult
 class OwnRefinement : public Tracker {
   public:
     OwnRefinement(const OdometryOptions& options, int& calls)
-        : Tracker(room().camera, options), fine_(camera_, options_), calls_(calls) {}
+        : Tracker(recording().camera, options), fine_(camera_, options_), calls_(calls) {}
 
   protected:
     FineResult refine(const Keyframe& reference, const Frame& frame, const Pose& T_start,
@@ -73,7 +73,7 @@ TEST(TrackerOverrides, FineTrackingPutInFromOutsideChangesNothing) {
 class OwnAlignment : public Tracker {
   public:
     OwnAlignment(const OdometryOptions& options, int& calls)
-        : Tracker(room().camera, options), coarse_(options_.coarse), calls_(calls) {}
+        : Tracker(recording().camera, options), coarse_(options_.coarse), calls_(calls) {}
 
   protected:
     CoarseResult align(const Keyframe& reference, const Frame& frame, const RollingShutter& shutter,
@@ -101,7 +101,7 @@ TEST(TrackerOverrides, CoarseTrackingPutInFromOutsideChangesNothing) {
 /// Chooses the points itself.
 class OwnPoints : public Tracker {
   public:
-    explicit OwnPoints(const OdometryOptions& options) : Tracker(room().camera, options) {}
+    explicit OwnPoints(const OdometryOptions& options) : Tracker(recording().camera, options) {}
     PhotometricPoints choosePoints(const EdgePoints3D& edges, const Frame& frame,
                                    const RowMotion&) const override {
         return samplePhotometricPoints(edges, frame.pyramid, options_.coarse.max_points);
@@ -119,7 +119,7 @@ class FixedRefinement : public Tracker {
   public:
     /// @param step  from where refining starts to its result
     FixedRefinement(const OdometryOptions& options, const Vector6d& step, bool converged)
-        : Tracker(room().camera, options), step_(step), converged_(converged) {}
+        : Tracker(recording().camera, options), step_(step), converged_(converged) {}
 
   protected:
     FineResult refine(const Keyframe&, const Frame&, const Pose& T_start, const PosePrior&,
@@ -157,7 +157,7 @@ TEST(TrackerOverrides, APoseThatLeavesTheEdgesIsNotTracked) {
 /// Has nothing to align.
 class NoPoints : public Tracker {
   public:
-    explicit NoPoints(const OdometryOptions& options) : Tracker(room().camera, options) {}
+    explicit NoPoints(const OdometryOptions& options) : Tracker(recording().camera, options) {}
     PhotometricPoints choosePoints(const EdgePoints3D&, const Frame&, const RowMotion&) const override {
         return {};
     }

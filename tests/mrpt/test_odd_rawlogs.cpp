@@ -30,13 +30,10 @@ using test::errorOf;
 using test::makeScan;
 using test::patternColour;
 using test::patternDepth;
+using test::same;
 using test::smallCamera;
 
 #define EXPECT_CONTAINS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
-
-bool same(const cv::Mat& a, const cv::Mat& b) {
-    return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
-}
 
 CObservation3DRangeScan::Ptr scanAt(int i, const std::string& label = "RGBD") {
     return makeScan(1000 + i, smallCamera(), patternDepth(smallCamera(), i), patternColour(smallCamera(), i),

@@ -27,6 +27,7 @@ using test::errorOf;
 using test::makeScan;
 using test::patternColour;
 using test::patternDepth;
+using test::same;
 using test::smallCamera;
 
 constexpr double kStart = 1305031453.359684;
@@ -40,10 +41,6 @@ void writeFrames(const std::string& path, int count, RawlogWriterOptions options
     for (int i = 0; i < count; i++)
         writer.add(stamp(i), patternDepth(smallCamera(), i), patternColour(smallCamera(), i));
     writer.finish();
-}
-
-bool same(const cv::Mat& a, const cv::Mat& b) {
-    return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
 void expectFrame(const mrpt::obs::CObservation3DRangeScan& scan, int i, float units) {

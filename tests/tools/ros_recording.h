@@ -115,6 +115,13 @@ std::string writeFolder(const std::string& path, const Recording& recording) {
     return path;
 }
 
+/// The bytes of an image file. @param ending  such as ".png"
+inline std::string encoded(const std::string& ending, const cv::Mat& image) {
+    std::vector<std::uint8_t> bytes;
+    cv::imencode(ending, image, bytes);
+    return {bytes.begin(), bytes.end()};
+}
+
 inline const std::vector<BagKind> kBagKinds = {
     {"Ros1", Encoding::kRos1, ".bag", &writeRos1<'n'>},
     {"Ros1Lz4", Encoding::kRos1, ".bag", &writeRos1<'l'>},

@@ -137,12 +137,6 @@ TEST(RosBags, TopicsAreForBagsOnly) {
 using Change = void (*)(RecordedMessage& message, const cv::Mat& colour, const cv::Mat& depth_u16,
                         double stamp);
 
-std::string encoded(const std::string& ending, const cv::Mat& image) {
-    std::vector<std::uint8_t> bytes;
-    cv::imencode(ending, image, bytes);
-    return {bytes.begin(), bytes.end()};
-}
-
 cv::Mat millimetres(const cv::Mat& depth_u16) {
     cv::Mat out;
     depth_u16.convertTo(out, CV_16UC1, 0.2);

@@ -16,12 +16,6 @@ namespace {
 
 using namespace test;
 
-std::string encoded(const std::string& ending, const cv::Mat& image) {
-    std::vector<std::uint8_t> bytes;
-    cv::imencode(ending, image, bytes);
-    return {bytes.begin(), bytes.end()};
-}
-
 class RosMessages : public testing::TestWithParam<Encoding> {
   protected:
     Wire wire() const { return GetParam() == Encoding::kRos1 ? Wire::kPacked : Wire::kCdr; }

@@ -9,8 +9,8 @@
 namespace roevo {
 namespace {
 
-constexpr int kWidth = 960, kCurveHeight = 340, kBoxHeight = 70, kBoxHead = 70;  // px
-constexpr double kMinError = 1e-4;  // of any unit: what is less has no logarithm worth showing
+constexpr int kDistributionWidth = 960, kCurveHeight = 340, kBoxHeight = 70, kBoxHead = 70;  // px
+constexpr double kLeastValue = 1e-4;  // of any unit: what is less has no logarithm worth showing
 
 // By method: figures in ascending order, and how many runs there are.
 struct Sample {
@@ -27,7 +27,7 @@ std::vector<Sample> samplesOf(const Metric& metric, const std::vector<SequenceRe
             if (!result.sequence->runs[i].skipped.empty()) continue;
             ++sample.runs;
             if (const auto value = metricOf(metric, result, i))
-                sample.values.push_back(std::max(*value, kMinError));
+                sample.values.push_back(std::max(*value, kLeastValue));
         }
     for (Sample& sample : samples) std::sort(sample.values.begin(), sample.values.end());
     return samples;
@@ -99,7 +99,7 @@ Figure boxFigure(const Metric& metric, const std::vector<SequenceResults>& resul
         plot += (plot.empty() ? "plot $" : ", $") + block + " using 1:2 with points pt 6 ps 0.6 lc rgb '" +
                 style.colour + "'";
     }
-    return drawFigure(script + plot + "\n", kWidth, kBoxHead + kBoxHeight * count,
+    return drawFigure(script + plot + "\n", kDistributionWidth, kBoxHead + kBoxHeight * count,
                       metric.title + ", a box for each method",
                       "Box: half of the recordings; whiskers: 5 and 95 %; points: those beyond.");
 }
@@ -126,7 +126,7 @@ Figure cumulativeFigure(const Metric& metric, const std::vector<SequenceResults>
         lines.emplace_back(legend.methods[m].label, legend.styles[m]);
     }
     Figure figure = drawFigure(
-        script + plot + "\n", kWidth, kCurveHeight, metric.title + ", cumulative",
+        script + plot + "\n", kDistributionWidth, kCurveHeight, metric.title + ", cumulative",
         "Share of the recordings whose error is at most so much. One without a result never gets there.");
     figure.lines = lines;
     return figure;

@@ -14,7 +14,7 @@ namespace roevo {
 namespace {
 
 constexpr std::size_t kMaxIntervals = 800;  // of a line, each with its largest error
-constexpr int kWidth = 960, kHeight = 300, kAxesHeight = 480, kDriftWidth = 480;  // px
+constexpr int kErrorWidth = 960, kHeight = 300, kAxesHeight = 480, kDriftWidth = 480;  // px
 const std::string kMargins = "unset key\nset lmargin 10\nset rmargin 2\nset tmargin 1\nset bmargin 2.6\n";
 constexpr double kMinError = 1e-3;  // cm, deg: what is less is of no interest, and has no logarithm
 constexpr double kAxesFoot = 0.08, kAxesShare = (1 - kAxesFoot) / 3;  // of the picture with the axes
@@ -26,7 +26,7 @@ const Figure kNothing{"", "", "No run has errors that could be drawn."};
 
 using Rows = std::vector<std::vector<double>>;
 
-struct Line {
+struct ErrorLine {
     std::size_t run;
     std::string name;
     LineStyle style;
@@ -49,16 +49,16 @@ Rows thinned(const std::vector<double>& times, const std::vector<double>& values
     return rows;
 }
 
-std::vector<Line> linesOf(const SequenceResults& results, const Legend& legend) {
+std::vector<ErrorLine> linesOf(const SequenceResults& results, const Legend& legend) {
     const auto& reference = results.sequence->reference;
-    std::vector<Line> lines;
+    std::vector<ErrorLine> lines;
     double start = INFINITY;
     for (std::size_t i = 0; i < results.evaluated.size(); ++i) {
         if (!results.evaluated[i].evaluation) continue;
         const Evaluation& evaluation = *results.evaluated[i].evaluation;
         const MethodRun& run = results.sequence->runs[i];
         const std::size_t m = legend.indexOf(run.method);
-        Line line{i, legend.methods[m].label, legend.styles[m], {}, {}, {}, {}};
+        ErrorLine line{i, legend.methods[m].label, legend.styles[m], {}, {}, {}, {}};
         for (const PosePair& pair : evaluation.pairs) {
             const StampedPose& pose = run.trajectory[pair.estimate];
             const Pose estimate = evaluation.ate.T_reference_estimate * pose.T_world_camera;
@@ -73,10 +73,10 @@ std::vector<Line> linesOf(const SequenceResults& results, const Legend& legend) 
         start = std::min(start, line.times.front());
         lines.push_back(std::move(line));
     }
-    for (Line& line : lines)
+    for (ErrorLine& line : lines)
         for (double& time : line.times) time -= start;
     std::stable_sort(lines.begin(), lines.end(),
-                     [](const Line& a, const Line& b) { return a.style.width < b.style.width; });
+                     [](const ErrorLine& a, const ErrorLine& b) { return a.style.width < b.style.width; });
     return lines;
 }
 
@@ -97,14 +97,15 @@ std::string ticsOf(char axis, double low, double high) {
 }
 
 // All errors, with some room around them.
-std::pair<double, double> rangeOf(const std::vector<Line>& lines, std::vector<double> Line::*values) {
+std::pair<double, double> rangeOf(const std::vector<ErrorLine>& lines,
+                                  std::vector<double> ErrorLine::*values) {
     std::vector<double> all;
-    for (const Line& line : lines) all.insert(all.end(), (line.*values).begin(), (line.*values).end());
+    for (const ErrorLine& line : lines) all.insert(all.end(), (line.*values).begin(), (line.*values).end());
     const double low = percentile(all, 0);
     return {low / 1.2, std::max(percentile(all, 1) * 1.2, 10 * low)};
 }
 
-Rows cumulative(const Line& line) {
+Rows cumulative(const ErrorLine& line) {
     std::vector<double> errors = line.errors;
     std::sort(errors.begin(), errors.end());
     Rows rows;
@@ -117,9 +118,9 @@ std::string rangeText(double low, double high) {
     return "[" + exactNumber(low) + ":" + exactNumber(high) + "]\n";
 }
 
-std::string timeRange(const std::vector<Line>& lines) {
+std::string timeRange(const std::vector<ErrorLine>& lines) {
     double end = 1e-3;
-    for (const Line& line : lines) end = std::max(end, line.times.back());
+    for (const ErrorLine& line : lines) end = std::max(end, line.times.back());
     return "set xrange " + rangeText(0, end);
 }
 
@@ -129,7 +130,7 @@ std::string logarithmic(char axis, std::pair<double, double> range) {
            rangeText(range.first, range.second) + ticsOf(axis, range.first, range.second);
 }
 
-std::string plotOf(const std::vector<Line>& lines, const std::function<Rows(const Line&)>& rows,
+std::string plotOf(const std::vector<ErrorLine>& lines, const std::function<Rows(const ErrorLine&)>& rows,
                    const std::string& with = "lines ") {
     std::string data, plot;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -141,22 +142,23 @@ std::string plotOf(const std::vector<Line>& lines, const std::function<Rows(cons
     return data + plot + "\n";
 }
 
-Figure draw(const std::vector<Line>& lines, const std::string& script, int width, int height,
+Figure draw(const std::vector<ErrorLine>& lines, const std::string& script, int width, int height,
             const std::string& name, const std::string& note = {}) {
     Figure figure = drawFigure(script, width, height, name, note);
-    for (const Line& line : lines) figure.lines.emplace_back(line.name, line.style);
+    for (const ErrorLine& line : lines) figure.lines.emplace_back(line.name, line.style);
     return figure;
 }
 
-Figure overTime(const SequenceResults& results, const Legend& legend, std::vector<double> Line::*values,
+Figure overTime(const SequenceResults& results, const Legend& legend, std::vector<double> ErrorLine::*values,
                 const std::string& what, const std::string& unit, const std::string& note = {}) {
-    const std::vector<Line> lines = linesOf(results, legend);
+    const std::vector<ErrorLine> lines = linesOf(results, legend);
     if (lines.empty()) return kNothing;
     const std::string script =
         kMargins + timeRange(lines) + "set xlabel 'time [s]' offset 0,0.4\nset ylabel '" + what + " [" +
         unit + "]'\n" + logarithmic('y', rangeOf(lines, values)) +
-        plotOf(lines, [&](const Line& line) { return thinned(line.times, line.*values); });
-    return draw(lines, script, kWidth, kHeight, results.sequence->name + ": " + what + " over time", note);
+        plotOf(lines, [&](const ErrorLine& line) { return thinned(line.times, line.*values); });
+    return draw(lines, script, kErrorWidth, kHeight, results.sequence->name + ": " + what + " over time",
+                note);
 }
 
 // The largest of 1, 2, 5 times a power of ten up to the extent: three to five tics from -extent to extent.
@@ -166,7 +168,7 @@ double ticStep(double extent) {
 }
 
 // The largest error along an axis, cm.
-double extentOf(const Line& line) {
+double extentOf(const ErrorLine& line) {
     double extent = kMinError;
     for (const auto& axis : line.axes)
         for (const double error : axis) extent = std::max(extent, std::abs(error));
@@ -191,7 +193,7 @@ Drift driftOf(const SequenceResults& results, std::size_t run) {
     return drift;
 }
 
-Figure driftFigure(const std::vector<Line>& lines, const std::vector<Drift>& drifts, Rows Drift::*rows,
+Figure driftFigure(const std::vector<ErrorLine>& lines, const std::vector<Drift>& drifts, Rows Drift::*rows,
                    const std::string& label, const std::string& name) {
     double low = INFINITY, high = 0, shortest = INFINITY, longest = 0;
     for (const Drift& drift : drifts)
@@ -205,28 +207,28 @@ Figure driftFigure(const std::vector<Line>& lines, const std::vector<Drift>& dri
         logarithmic('y', {low / 1.3, high * 1.3}) +
         "set xlabel 'path length [m]' offset 0,0.4\nset ylabel '" + label + "'\n" +
         plotOf(
-            lines, [&](const Line&) { return drifts[i++].*rows; }, "linespoints pt 7 ps 0.4 ");
+            lines, [&](const ErrorLine&) { return drifts[i++].*rows; }, "linespoints pt 7 ps 0.4 ");
     return draw(lines, script, kDriftWidth, kHeight, name);
 }
 
 }  // namespace
 
 Figure errorFigure(const SequenceResults& results, const Legend& legend) {
-    return overTime(results, legend, &Line::errors, "position error", "cm");
+    return overTime(results, legend, &ErrorLine::errors, "position error", "cm");
 }
 
 Figure angularErrorFigure(const SequenceResults& results, const Legend& legend) {
     return overTime(
-        results, legend, &Line::angles, "angular error", "deg",
+        results, legend, &ErrorLine::angles, "angular error", "deg",
         "Angle between the estimated and the true orientation. A constant part means little, for the "
         "alignment fits positions only; look at the changes.");
 }
 
 Figure axisErrorFigure(const SequenceResults& results, const Legend& legend) {
-    const std::vector<Line> lines = linesOf(results, legend);
+    const std::vector<ErrorLine> lines = linesOf(results, legend);
     if (lines.empty()) return kNothing;
     std::vector<double> extents;
-    for (const Line& line : lines) extents.push_back(extentOf(line));
+    for (const ErrorLine& line : lines) extents.push_back(extentOf(line));
     double extent = 0;  // of all but those that would squash the others
     for (const double each : extents)
         if (each <= kClipAt * percentile(extents, 0.5)) extent = std::max(extent, 1.1 * each);
@@ -242,31 +244,31 @@ Figure axisErrorFigure(const SequenceResults& results, const Legend& legend) {
             script += "set origin 0,0\nset size 1," + exactNumber(kAxesFoot + kAxesShare) +
                       "\nset bmargin 2.6\nset format x '%g'\nset xlabel 'time [s]' offset 0,0.4\n";
         script += std::string("set ylabel '") + "xyz"[k] + " [cm]'\n" +
-                  plotOf(lines, [&](const Line& line) { return thinned(line.times, line.axes[k]); });
+                  plotOf(lines, [&](const ErrorLine& line) { return thinned(line.times, line.axes[k]); });
     }
-    for (const Line& line : lines)
+    for (const ErrorLine& line : lines)
         if (extentOf(line) > extent) leaving += (leaving.empty() ? "" : ", ") + line.name;
-    return draw(lines, script + "unset multiplot\n", kWidth, kAxesHeight,
+    return draw(lines, script + "unset multiplot\n", kErrorWidth, kAxesHeight,
                 results.sequence->name + ": position error along the axes over time",
                 "Estimate minus ground truth along the axes of the ground truth’s world." +
                     (leaving.empty() ? "" : " Leaving the picture: " + leaving));
 }
 
 Figure cumulativeErrorFigure(const SequenceResults& results, const Legend& legend) {
-    const std::vector<Line> lines = linesOf(results, legend);
+    const std::vector<ErrorLine> lines = linesOf(results, legend);
     if (lines.empty()) return kNothing;
-    const std::string script = kMargins + logarithmic('x', rangeOf(lines, &Line::errors)) +
+    const std::string script = kMargins + logarithmic('x', rangeOf(lines, &ErrorLine::errors)) +
                                "set xlabel 'position error [cm]' offset 0,0.4\nset ylabel 'poses [%]'\n"
                                "set yrange [0:100]\n" +
                                plotOf(lines, cumulative);
-    return draw(lines, script, kWidth, kHeight, results.sequence->name + ": cumulative position error",
+    return draw(lines, script, kErrorWidth, kHeight, results.sequence->name + ": cumulative position error",
                 "Share of the paired poses whose error is at most so much.");
 }
 
 std::vector<Figure> relativeErrorFigures(const SequenceResults& results, const Legend& legend) {
-    std::vector<Line> lines;
+    std::vector<ErrorLine> lines;
     std::vector<Drift> drifts;
-    for (Line& line : linesOf(results, legend)) {
+    for (ErrorLine& line : linesOf(results, legend)) {
         Drift drift = driftOf(results, line.run);
         if (drift.translation.empty()) continue;
         lines.push_back(std::move(line));

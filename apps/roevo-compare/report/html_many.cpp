@@ -128,7 +128,7 @@ std::string worst(const std::vector<SequenceResults>& results, const Legend& leg
            setTable(table, "worst", false) + "</section>\n";
 }
 
-std::string ranking(const std::vector<SequenceResults>& results, const Legend& legend) {
+std::string rankingOfMany(const std::vector<SequenceResults>& results, const Legend& legend) {
     return "<section id=\"Ranking\">\n<h2>Ranking</h2>\n<p>Number of recordings on which a method is among "
            "the "
            "first 1, 2 and 3, and its mean rank.</p>\n" +
@@ -151,7 +151,7 @@ std::string htmlReportOfMany(const std::vector<SequenceResults>& results, const 
                              const std::vector<SequenceResults>& baseline) {
     return pageHead() + header(results, legend, info, !baseline.empty()) + "<main>\n" +
            changesSection(results, baseline) + distributions(results, legend, files) + failures(results) +
-           worst(results, legend, folder) + ranking(results, legend) + methodList(legend) +
+           worst(results, legend, folder) + rankingOfMany(results, legend) + methodList(legend) +
            protocolSection(allPinned(results)) + repeating(info) + "</main>\n</body>\n</html>\n";
 }
 

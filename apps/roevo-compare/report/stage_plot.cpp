@@ -9,13 +9,14 @@
 namespace roevo {
 namespace {
 
-constexpr int kWidth = 960, kBarHeight = 30, kBesideHeight = 56;  // px
-constexpr std::size_t kLongestLabel = 42;                         // characters
-constexpr double kMarginByCharacter = 0.95;                       // gnuplot counts in widths of a wide one
-constexpr double kPixelsByCharacter = 6.7;                        // of a label, on the whole
-constexpr double kPixelsOfMargin = 8.4;                           // of a character of a margin
-constexpr int kRightMargin = 15;                                  // characters, for the means
-constexpr double kClipAt = 5;  // times the median bar: what is longer is cut off, so that others stay legible
+constexpr int kStageWidth = 960, kBarHeight = 30, kHeightOfRest = 56;  // px
+constexpr std::size_t kLongestLabel = 42;                              // characters
+constexpr double kMarginByCharacter = 0.95;  // gnuplot counts in widths of a wide one
+constexpr double kPixelsByLetter = 6.7;      // of a label, on the whole
+constexpr double kPixelsOfMargin = 8.4;      // of a character of a margin
+constexpr int kRightMargin = 15;             // characters, for the means
+constexpr double kClipBarAt =
+    5;  // times the median bar: what is longer is cut off, so that others stay legible
 constexpr double kMarksAt = 2;       // times the longest bar: marks that lie further out are cut off, too
 constexpr double kLeastRest = 0.02;  // share of the total that is worth a piece of the bar
 
@@ -87,7 +88,7 @@ double rightEdge(const std::vector<Bar>& bars) {
     const auto include = [&](double ms, double limit) {
         if (isTime(ms) && ms <= limit) longest = std::max(longest, ms);
     };
-    for (const double total : totals) include(total, kClipAt * percentile(totals, 0.5));
+    for (const double total : totals) include(total, kClipBarAt * percentile(totals, 0.5));
     const double limit = kMarksAt * longest;
     for (const Bar& bar : bars)
         for (const double ms : {bar.total.p95, bar.processor}) include(ms, limit);
@@ -104,8 +105,8 @@ double leftMargin(const std::vector<Bar>& bars) {
 // Up to where a bar is drawn: one that goes on beyond the edge makes room for its label there.
 double drawnEnd(const Bar& bar, double end, double left_margin) {
     if (bar.total.mean <= end) return end;
-    const double text = kPixelsByCharacter * static_cast<double>(countCharacters(labelOf(bar, end).text) + 1);
-    return end * std::max(0.1, 1 - text / (kWidth - kPixelsOfMargin * (left_margin + kRightMargin)));
+    const double text = kPixelsByLetter * static_cast<double>(countCharacters(labelOf(bar, end).text) + 1);
+    return end * std::max(0.1, 1 - text / (kStageWidth - kPixelsOfMargin * (left_margin + kRightMargin)));
 }
 
 std::string axes(const std::vector<Bar>& bars, double end) {
@@ -183,8 +184,8 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
     const double end = rightEdge(bars);
     const bool beyond =
         std::any_of(bars.begin(), bars.end(), [&](const Bar& bar) { return labelOf(bar, end).beyond; });
-    const int height = kBarHeight * static_cast<int>(bars.size()) + kBesideHeight;
-    Figure figure = drawFigure(axes(bars, end) + plotScript(bars, end), kWidth, height,
+    const int height = kBarHeight * static_cast<int>(bars.size()) + kHeightOfRest;
+    Figure figure = drawFigure(axes(bars, end) + plotScript(bars, end), kStageWidth, height,
                                results.sequence->name + ": time per frame by stage",
                                !beyond ? ""
                                        : "A bar whose mean has a ▶ goes on beyond the right edge, as do the "

@@ -10,14 +10,14 @@ namespace roevo {
 namespace {
 
 constexpr std::size_t kMaxPoints = 1500;               // of a line; more are not seen
-constexpr int kWidth = 480;                            // px
+constexpr int kViewWidth = 480;                        // px
 constexpr int kBesideWidth = 94, kBesideHeight = 76;   // px that the axes' texts take
 constexpr double kMargin = 0.12;                       // around the ground truth, as a share of its extent
 constexpr double kMinGap = 1;                          // s: within it the line goes on, whatever the rate is
 constexpr double kMinExtent = 0.02;                    // m: of a camera that stands
 constexpr double kMinAspect = 0.42, kMaxAspect = 0.8;  // height to width of a picture
 
-struct Line {
+struct ViewLine {
     std::string name;
     LineStyle style;
     std::vector<StampedPose> poses;
@@ -92,7 +92,8 @@ std::string rangeText(const Range& range, bool flipped) {
     return flipped ? "[" + high + ":" + low + "]" : "[" + low + ":" + high + "]";
 }
 
-std::string scriptFor(const View& view, const Range& right, const Range& up, const std::vector<Line>& lines) {
+std::string scriptFor(const View& view, const Range& right, const Range& up,
+                      const std::vector<ViewLine>& lines) {
     std::string script =
         "unset key\nset size ratio -1\nset border 15\nset lmargin 9\nset rmargin 2\nset tmargin "
         "1\nset bmargin 2.5\nset xtics autofreq\n";
@@ -113,15 +114,15 @@ std::string scriptFor(const View& view, const Range& right, const Range& up, con
 }
 
 // Every run that has poses, foreign methods first so that ours lie on top.
-std::vector<Line> linesOf(const SequenceResults& results, const Legend& legend, bool with_reference) {
-    std::vector<Line> lines;
+std::vector<ViewLine> linesOf(const SequenceResults& results, const Legend& legend, bool with_reference) {
+    std::vector<ViewLine> lines;
     for (std::size_t i = 0; i < results.evaluated.size(); ++i) {
         const MethodRun& run = results.sequence->runs[i];
         const auto& evaluation = results.evaluated[i].evaluation;
         if (!run.ok() || run.trajectory.empty() || (with_reference && !evaluation)) continue;
         if (!allFinite(run.trajectory)) continue;
         const std::size_t m = legend.indexOf(run.method);
-        Line line{legend.methods[m].label, legend.styles[m], {}};
+        ViewLine line{legend.methods[m].label, legend.styles[m], {}};
         if (with_reference) {
             line.poses = aligned(run.trajectory, *evaluation);
         } else {
@@ -132,7 +133,7 @@ std::vector<Line> linesOf(const SequenceResults& results, const Legend& legend, 
         lines.push_back(std::move(line));
     }
     std::stable_sort(lines.begin(), lines.end(),
-                     [](const Line& a, const Line& b) { return a.style.width < b.style.width; });
+                     [](const ViewLine& a, const ViewLine& b) { return a.style.width < b.style.width; });
     return lines;
 }
 
@@ -151,9 +152,9 @@ std::vector<StampedPose> coveredReference(const SequenceResults& results) {
 }
 
 // Names of those with a point outside.
-std::string leavingNames(const std::vector<Line>& lines, const Box& box) {
+std::string leavingNames(const std::vector<ViewLine>& lines, const Box& box) {
     std::string names;
-    for (const Line& line : lines) {
+    for (const ViewLine& line : lines) {
         const bool leaves = std::any_of(line.poses.begin(), line.poses.end(), [&](const StampedPose& pose) {
             for (int k = 0; k < 3; ++k) {
                 const double x = pose.T_world_camera.translation()[k];
@@ -171,7 +172,7 @@ std::string leavingNames(const std::vector<Line>& lines, const Box& box) {
 
 std::vector<Figure> trajectoryFigures(const SequenceResults& results, const Legend& legend) {
     const std::vector<StampedPose> reference = coveredReference(results);
-    std::vector<Line> lines = linesOf(results, legend, !reference.empty());
+    std::vector<ViewLine> lines = linesOf(results, legend, !reference.empty());
     if (lines.empty()) return {{"", "", "No run has a trajectory that could be drawn."}};
 
     // What is shown is what the ground truth needs, so that one that runs away does not squash the others.
@@ -187,7 +188,7 @@ std::vector<Figure> trajectoryFigures(const SequenceResults& results, const Lege
         aspect = std::max(aspect, box[static_cast<std::size_t>(view.up)].extent() /
                                       box[static_cast<std::size_t>(view.right)].extent());
     aspect = std::min(aspect, kMaxAspect);
-    const int height = static_cast<int>((kWidth - kBesideWidth) * aspect) + kBesideHeight;
+    const int height = static_cast<int>((kViewWidth - kBesideWidth) * aspect) + kBesideHeight;
 
     Box shown = box;
     std::vector<Figure> figures;
@@ -199,8 +200,8 @@ std::vector<Figure> trajectoryFigures(const SequenceResults& results, const Lege
         shown[static_cast<std::size_t>(view.right)].widenTo(right.extent());
         shown[static_cast<std::size_t>(view.up)].widenTo(up.extent());
         const std::string name = results.sequence->name + ": trajectories, " + view.name;
-        figures.push_back(drawFigure(scriptFor(view, right, up, lines), kWidth, height, name, view.name));
-        for (const Line& line : lines) figures.back().lines.emplace_back(line.name, line.style);
+        figures.push_back(drawFigure(scriptFor(view, right, up, lines), kViewWidth, height, name, view.name));
+        for (const ViewLine& line : lines) figures.back().lines.emplace_back(line.name, line.style);
     }
     const std::string leaving = leavingNames(lines, shown);
     if (!leaving.empty()) figures.back().note += ". Leaving the picture: " + leaving;

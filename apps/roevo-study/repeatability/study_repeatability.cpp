@@ -1,7 +1,6 @@
 // Share of the features of a reference frame that are rightly associated in later frames (the paper's Fig.
 // "Cross-frame association result using different methods").
 #include <algorithm>
-#include <limits>
 #include <map>
 
 #include "programs/gnuplot.h"
@@ -129,7 +128,6 @@ std::string countedPoses(const std::vector<Repeatability>& measured, std::string
 // One panel, a curve for each method.
 std::string panel(const std::string& block, const std::vector<RepeatabilityRow>& rows,
                   const DistanceLook& look) {
-    constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
     std::vector<std::vector<double>> lines;
     double farthest = 0;
     for (const DistanceBin& bin : binRows(rows, look.distance)) {

@@ -34,6 +34,8 @@ using mrpt::obs::CObservation3DRangeScan;
 constexpr std::size_t kInterleaved = 30;  // sensors that record together take turns at least this often
 constexpr char kNoName[] = "(no name)";
 
+}  // namespace
+
 /// Remembers how far it got and whether it ran dry, which tells a proper end from a cut one; keeps damaged
 /// images from MRPT.
 class WatchedStream {
@@ -56,6 +58,8 @@ class WatchedStream {
     size_t Write(const void*, size_t) { throw std::logic_error("input stream"); }
     std::string getStreamDescription() const { return file.getStreamDescription(); }
 };
+
+namespace {
 
 /// MRPT puts any byte of a damaged file into these; only 0 and 1 are values that C++ knows.
 void makeFlagsSound(CObservation3DRangeScan& scan) {

@@ -139,12 +139,6 @@ std::string noPairText(const BagTopicNames& topics, const std::vector<double>& c
            (std::isfinite(closest) ? ": see --max-dt" : "");
 }
 
-/// PNG units per metre for a unit in metres: whole numbers are meant where a float stands for them.
-double unitsPerMetre(double unit) {
-    const double units = 1 / unit, whole = std::round(units);
-    return std::abs(units - whole) < 1e-5 * whole ? whole : units;
-}
-
 Pose findDepthColour(const BagFile& bag, const BagTopic& depth, const BagTopic& colour) {
     auto found = FrameTree::ofStatic(bag).find(depth.frame_id, colour.frame_id);
     if (!found) found = FrameTree::ofAll(bag).find(depth.frame_id, colour.frame_id);

@@ -7,8 +7,8 @@
 namespace roevo {
 namespace {
 
-constexpr int kSteps = 24;        // of a grid over the image
-constexpr double kLargest = 0.1;  // pixels
+constexpr int kSteps = 24;             // of a grid over the image
+constexpr double kLargestError = 0.1;  // pixels
 
 /// What the five terms move a point of the image plane by, as columns: the model is linear in them.
 Eigen::Matrix<double, 2, 5> shifts(const Eigen::Vector2d& p) {
@@ -37,7 +37,7 @@ std::array<double, 5> distortionOfInverse(const PinholeCamera& ideal, const std:
     }
     const Eigen::Matrix<double, 5, 1> fitted = shift.colPivHouseholderQr().solve(wanted);
     const double off = ideal.fx * (shift * fitted - wanted).cwiseAbs().maxCoeff();
-    if (!(off <= kLargest)) {
+    if (!(off <= kLargestError)) {
         char text[100];
         std::snprintf(text, sizeof text, "its inverse lens model is %.3g pixels off when turned round", off);
         throw std::runtime_error(text);

@@ -15,7 +15,13 @@ namespace {
 
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 
-enum Op : std::uint8_t { kFooter = 0x02, kSchema = 0x03, kChannel = 0x04, kMessage = 0x05, kChunk = 0x06 };
+enum McapOp : std::uint8_t {
+    kFooter = 0x02,
+    kSchema = 0x03,
+    kChannel = 0x04,
+    kMessage = 0x05,
+    kChunk = 0x06
+};
 
 struct Record {
     std::uint8_t op = 0;

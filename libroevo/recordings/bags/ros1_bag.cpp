@@ -14,7 +14,12 @@ namespace {
 
 constexpr std::string_view kFirstLine = "#ROSBAG V2.0\n";
 
-enum Op : std::uint8_t { kMessage = 0x02, kBagHeader = 0x03, kChunk = 0x05, kConnection = 0x07 };
+enum BagOp : std::uint8_t {
+    kMessageRecord = 0x02,
+    kBagHeader = 0x03,
+    kChunkRecord = 0x05,
+    kConnection = 0x07
+};
 
 /// "name=value" fields, each with its length before it.
 class Fields {
@@ -44,17 +49,17 @@ class Fields {
 };
 
 /// A record without its data. The fields are copied: the next read may take their place.
-struct Record {
+struct BagRecord {
     std::string header;
     std::uint64_t data = 0, size = 0;  ///< place and length of the data
     std::uint64_t end() const { return data + size; }
 };
 
-Record readRecord(ByteSource& bytes, std::uint64_t at) {
+BagRecord readBagRecord(ByteSource& bytes, std::uint64_t at) {
     const auto length = [&](std::uint64_t place) {
         return std::uint64_t{FieldReader(bytes.read(place, 4)).get<std::uint32_t>()};
     };
-    Record record;
+    BagRecord record;
     record.header = bytes.read(at + 4, length(at));
     record.data = at + 4 + record.header.size() + 4;
     record.size = length(record.data - 4);
@@ -64,7 +69,7 @@ Record readRecord(ByteSource& bytes, std::uint64_t at) {
 
 struct Chunk {
     std::string compression;
-    Record record;
+    BagRecord record;
     std::uint32_t size = 0;  ///< without compression
 };
 
@@ -115,7 +120,7 @@ class Ros1Bag : public MessageStore {
 
     /// @return where the next one is
     std::uint64_t addRecord(std::uint64_t at) {
-        const Record record = readRecord(file_, at);
+        const BagRecord record = readBagRecord(file_, at);
         const Fields fields(record.header);
         switch (fields.number<std::uint8_t>("op")) {
             case kBagHeader:
@@ -124,7 +129,7 @@ class Ros1Bag : public MessageStore {
             case kConnection:
                 addConnection(file_, record, fields);
                 break;
-            case kChunk:
+            case kChunkRecord:
                 addChunk(at, record, fields);
                 break;
             default:;  // indices
@@ -133,7 +138,7 @@ class Ros1Bag : public MessageStore {
     }
 
     /// A damaged one costs its own messages only.
-    void addChunk(std::uint64_t at, const Record& record, const Fields& fields) {
+    void addChunk(std::uint64_t at, const BagRecord& record, const Fields& fields) {
         try {
             if (fields.text("compression") == "none") {
                 addMessages(file_, record.data, record.end(), 0);
@@ -148,7 +153,7 @@ class Ros1Bag : public MessageStore {
     }
 
     std::string unpack(std::uint64_t at) {
-        const Record record = readRecord(file_, at);
+        const BagRecord record = readBagRecord(file_, at);
         const Fields fields(record.header);
         return decompressed(fields.text("compression"), file_.read(record.data, record.size),
                             fields.number<std::uint32_t>("size"));
@@ -156,12 +161,12 @@ class Ros1Bag : public MessageStore {
 
     void addMessages(ByteSource& bytes, std::uint64_t at, std::uint64_t end, std::uint64_t piece) {
         while (at < end) {
-            const Record record = readRecord(bytes, at);
+            const BagRecord record = readBagRecord(bytes, at);
             if (record.end() > end) throw std::runtime_error("a record reaches beyond its end");
             const Fields fields(record.header);
             const auto op = fields.number<std::uint8_t>("op");
             if (op == kConnection) addConnection(bytes, record, fields);
-            if (op == kMessage) {
+            if (op == kMessageRecord) {
                 Connection& connection = connections_[fields.number<std::uint32_t>("conn")];
                 connection.count++;
                 StoredMessage message;
@@ -176,7 +181,7 @@ class Ros1Bag : public MessageStore {
         }
     }
 
-    void addConnection(ByteSource& bytes, const Record& record, const Fields& fields) {
+    void addConnection(ByteSource& bytes, const BagRecord& record, const Fields& fields) {
         Connection& connection = connections_[fields.number<std::uint32_t>("conn")];
         connection.topic = fields.text("topic");
         connection.type = Fields(bytes.read(record.data, record.size)).text("type");

@@ -9,7 +9,7 @@
 namespace roevo {
 namespace {
 
-constexpr double kStill = 0.005;  ///< px of image motion; smaller steps end the refinement
+constexpr double kLeastStep = 0.005;  ///< px of image motion; smaller steps end the refinement
 
 /// Adds the error of T_world_to against T_world_from * T_from_to, as a perturbation in the world's axes.
 void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& window,
@@ -70,7 +70,7 @@ int BundleAdjuster::refine(std::vector<WindowKeyframe>& window, FusedEdges& edge
             -equations_.hessian.selfadjointView<Eigen::Upper>().ldlt().solve(equations_.gradient);
         if (!step.allFinite()) break;
         ++moved;
-        if (move(window, step) < kStill) break;
+        if (move(window, step) < kLeastStep) break;
     }
     return moved;
 }

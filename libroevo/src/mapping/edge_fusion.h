@@ -8,6 +8,8 @@
 
 namespace roevo {
 
+constexpr double kNearestInView = 0.05;  ///< m; nearer points cannot be projected
+
 /// A keyframe with its place among those that are refined together.
 struct WindowKeyframe {
     const MapKeyframe* keyframe = nullptr;

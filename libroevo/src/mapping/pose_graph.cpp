@@ -10,9 +10,9 @@
 namespace roevo {
 namespace {
 
-constexpr int kMostIterations = 20;
+constexpr int kGraphIterations = 20;
 constexpr double kSmallStep = 1e-7;       // m and rad
-constexpr double kLeastVariance = 1e-12;  // m^2, rad^2
+constexpr double kVarianceFloor = 1e-12;  // m^2, rad^2
 
 /// Rotation vector.
 Eigen::Vector3d logarithm(const Eigen::Quaterniond& q) {
@@ -31,7 +31,7 @@ Vector6d residual(const std::vector<Pose>& poses, const PoseConstraint& c) {
 }
 
 Matrix6d informationOf(const PoseConstraint& c) {
-    return (c.covariance + kLeastVariance * Matrix6d::Identity()).inverse();
+    return (c.covariance + kVarianceFloor * Matrix6d::Identity()).inverse();
 }
 
 struct Equations {
@@ -62,7 +62,7 @@ bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstrain
     std::vector<Matrix6d> information;
     for (const PoseConstraint& c : constraints) information.push_back(informationOf(c));
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
-    for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    for (int iteration = 0; iteration < kGraphIterations; ++iteration) {
         Equations sum;
         sum.gradient = Eigen::VectorXd::Zero(6 * count);
         for (std::size_t k = 0; k < constraints.size(); ++k) {

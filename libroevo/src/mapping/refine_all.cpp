@@ -17,7 +17,7 @@ constexpr int kMostTogether = 200, kMostFixed = 100;
 constexpr double kPlaceWeight = 0.15;
 /// px of image motion, mean of the keyframes: a round that moves them less is the last. Edges that are
 /// related anew move them by half of that for ever.
-constexpr double kSettled = 0.25;
+constexpr double kHardlyMoved = 0.25;
 
 }  // namespace
 
@@ -71,7 +71,7 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
             moved += imageMotion(members[slot]->T_world_camera.inverse(),
                                  before_round[slot].T_world_camera.inverse(), camera_.fx,
                                  members[slot]->typicalDepth());
-        if (round > 0 && moved < kSettled * static_cast<double>(members.size())) break;
+        if (round > 0 && moved < kHardlyMoved * static_cast<double>(members.size())) break;
     }
     update.refusals.insert(update.refusals.end(), last.refusals.begin(), last.refusals.end());
     // Where they are now: what a round left as it was may have moved in the one before

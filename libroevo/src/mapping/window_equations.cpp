@@ -13,7 +13,6 @@ namespace roevo {
 namespace {
 
 constexpr double kNoScale = 2.0;       ///< px of spread where nothing is seen
-constexpr double kNearest = 0.05;      ///< m; nearer points cannot be projected
 constexpr std::size_t kScaleStep = 3;  ///< every third point is enough for a median
 constexpr std::int32_t kAnySlot = -1;
 /// Damping of a point's step along its edge, relative to the information across it: normals and slopes differ
@@ -97,7 +96,7 @@ void WindowEquations::evaluate(const std::vector<WindowKeyframe>& window,
             const Pose& T = at(window, seen.slot).T_world_camera;
             const Eigen::Vector3d q = T.linear().transpose() * (point - T.translation());
             Residual& out = residuals_[k];
-            if (!(q.z() > kNearest)) {
+            if (!(q.z() > kNearestInView)) {
                 out.inverse_z = -1;
                 continue;
             }

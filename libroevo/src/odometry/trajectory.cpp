@@ -14,7 +14,7 @@ namespace roevo {
 namespace {
 
 constexpr double kMostContradiction = 50;  // squared sigmas, of a loop
-constexpr double kStill = 0.02;            // m; less change of view than this is hardly any
+constexpr double kSameView = 0.02;         // m; less change of view than this is hardly any
 constexpr double kRecent = 4.25;     // s; of frames since then it is kept which edges their errors come from
 constexpr double kTypicalDepth = 2;  // m; at this depth a turn by 1 rad changes a view like so many metres
 
@@ -267,8 +267,8 @@ Pose Trajectory::finalPose(const Frame& frame) const {
     // Where the camera hardly moves, changes are noise of tracking, and time shares better
     const double begin = keyframes_[next - 1].timestamp, end = keyframes_[next].timestamp;
     const double passed = end > begin ? std::clamp((frame.timestamp - begin) / (end - begin), 0.0, 1.0) : 1;
-    const double since = changeOfView(link.T_keyframe_camera) + kStill * passed;
-    const double left = changeOfView(T_next_camera) + kStill * (1 - passed);
+    const double since = changeOfView(link.T_keyframe_camera) + kSameView * passed;
+    const double left = changeOfView(T_next_camera) + kSameView * (1 - passed);
     return interpolate(from_parent, from_next, since / (since + left));
 }
 

@@ -11,7 +11,7 @@ namespace roevo {
 namespace {
 
 // How far off a tracked camera can be, and how far a lost one can have come
-constexpr double kReach = 0.3;               // m
+constexpr double kReachDistance = 0.3;       // m
 constexpr double kReachTurn = 20 * kDegree;  // rad
 constexpr double kTopSpeed = 1.5;            // m/s
 constexpr double kTopTurn = 1.5;             // rad/s
@@ -26,7 +26,7 @@ constexpr double kJoinTolerance = 3;
 constexpr int kStillInView = 10;       // newest keyframes
 constexpr double kLeastOfShown = 0.5;  // points of a new keyframe, against what the old one still shows there
 constexpr double kDriftSigmas = 10;    // that the camera can be from where it is thought to be
-constexpr double kUnknown = std::numeric_limits<double>::infinity();  // m
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();  // m
 
 /// What a scale of all depths that errs does to a motion: all frames share it, so that no residual shows it.
 Matrix6d byScale(const Eigen::Vector3d& motion, double sigma) {
@@ -61,7 +61,7 @@ void World::load(StoredMap map, bool held) {
             "a map is of no use with loss.recognise=false: no place is looked for in it");
     loaded_ = static_cast<int>(map.graph.keyframes.size());
     held_ = held;
-    if (loaded_ > 0) misplacements_[0].distance = kUnknown;
+    if (loaded_ > 0) misplacements_[0].distance = kAnywhere;
     std::vector<KnownPlace> places;
     for (std::size_t id = 0; id < map.places.size(); ++id)
         places.push_back({std::move(map.places[id]), map.edges[id].points, map.edges[id].median_depth,
@@ -209,7 +209,7 @@ const Keyframe* World::previous(Pose& T_previous_reference) {
 void World::noteTrack() {
     if (localised_ || trajectory_.beginOfTrack(reference_->id) >= loaded_) return;
     localised_ = true;
-    for (auto& [track, misplaced] : misplacements_) misplaced.distance = track == 0 ? 0 : kUnknown;
+    for (auto& [track, misplaced] : misplacements_) misplaced.distance = track == 0 ? 0 : kAnywhere;
 }
 
 Reach World::misplacementOf(int keyframe) const {
@@ -243,9 +243,9 @@ Matrix6d World::motionCovariance(std::size_t from, std::size_t to) const {
 
 Whereabouts World::whereabouts(const RelativePose& pose, double lost_for) const {
     const int keyframe = pose.keyframe;
-    if (keyframe < 0) return {Pose(), [](int) { return Reach{kUnknown, kUnknown}; }, kUnknown};
+    if (keyframe < 0) return {Pose(), [](int) { return Reach{kAnywhere, kAnywhere}; }, kAnywhere};
     const Reach drift = driftOf(keyframe), misplaced = misplacementOf(keyframe);
-    const double unseen = kReach + kTopSpeed * lost_for;
+    const double unseen = kReachDistance + kTopSpeed * lost_for;
     const Reach within_track{unseen + drift.distance, kReachTurn + kTopTurn * lost_for + drift.turn};
     const auto reach = [this, keyframe, within_track, misplaced](int other) {
         if (trajectory_.areOfOneTrack(other, keyframe)) return within_track;

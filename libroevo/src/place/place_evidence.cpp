@@ -11,10 +11,10 @@ namespace {
 // hundred is below the least. Shares of points and of edges that agree tell less, but where less than half is
 // in view of both: seen from so far elsewhere, surroundings look different at the right place, too.
 constexpr int kLeastInView = 30;
-constexpr double kDepths = 0.7;                                ///< of them, those that agree
-constexpr double kSame = 0.99, kSimilar = 0.98, kLeast = 0.8;  ///< shares of what surrounds the points
-constexpr double kElsewhere = 0.5;                             ///< share in view
-constexpr double kMatched = 0.8;                               ///< of the edges, both ways
+constexpr double kDepths = 0.7;                                     ///< of them, those that agree
+constexpr double kSame = 0.99, kSimilar = 0.98, kLeastAlike = 0.8;  ///< shares of what surrounds the points
+constexpr double kLeastSeen = 0.5;                                  ///< share in view
+constexpr double kMatched = 0.8;                                    ///< of the edges, both ways
 constexpr double kFit = 0.7;  ///< mean of these shares and that of the points
 /// Points that agree: symmetric furniture, seen from its other side, had up to 15.
 constexpr int kManyPoints = 20, kSomePoints = 16;
@@ -34,13 +34,13 @@ Evidence evidenceOf(const Verification& points, const EdgeRegistration& edges, c
     const bool some = points.inliers >= kSomePoints, many = points.inliers >= kManyPoints;
     if (some && alike >= kSame) return Evidence::kConclusive;
     if (some && alike >= kSimilar) return Evidence::kStrong;
-    const bool from_elsewhere = edges.visible < kElsewhere;
+    const bool from_elsewhere = edges.visible < kLeastSeen;
     const double agreed = static_cast<double>(points.inliers) / points.matches;
     const double fit = (agreed + edges.keyframe_matched + edges.frame_matched) / 3;
     if (many && from_elsewhere && fit >= kFit &&
         std::min(edges.keyframe_matched, edges.frame_matched) >= kMatched)
         return Evidence::kFitting;
-    if (alike < kLeast) return Evidence::kNone;
+    if (alike < kLeastAlike) return Evidence::kNone;
     return many ? Evidence::kPlausible : Evidence::kWeak;
 }
 

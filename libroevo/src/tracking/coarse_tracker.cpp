@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDampingTranslation = 0.2;  ///< one sigma of a step, as a share of the depth
 constexpr double kDampingRotation = 0.2;     ///< rad
-constexpr double kStill = 0.05;              ///< px of a level that finer ones follow: a small step there
+constexpr double kCoarseStill = 0.05;        ///< px of a level that finer ones follow: a small step there
 constexpr double kSameGuess = 0.5;           ///< px of the level: guesses so near end up at the same pose
 
 }  // namespace
@@ -25,7 +25,7 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
     DampingTerm damping(kDampingTranslation * depth, kDampingRotation);
     GaussNewtonOptions loop{options_.max_iterations + 1, camera.fx, depth};
     loop.keep_best = true;
-    if (level > 0) loop.still = kStill;
+    if (level > 0) loop.still = kCoarseStill;
     const GaussNewtonResult found =
         minimise(state.T_current_keyframe, shutter, {&photometric, &damping}, loop);
     state.T_current_keyframe = found.T_current_keyframe;

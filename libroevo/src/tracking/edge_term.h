@@ -10,6 +10,10 @@
 
 namespace roevo {
 
+/// Factor on later steps: what remains is slow, as associations and weights follow the pose. It halves their
+/// number.
+constexpr double kOverRelaxation = 1.6;
+
 /// Organized edges of a keyframe against those of a frame, Eqs. (4)-(13): associated anew as the pose moves,
 /// with point-to-tangent residuals and those of the depth of associated points, robust scales re-estimated in
 /// every step.

@@ -7,10 +7,7 @@
 namespace roevo {
 namespace {
 
-/// From the third step on, what remains is slow: associations and weights follow the pose. Longer steps halve
-/// their number.
-constexpr double kOverRelaxation = 1.6;
-constexpr int kPlainSteps = 2;
+constexpr int kPlainSteps = 2;        ///< without over-relaxation
 constexpr int kPointsToChoose = 300;  ///< between two initial poses
 
 // Of the read-out time

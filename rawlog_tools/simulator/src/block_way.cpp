@@ -2,10 +2,11 @@
 
 #include <cmath>
 
+#include "roevo/types.h"
+
 namespace roevo::simulator::block {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kStep = 2;     // metres between way-points
 constexpr double kAhead = 3;    // metres from a way-point to what it looks at, along the way
 constexpr double kAside = 1.5;  // metres: the sight swings from one wall to the other

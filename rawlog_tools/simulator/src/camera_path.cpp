@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "random.h"
+#include "roevo/types.h"
 
 namespace roevo::simulator {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kTurnRate =
     18 * kPi / 180;                   // rad/s; tremor and the roll that keeps the horizon level come on top
 constexpr double kReturnPeriod = 10;  // seconds of one to-and-fro of the path back-and-forth

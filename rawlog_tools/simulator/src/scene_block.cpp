@@ -2,9 +2,8 @@
 #include "block_way.h"
 
 namespace roevo::simulator {
+namespace block {
 namespace {
-
-using namespace block;
 
 Materials makeMaterials(SceneBuilder& b) {
     Materials m{};
@@ -27,8 +26,10 @@ Materials makeMaterials(SceneBuilder& b) {
 }
 
 }  // namespace
+}  // namespace block
 
 Scene makeBlock() {
+    using namespace block;
     SceneBuilder b("block");
     const Materials m = makeMaterials(b);
     const int plaster = b.material(Texture::kPlaster, {0.84f, 0.80f, 0.70f}),

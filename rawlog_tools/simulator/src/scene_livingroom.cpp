@@ -3,9 +3,8 @@
 #include "livingroom_furniture.h"
 
 namespace roevo::simulator {
+namespace livingroom {
 namespace {
-
-using namespace livingroom;
 
 void addWindow(SceneBuilder& b, const Materials& m) {
     // North wall, x from 1.9 to 4.1.
@@ -126,8 +125,10 @@ void addWallDecoration(SceneBuilder& b, const Materials& m) {
 }
 
 }  // namespace
+}  // namespace livingroom
 
 Scene makeLivingroom() {
+    using namespace livingroom;
     SceneBuilder b("livingroom");
     Materials m{};
     m.light_wood = b.material(Texture::kWood, {0.76f, 0.62f, 0.44f}, {0.60f, 0.45f, 0.29f});

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "roevo/types.h"
+
 namespace roevo::simulator {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// The horizontal and the vertical coordinate of a box face, with the sign that keeps pictures unmirrored
 /// from outside.

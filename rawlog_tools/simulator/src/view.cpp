@@ -6,7 +6,7 @@
 namespace roevo::simulator {
 namespace {
 
-constexpr double kNearest = 0.02;  // metres: nothing is seen nearer than this
+constexpr double kNearestSeen = 0.02;  // metres: nothing is seen nearer than this
 
 /// Bounds of a primitive's box in the image, its edges cut at the near plane. False: wholly behind it.
 bool boundInImage(const Eigen::Matrix3d& axes, const Eigen::Vector3d& centre, ImageRect& rect,
@@ -19,16 +19,16 @@ bool boundInImage(const Eigen::Matrix3d& axes, const Eigen::Vector3d& centre, Im
     least_depth = 1e300;
     for (int i = 0; i < 8; ++i) {
         const Eigen::Vector3d& a = corners[static_cast<size_t>(i)];
-        if (a.z() >= kNearest) {
+        if (a.z() >= kNearestSeen) {
             rect.include(a.x() / a.z(), a.y() / a.z());
             any = true;
         }
         least_depth = std::min(least_depth, a.z());
         for (int bit = 1; bit < 8; bit <<= 1) {
             const Eigen::Vector3d& b = corners[static_cast<size_t>(i ^ bit)];
-            if ((a.z() < kNearest) == (b.z() < kNearest)) continue;
-            const Eigen::Vector3d cut = a + (b - a) * ((kNearest - a.z()) / (b.z() - a.z()));
-            rect.include(cut.x() / kNearest, cut.y() / kNearest);
+            if ((a.z() < kNearestSeen) == (b.z() < kNearestSeen)) continue;
+            const Eigen::Vector3d cut = a + (b - a) * ((kNearestSeen - a.z()) / (b.z() - a.z()));
+            rect.include(cut.x() / kNearestSeen, cut.y() / kNearestSeen);
             any = true;
         }
     }
@@ -94,7 +94,7 @@ bool View::trace(double x, double y, const std::vector<int>& candidates, ViewHit
         if (x < item.rect.x0 || x > item.rect.x1 || y < item.rect.y0 || y > item.rect.y1) continue;
         const Eigen::Vector3d d =
             item.unit_from_ray.col(0) * x + item.unit_from_ray.col(1) * y + item.unit_from_ray.col(2);
-        if (!intersectUnit(item.shape, item.taper, item.unit_origin, d, kNearest, depth, found)) continue;
+        if (!intersectUnit(item.shape, item.taper, item.unit_origin, d, kNearestSeen, depth, found)) continue;
         depth = found.t;
         hit.unit = found;
         hit.unit_point = item.unit_origin + d * depth;

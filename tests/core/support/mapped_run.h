@@ -4,6 +4,7 @@
 #include <cstring>
 #include <opencv2/core.hpp>
 
+#include "core/support/random_pose.h"
 #include "core/support/simulated.h"
 
 namespace roevo::testing {
@@ -78,9 +79,6 @@ inline bool sameBytes(const std::vector<StampedPose>& a, const std::vector<Stamp
 
 inline double distance(const Pose& a, const Pose& b) {
     return (a.translation() - b.translation()).norm();
-}
-inline double difference(const Pose& a, const Pose& b) {
-    return (a.matrix() - b.matrix()).norm();
 }
 
 inline RgbdFrame black(double timestamp) {

@@ -1,6 +1,7 @@
 #pragma once
 /// A motion model and motions for it.
 
+#include "core/support/random_pose.h"
 #include "tracking/motion_model.h"
 
 namespace roevo::testing {
@@ -20,10 +21,6 @@ inline Pose poseOf(const Eigen::Vector3d& translation, double angle, const Eigen
 
 inline const Pose kStart = poseOf({1, -2, 0.5}, 0.7, {1, 2, -1});
 inline const Pose kStep = poseOf({0.02, -0.01, 0.03}, 0.03, {0.2, 1, 0.4});
-
-inline double difference(const Pose& a, const Pose& b) {
-    return (a.matrix() - b.matrix()).norm();
-}
 
 /// Anchored at 10 s, and measured once, kStep on, `dt` later.
 inline MotionModel moving(double dt = 0.1) {

@@ -5,6 +5,10 @@
 
 namespace roevo::testing {
 
+inline double difference(const Pose& a, const Pose& b) {
+    return (a.matrix() - b.matrix()).norm();
+}
+
 inline double uniform(std::mt19937& random, double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
 }
