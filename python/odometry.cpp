@@ -4,15 +4,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <mutex>
 
 #include "../libroevo/mrpt_module/src/whole_file.h"
 #include "bindings.h"
 #include "images.h"
-#include "input/regular_file.h"
 
 namespace py = pybind11;
 
@@ -88,14 +85,7 @@ class Session {
 
     int loadMap(const std::filesystem::path& file, bool localise_only) {
         return alone([&](Odometry& odometry) {
-            requireRegularInput(file.string());
-            std::ifstream in(file, std::ios::binary);
-            if (!in) throw std::runtime_error("cannot read " + file.string() + ": " + std::strerror(errno));
-            try {
-                return odometry.loadMap(in, localise_only ? MapUse::kLocalise : MapUse::kExtend);
-            } catch (const std::runtime_error& error) {
-                throw std::runtime_error(file.string() + ": " + error.what());
-            }
+            return odometry.loadMap(file.string(), localise_only ? MapUse::kLocalise : MapUse::kExtend);
         });
     }
 

@@ -1,20 +1,16 @@
 #include "run.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <thread>
 
 #include "evaluation/scale_check.h"
 #include "evaluation/trajectory_io.h"
-#include "input/regular_file.h"
 #include "mrpt_outputs.h"
 #include "programs/ahead.h"
 #include "programs/atomic_file.h"
@@ -183,16 +179,9 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
 
 // Begins with the map that was asked for.
 void loadMap(const RunSettings& settings, Odometry& odometry, RunReport& report) {
-    requireRegularInput(settings.map_in);
-    std::ifstream file(settings.map_in, std::ios::binary);
-    if (!file) throw std::runtime_error("cannot read " + settings.map_in + ": " + std::strerror(errno));
-    try {
-        const int keyframes =
-            odometry.loadMap(file, settings.localise_only ? MapUse::kLocalise : MapUse::kExtend);
-        report.map_in = LoadedMap{settings.map_in, keyframes, settings.localise_only};
-    } catch (const std::runtime_error& error) {
-        throw std::runtime_error(settings.map_in + ": " + error.what());
-    }
+    const MapUse use = settings.localise_only ? MapUse::kLocalise : MapUse::kExtend;
+    const int keyframes = odometry.loadMap(settings.map_in, use);
+    report.map_in = LoadedMap{settings.map_in, keyframes, settings.localise_only};
 }
 
 void evaluateRun(RunReport& report, const GroundTruth& ground_truth) {

@@ -313,5 +313,55 @@ TEST_F(RoevoOdometryTest, TheCurrentPoseIsTheTrajectorysLast) {
     EXPECT_TRUE(toEigen(odometry_.getCurrentPoseEstimation()->getMeanVal()).isApprox(toEigen(last), 1e-12));
 }
 
+/// What was mapped yesterday is where the robot is today, wherever it thinks that it begins.
+TEST_F(RoevoOdometryTest, BeginsWithTheMapOfAnEarlierRun) {
+    const test::TemporaryFolder folder;
+    const std::string map = folder / "yesterday.roevomap";
+    const CPose3D yesterday(1, 2, 0, 0.7, 0, 0);
+    odometry_.initialize(yesterday);
+    odometry_.processObservation(*scan_);
+    EXPECT_EQ(odometry_.saveMapToFile(map), 1);
+
+    odometry_.initialize();
+    odometry_.loadMapFromFile(map, MapUse::kLocalise);
+    auto first = laterScan(*scan_, 60);
+    auto dark = mrpt::obs::CObservation3DRangeScan::Create(*first);
+    dark->rangeImage.setZero();
+    EXPECT_EQ(odometry_.processObservation(*dark).status, FrameStatus::kRejected);
+    mrpt::maps::CSimpleMap known;
+    odometry_.getCurrentlyBuiltMap(known);
+    EXPECT_EQ(known.size(), 1u);
+
+    const FrameResult found = odometry_.processObservation(*laterScan(*scan_, 61));
+    EXPECT_EQ(found.status, FrameStatus::kInitialised) << found.reason;
+    EXPECT_NE(found.reason.find("found in the map"), std::string::npos) << found.reason;
+    EXPECT_LT(CPose3D(odometry_.getCurrentPoseEstimation()->getMeanVal() - yesterday).norm(), 0.01);
+    EXPECT_THROW(odometry_.loadMapFromFile(map), std::logic_error);
+
+    odometry_.initialize();  // forgets the map, too
+    odometry_.processObservation(*scan_);
+    EXPECT_LT(odometry_.getCurrentPoseEstimation()->getMeanVal().norm(), 1e-9);
+}
+
+TEST_F(RoevoOdometryTest, WithAnUnusableMapOrOptionNothingBegins) {
+    const test::TemporaryFolder folder;
+    EXPECT_NE(errorOf([&] { odometry_.saveMapToFile(folder / "m"); }).find("no keyframe"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder / "m"));
+    test::writeFile(folder / "m", "no map");
+    for (const std::string& file : {folder / "m", folder / "nowhere"}) {
+        odometry_.initialize();
+        odometry_.loadMapFromFile(file);
+        for (int i = 0; i < 2; ++i) {
+            const std::string error = errorOf([&] { odometry_.processObservation(*scan_); });
+            EXPECT_NE(error.find(file), std::string::npos) << error;
+        }
+    }
+    odometry_.initialize();
+    odometry_.options.odometry.keyframe.max_translation = -1;
+    EXPECT_NE(errorOf([&] { odometry_.processObservation(*scan_); }).find("keyframe.max_translation"),
+              std::string::npos);
+    EXPECT_FALSE(odometry_.odometry());
+}
+
 }  // namespace
 }  // namespace roevo

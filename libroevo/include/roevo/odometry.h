@@ -1,6 +1,7 @@
 #pragma once
 #include <iosfwd>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "roevo/camera/pinhole_camera.h"
@@ -61,6 +62,8 @@ class Odometry {
     /// camera, or recognising is off (options().loss). The odometry is then as it was
     /// @throws std::logic_error when there is a frame or a map already
     int loadMap(std::istream& in, MapUse use = MapUse::kExtend);
+    /// The same from a file, which errors name.
+    int loadMap(const std::string& file, MapUse use = MapUse::kExtend);
     /// Writes a map that loadMap() reads: the keyframes with their edges, places and surfaces, those of the
     /// map that was loaded and those that were joined to it; without one, those of the longest piece. Waits
     /// for what is still being mapped. Whether all was written is in the stream's state.

@@ -1,6 +1,8 @@
 #include "roevo_mrpt/roevo_odometry.h"
 
+#include <fstream>
 #include <stdexcept>
+#include <utility>
 
 #include "coloured_points.h"
 #include "input/excerpt.h"
@@ -8,6 +10,7 @@
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "roevo_mrpt/time_conversions.h"
+#include "whole_file.h"
 
 namespace roevo {
 namespace {
@@ -33,17 +36,44 @@ CRoevoOdometry::~CRoevoOdometry() {
 
 void CRoevoOdometry::initialize(const mrpt::maps::CSimpleMap& initial_map, const mrpt::poses::CPosePDF* x0) {
     if (!initial_map.empty())
-        throw std::invalid_argument("CRoevoOdometry cannot start from a map: pass an empty one");
+        throw std::invalid_argument(
+            "a CSimpleMap does not tell what places look like: pass an empty one, and see loadMapFromFile()");
     initialize(x0 != nullptr ? mrpt::poses::CPose3D(x0->getMeanVal()) : mrpt::poses::CPose3D());
 }
 
 void CRoevoOdometry::initialize(const mrpt::poses::CPose3D& robot_pose) {
     T_world_robot_start_ = toEigen(robot_pose);
+    map_to_load_.reset();
     odometry_.reset();
     sensor_label_.clear();
     context_ = {};
     latest_.reset();
     profiler_.clear();
+}
+
+void CRoevoOdometry::loadMapFromFile(const std::string& file, MapUse use) {
+    if (odometry_) throw std::logic_error("a map is loaded before the first observation");
+    map_to_load_ = {file, use};
+}
+
+int CRoevoOdometry::saveMapToFile(const std::string& file) const {
+    if (!odometry_) throw std::runtime_error("cannot write " + file + ": there is no keyframe");
+    int keyframes = 0;
+    writeWholeFile(file, [&](const std::string& temporary) {
+        std::ofstream out(temporary, std::ios::binary);
+        keyframes = odometry_->saveMap(out);
+        out.close();
+        return !out.fail();
+    });
+    return keyframes;
+}
+
+void CRoevoOdometry::begin(const CObservation3DRangeScan& scan, const Pose& T_robot_camera) {
+    Odometry fresh(colourCameraOf(scan), options.odometry, T_world_robot_start_ * T_robot_camera);
+    if (map_to_load_) fresh.loadMap(map_to_load_->file, map_to_load_->use);
+    odometry_ = std::move(fresh);
+    sensor_label_ = scan.sensorLabel;
+    context_.mounts[fromMrptTime(scan.timestamp)] = T_robot_camera;
 }
 
 RgbdFrame CRoevoOdometry::convert(const CObservation3DRangeScan& scan) {
@@ -54,32 +84,29 @@ RgbdFrame CRoevoOdometry::convert(const CObservation3DRangeScan& scan) {
 }
 
 FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
-    const double timestamp = fromMrptTime(scan.timestamp);
+    FrameResult result;
+    result.timestamp = fromMrptTime(scan.timestamp);
     const auto camera = [&] { return colourCameraOf(scan); };
     if (!odometry_) camera();  // without intrinsics nothing can begin
-
-    FrameResult result;
-    result.timestamp = timestamp;
+    RgbdFrame frame;
+    Pose T_robot_camera;
     try {
         if (odometry_ && scan.sensorLabel != sensor_label_)
             throw std::runtime_error("of sensor '" + excerpt(scan.sensorLabel) +
                                      "', this odometry follows '" + excerpt(sensor_label_) + "'");
         if (odometry_ && !camera().seesAs(odometry_->camera()))
             throw std::runtime_error("the camera's intrinsics changed");
-        const RgbdFrame frame = convert(scan);  // refuses poses that are none
-        const Pose T_robot_camera = cameraOnRobot(scan);
-        if (!odometry_) {
-            odometry_.emplace(camera(), options.odometry, T_world_robot_start_ * T_robot_camera);
-            sensor_label_ = scan.sensorLabel;
-        }
-        const mrpt::system::CTimeLoggerEntry entry(profiler_, "track");
-        result = odometry_->processFrame(frame);
-        if (result.hasPose() &&
-            (context_.mounts.empty() || !context_.mounts.rbegin()->second.isApprox(T_robot_camera)))
-            context_.mounts[timestamp] = T_robot_camera;
+        frame = convert(scan);  // refuses poses that are none
+        T_robot_camera = cameraOnRobot(scan);
     } catch (const std::exception& fault) {  // MRPT's are of many kinds
         result.reason = reasonOf(fault);
+        return result;
     }
+    if (!odometry_) begin(scan, T_robot_camera);
+    const mrpt::system::CTimeLoggerEntry entry(profiler_, "track");
+    result = odometry_->processFrame(frame);
+    if (result.hasPose() && !context_.mounts.rbegin()->second.isApprox(T_robot_camera))
+        context_.mounts[result.timestamp] = T_robot_camera;
     return result;
 }
 

@@ -1,7 +1,11 @@
 #include "roevo/odometry.h"
 
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <stdexcept>
 
+#include "input/regular_file.h"
 #include "map_file.h"
 #include "odometry_impl.h"
 #include "stopwatch.h"
@@ -35,6 +39,16 @@ int Odometry::loadMap(std::istream& in, MapUse use) {
         throw std::logic_error("a map is loaded before the first frame, and once");
     impl_->world.load(readMap(in), use == MapUse::kLocalise);
     return impl_->world.loaded();
+}
+int Odometry::loadMap(const std::string& file, MapUse use) {
+    requireRegularInput(file);
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno));
+    try {
+        return loadMap(in, use);
+    } catch (const std::runtime_error& fault) {
+        throw std::runtime_error(file + ": " + fault.what());
+    }
 }
 int Odometry::saveMap(std::ostream& out) const {
     StoredMap map = impl_->world.map();

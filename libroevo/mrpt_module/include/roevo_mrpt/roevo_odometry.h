@@ -49,11 +49,21 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     TOptions options;
 
     /// Forgets everything; the robot's next pose is x0's mean (default: the origin).
-    /// @param initial_map  must be empty: this odometry cannot start from a map (throws
-    /// std::invalid_argument)
+    /// @param initial_map  must be empty: a CSimpleMap does not tell what places look like (throws
+    /// std::invalid_argument); see loadMapFromFile()
     void initialize(const mrpt::maps::CSimpleMap& initial_map = {},
                     const mrpt::poses::CPosePDF* x0 = nullptr);
     void initialize(const mrpt::poses::CPose3D& robot_pose);
+
+    /// Begins with the map of an earlier run: poses are in its world from where the camera is recognised in
+    /// it. To be called between initialize() and the first observation.
+    /// @param file  of saveMapToFile(); of roevo-odometry --map-out, too, whose worlds are not upright: they
+    /// have the axes of a camera. Read at the first observation
+    /// @throws std::logic_error after the first observation
+    void loadMapFromFile(const std::string& file, MapUse use = MapUse::kExtend);
+    /// Writes a map for loadMapFromFile(), see Odometry::saveMap(). @return how many keyframes it has
+    /// @throws std::runtime_error when there is none, or the file cannot be written; what was there is kept
+    int saveMapToFile(const std::string& file) const;
 
     /// What is always in view and moves with the camera, such as the robot's own arm, is left out from the
     /// next observation on. @param mask  CV_8UC1 in the colour image's pixels, 0 there, see RgbdFrame::mask;
@@ -64,8 +74,8 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// logged; so do those of another sensorLabel than the first one's: this follows one camera.
     /// @return T_world_camera and its covariance are of the optical frame of the colour camera, in the
     /// robot's world.
-    /// @throws std::runtime_error or std::invalid_argument when the first observation's intrinsics or an
-    /// option are unusable.
+    /// @throws std::runtime_error or std::invalid_argument when the first observation's intrinsics, an option
+    /// or the map to begin with are unusable.
     FrameResult processObservation(const mrpt::obs::CObservation3DRangeScan& scan);
 
     /// Tracks every range image of the frame. The action is not used.
@@ -106,11 +116,17 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     const Odometry* odometry() const { return odometry_ ? &*odometry_ : nullptr; }
 
   private:
+    struct MapToLoad {
+        std::string file;
+        MapUse use;
+    };
+    void begin(const mrpt::obs::CObservation3DRangeScan& scan, const Pose& T_robot_camera);
     RgbdFrame convert(const mrpt::obs::CObservation3DRangeScan& scan);
     FrameResult track(const mrpt::obs::CObservation3DRangeScan& scan);
     void report(const FrameResult& result);
 
     Pose T_world_robot_start_ = Pose::Identity();
+    std::optional<MapToLoad> map_to_load_;
     std::optional<Odometry> odometry_;
     std::string sensor_label_;
     RobotContext context_;  // one mount unless the camera moves on the robot; covariances of frames
