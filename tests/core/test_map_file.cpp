@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <optional>
 #include <random>
 #include <sstream>
 
@@ -152,6 +153,31 @@ TEST_P(MapFile, ARecordingThatBeginsElsewhereIsJoined) {
     EXPECT_GE(joined_at, 0);
     EXPECT_LT(joined_at, keyframes);
     EXPECT_LT(worstError(odometry.trajectory(), wayBack()), 0.02) << "also before it was recognised";
+}
+
+/// What a camera at rest shows is no keyframe; it is looked at all the same.
+TEST_P(MapFile, ACameraThatComesToRestBeforeAKnownPlaceIsLocalised) {
+    OdometryOptions options = optionsOf(GetParam());
+    options.keyframe.max_translation = 1;
+    Odometry odometry(today().camera, options);
+    load(odometry, yesterdaysMap(GetParam()), MapUse::kLocalise);
+    const RgbdFrame& view = today().frames[8];
+    cv::Mat hidden(view.grey.size(), CV_8UC1, cv::Scalar(255));
+    hidden.colRange(0, 3 * view.grey.cols / 4).setTo(0);  // too little is left to tell the place
+    std::optional<int> found;
+    for (int i = 0; i < 20 && !found; ++i) {
+        RgbdFrame frame = view;
+        frame.timestamp += i / 30.;
+        if (i < 3) frame.mask = hidden;
+        const FrameResult result = odometry.processFrame(frame);
+        ASSERT_TRUE(result.hasPose()) << result.reason;
+        if (i == 0) ASSERT_EQ(result.found_at, -1) << "else it is no test";
+        if (result.joined_at >= 0) found = i;
+    }
+    ASSERT_TRUE(found);
+    EXPECT_LE(*found, 12);
+    const Pose& pose = odometry.trajectory().back().T_world_camera;
+    EXPECT_LT((pose.translation() - today().truth[8].T_world_camera.translation()).norm(), 0.02);
 }
 
 TEST_P(MapFile, AnotherRoomIsNeverRecognised) {

@@ -32,7 +32,8 @@ FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // 
     lost_frames = 0;
     learn(outcome.tracking, prediction);
     if (!lost.empty()) trackBack(outcome.tracking);
-    if (keyframeIsDue(world.reference(), outcome.tracking, options.keyframe))
+    if (keyframeIsDue(world.reference(), outcome.tracking, options.keyframe) ||
+        world.showsOtherTrack(*frame, outcome.tracking.pose))
         renewReference(outcome);  // Sec. VI
     // A tracked pose is what the next one is predicted from
     motion.measure(frame->timestamp(), outcome.tracking.pose.T_keyframe_camera, outcome.tracking.measured);

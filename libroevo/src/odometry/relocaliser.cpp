@@ -27,11 +27,11 @@ RelativePose poseOf(const EdgeRegistration& found, int keyframe) {
     return pose;
 }
 
-bool hasOthers(const std::vector<int>& tracks) {
+}  // namespace
+
+bool hasOtherTracks(const std::vector<int>& tracks) {
     return std::any_of(tracks.begin(), tracks.end(), [&](int track) { return track != tracks.back(); });
 }
-
-}  // namespace
 
 bool Whereabouts::allow(const Pose& T_world_there, int keyframe) const {
     const Pose apart = T_world_camera.inverse() * T_world_there;
@@ -69,7 +69,7 @@ void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<
     copy.median_depth = keyframe.median_depth;
     copy.row_motion = keyframe.row_motion;
     auto seen = std::make_unique<Frame>();
-    if (end > 0 || hasOthers(tracks)) {
+    if (end > 0 || hasOtherTracks(tracks)) {
         seen->edges = frame.edges;
         seen->images.depth = frame.images.depth.clone();
         seen->images.mask = frame.images.mask.clone();
@@ -94,7 +94,7 @@ Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<
     place.median_depth = keyframe.median_depth;
     place.row_motion = keyframe.row_motion;
     const auto isOwn = [&](int id) { return at(tracks, id) == tracks.back(); };
-    if (hasOthers(tracks))
+    if (hasOtherTracks(tracks))
         out.elsewhere = lookUp(place.points, keyframe.id, [&](int id) { return !isOwn(id); });
     if (end > 0) out.alike = lookUp(place.points, keyframe.id, [&](int id) { return id < end && isOwn(id); });
     if (out.alike.empty() && out.elsewhere.empty()) return out;
@@ -170,13 +170,16 @@ std::optional<RecognisedPlace> Relocaliser::recognised(Among tracks, const Traje
                   whereabouts);
 }
 
-std::optional<RelativePose> Relocaliser::find(const Frame& frame, const Trajectory& trajectory,
+std::optional<RelativePose> Relocaliser::find(const Frame& frame, Among tracks, const Trajectory& trajectory,
                                               const Whereabouts& whereabouts) {
     collect();
     const EdgePoints3D edges = lifted(frame);
     if (edges.size() == 0) return std::nullopt;
     const PlacePoints points = describer_.describe(edges, frame.pyramid.level(0));
-    const std::vector<Alike> alike = lookUp(points, -1, [](int) { return true; });
+    const std::vector<int>& track_of = trajectory.tracks();
+    const std::vector<Alike> alike = lookUp(points, -1, [&](int id) {
+        return tracks == Among::kAllTracks || at(track_of, id) != track_of.back();
+    });
     const auto found = surest(registered(alike, frame, edges, RowMotion()), trajectory, whereabouts);
     if (!found || !found->sure) return std::nullopt;
     return found->pose;

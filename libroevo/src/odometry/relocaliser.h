@@ -37,7 +37,10 @@ struct KnownPlace {
 };
 
 /// Keyframes, as seen from the newest one.
-enum class Among { kOwnTrack, kOtherTracks };
+enum class Among { kOwnTrack, kOtherTracks, kAllTracks };
+
+/// @param tracks  of all keyframes, as Trajectory::tracks(). @return whether some are not of the newest one's
+bool hasOtherTracks(const std::vector<int>& tracks);
 
 /// A place that a frame may show, as far as one look tells.
 struct RecognisedPlace {
@@ -84,8 +87,10 @@ class Relocaliser {
                                                             const Whereabouts& whereabouts);
 
     /// The keyframe that the frame shows for sure, and its pose relative to that.
+    /// @param tracks      among which it is looked for, not the newest keyframe's alone
     /// @param trajectory  with the keyframes
-    [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, const Trajectory& trajectory,
+    [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, Among tracks,
+                                                   const Trajectory& trajectory,
                                                    const Whereabouts& whereabouts);
 
     /// The pose about this one that the edges of keyframe and frame, their depths and their surroundings

@@ -23,6 +23,8 @@ constexpr double kAgreedTurn = 1 * kDegree;
 /// Times as much on a join: blurred images put places so far off, twins are much further apart, and where the
 /// map sees the place again it puts the rest right.
 constexpr double kJoinTolerance = 3;
+constexpr double kLeastWait = 0.2;     // s, between looks at frames that are no keyframes
+constexpr double kShareWaited = 0.1;   // of the time since the track was begun
 constexpr int kStillInView = 10;       // newest keyframes
 constexpr double kLeastOfShown = 0.5;  // points of a new keyframe, against what the old one still shows there
 constexpr double kDriftSigmas = 10;    // that the camera can be from where it is thought to be
@@ -161,6 +163,8 @@ Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker
     }
     fresh->id = trajectory_.beginTrack(frame.timestamp(), T_world_camera, covariance);
     misplacements_[fresh->id] = misplaced;
+    track_begun_at_ = timestamp_;
+    waitForNextLook();
     adopt(std::move(fresh), frame, RelativePose());
     return {};
 }
@@ -338,7 +342,18 @@ void World::closeLoop(const Look& newest) {
 
 std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& last, double since_measured) {
     if (!options_.loss.recognise) return std::nullopt;
-    return relocaliser_.find(frame, trajectory_, whereabouts(last, since_measured));
+    return relocaliser_.find(frame, Among::kAllTracks, trajectory_, whereabouts(last, since_measured));
+}
+
+bool World::showsOtherTrack(const Frame& frame, const RelativePose& pose) {
+    if (!options_.loss.recognise || timestamp_ < next_look_ || !hasOtherTracks(trajectory_.tracks()))
+        return false;
+    waitForNextLook();
+    return relocaliser_.find(frame, Among::kOtherTracks, trajectory_, whereabouts(pose, 0)).has_value();
+}
+
+void World::waitForNextLook() {
+    next_look_ = timestamp_ + std::max(kLeastWait, kShareWaited * (timestamp_ - track_begun_at_));
 }
 
 std::vector<MapRefusal> World::refineAll() {

@@ -66,6 +66,9 @@ class World {
     /// @param since_measured  s, since the camera's pose was known
     [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, const RelativePose& last,
                                                    double since_measured);
+    /// Whether a frame that was tracked shows a place of a track that this one is not joined to yet. Looks
+    /// for one now and then, ever less often.
+    [[nodiscard]] bool showsOtherTrack(const Frame& frame, const RelativePose& pose);
     /// The reference before this one, of the same track, and where this one is from there. Null where there
     /// is none.
     [[nodiscard]] const Keyframe* previous(Pose& T_previous_reference);
@@ -87,6 +90,7 @@ class World {
     }
 
   private:
+    void waitForNextLook();
     void adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked);
     void recognise();
     struct Look {
@@ -127,10 +131,11 @@ class World {
     bool held_ = false;
     bool localised_ = false;  // in the map that was loaded
     double timestamp_ = 0, seconds_per_row_ = 0;
-    std::map<int, Reach> misplacements_;  // of tracks that were begun after a loss
-    double recognised_at_ = 0;            // s; when the place of the newest keyframe is to be known
-    bool recognising_ = false;            // it is not known yet
-    std::optional<Look> look_;            // that a second one must agree with
+    std::map<int, Reach> misplacements_;         // of tracks that were begun after a loss
+    double track_begun_at_ = 0, next_look_ = 0;  // s; at other tracks
+    double recognised_at_ = 0;                   // s; when the place of the newest keyframe is to be known
+    bool recognising_ = false;                   // it is not known yet
+    std::optional<Look> look_;                   // that a second one must agree with
     FrameResult change_;
 };
 
