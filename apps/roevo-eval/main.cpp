@@ -18,6 +18,7 @@ namespace roevo {
 namespace {
 
 constexpr char kName[] = "roevo-eval";
+constexpr double kComparable = 0.9;  // share of the poses: what is judged by fewer is another stretch
 
 void printRow(const char* label, const ErrorStatistics& s, double scale) {
     if (s.count == 0) {
@@ -96,6 +97,18 @@ void writeJson(const std::vector<JudgedEstimate>& estimates, const Settings& set
     writeTextAtomically(settings.json, json.dump(2) + "\n");
 }
 
+// Errors of a part and of the whole stand in one table.
+void warnOfParts(const std::vector<JudgedEstimate>& estimates) {
+    const auto poses = [](const JudgedEstimate& e) { return e.evaluation.pairs.size(); };
+    const auto [fewest, most] = std::minmax_element(
+        estimates.begin(), estimates.end(),
+        [&](const JudgedEstimate& a, const JudgedEstimate& b) { return poses(a) < poses(b); });
+    if (static_cast<double>(poses(*fewest)) >= kComparable * static_cast<double>(poses(*most))) return;
+    printWarning(kName, cleanText(fewest->name) + " is judged by " + counted(poses(*fewest), "pose") + ", " +
+                            cleanText(most->name) + " by " + std::to_string(poses(*most)) +
+                            ": errors of a part do not compare with those of the whole");
+}
+
 int run(int argc, char** argv) {
     Settings settings;
     std::vector<std::string> alignments;
@@ -160,6 +173,7 @@ int run(int argc, char** argv) {
     else
         std::printf("reference has %zu poses; pairs within %g s; %s\n\n%s", reference.size(), settings.max_dt,
                     alignmentOf(settings).text, terminalTable(estimates).c_str());
+    warnOfParts(estimates);
     if (!settings.json.empty()) writeJson(estimates, settings);
     if (!settings.table.empty())
         writeTextAtomically(settings.table,

@@ -165,6 +165,16 @@ TEST_F(EvalSeveral, ATableForAPaperHasTheBestInBoldAndNamesAsTheyAre) {
                                                                 << tex;
 }
 
+TEST_F(EvalSeveral, OneThatHasPartOfThePosesOnlyIsNamed) {
+    const std::string whole = test::readFile(folder_ / "right.txt");
+    test::writeFile(folder_ / "part.txt", whole.substr(0, whole.find('\n', whole.size() / 2) + 1));
+    const auto run = eval({named("whole", "right.txt"), named("half", "part.txt")});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_NE(run.err.find("warning: half is judged by "), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(", whole by "), std::string::npos) << run.err;
+    EXPECT_EQ(eval({named("whole", "right.txt"), named("too", "right.txt")}).err, "");
+}
+
 TEST_F(EvalSeveral, FailuresAreOneLine) {
     expectError(eval({folder_ / "right.txt"}, {"--align", "affine"}), 2, kEvalProgram, {"--align", "sim3"});
     expectError(eval({folder_ / "right.txt"}, {"--table", folder_ / "t.txt"}), 2, kEvalProgram,
