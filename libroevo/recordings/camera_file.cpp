@@ -38,6 +38,20 @@ struct Value {
 
 using Values = std::map<std::string, Value>;
 
+std::vector<std::string> knownKeys() {
+    std::vector<std::string> keys{"depth_scale", "frame_rate", kDepthPose};
+    for (const char* prefix : {"", "depth_"})
+        for (const char* key :
+             {"width", "height", "fx", "fy", "cx", "cy", kFiveTerms.key, kEightTerms.key, kFisheye.key})
+            keys.push_back(std::string(prefix) + key);
+    return keys;
+}
+
+bool isKnown(const std::string& key) {
+    const std::vector<std::string> known = knownKeys();
+    return std::find(known.begin(), known.end(), key) != known.end();
+}
+
 Values readKeyValues(const std::string& file) {
     requireRegularInput(file);
     errno = 0;
@@ -60,26 +74,19 @@ Values readKeyValues(const std::string& file) {
         Value value;
         value.where = where;
         for (std::string word; value_words >> word;) value.words.push_back(word);
+        if (const auto before = values.find(key); before != values.end() && isKnown(key))
+            throw std::runtime_error(where + ": " + key + " stands here again, first in " +
+                                     before->second.where);
         values[key] = value;
     }
     return values;
 }
 
-std::vector<std::string> knownKeys() {
-    std::vector<std::string> keys{"depth_scale", "frame_rate", kDepthPose};
-    for (const char* prefix : {"", "depth_"})
-        for (const char* key :
-             {"width", "height", "fx", "fy", "cx", "cy", kFiveTerms.key, kEightTerms.key, kFisheye.key})
-            keys.push_back(std::string(prefix) + key);
-    return keys;
-}
-
 /// An unknown key that is nearly one of those that are absent; else "". Others are the user's own.
 /// @param share  one in so many characters of a key may differ, and one of a short key
 std::string misspelt(const Values& values, const std::vector<std::string>& absent, std::size_t share) {
-    const std::vector<std::string> known = knownKeys();
     for (const auto& [key, value] : values) {
-        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        if (isKnown(key)) continue;
         const auto distance = [&name = key](const std::string& other) { return editDistance(name, other); };
         const auto closest = std::min_element(
             absent.begin(), absent.end(),

@@ -35,5 +35,20 @@ TEST(CameraFile, ReadsBackTheSameNumbers) {
     }
 }
 
+TEST(CameraFile, WhatStandsThereTwiceIsRefused) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder / "camera.txt",
+                      text = cameraFileText({320, 240, 262.5, 262.5, 160, 120, {}}, 1000, {}, plainNumber);
+    test::writeFile(file, text + "note: one\nnote: two\n");
+    EXPECT_EQ(readCameraFile(file).camera.fx, 262.5) << "notes may";
+    test::writeFile(file, text + "fx: 525\n");
+    try {
+        readCameraFile(file);
+        FAIL() << "which one counts?";
+    } catch (const std::runtime_error& error) {
+        EXPECT_EQ(std::string(error.what()), file + ":9: fx stands here again, first in " + file + ":3");
+    }
+}
+
 }  // namespace
 }  // namespace roevo
