@@ -80,6 +80,8 @@ TEST(ConfigFile, ErrorsNameFileLineAndClosestKey) {
     EXPECT_NE(error("[sensor]\nmax_depth = far\n").find("far"), std::string::npos);
     EXPECT_NE(error("[sensor]\nmax_depth = 1e9\n").find("outside"), std::string::npos);
     EXPECT_NE(error("[sensor]\nmax_depth 3\n").find("x.ini:2: expected 'key = value'"), std::string::npos);
+    EXPECT_EQ(error("[sensor]\nmax_depth = 3\n[fine]\n[sensor]\nmax_depth = 4\n"),
+              "x.ini:5: sensor.max_depth stands here again, first in line 2");
     EXPECT_EQ(values(options), values({})) << "a faulty file must change nothing";
     EXPECT_NE(errorOf([&] { loadConfigFile("/nowhere/x.ini", options); }).find("/nowhere/x.ini"),
               std::string::npos);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <variant>
@@ -48,6 +49,7 @@ void loadConfigText(const std::string& text, const std::string& name, OdometryOp
     OdometryOptions changed = options;
     std::istringstream in(text);
     std::string line, section;
+    std::map<std::string, int> lines;  // that options stand in
     for (int line_number = 1; std::getline(in, line); line_number++) {
         if (line_number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0)
             line.erase(0, 3);  // as editors on Windows write
@@ -63,8 +65,12 @@ void loadConfigText(const std::string& text, const std::string& name, OdometryOp
             throw std::runtime_error(where + "expected 'key = value', found '" + excerpt(content) + "'");
         const std::string key = trimmed(content.substr(0, equals)),
                           value = trimmed(content.substr(equals + 1));
-        const std::string fault = setOption(changed, section.empty() ? key : section + "." + key, value);
+        const std::string option = section.empty() ? key : section + "." + key;
+        const std::string fault = setOption(changed, option, value);
         if (!fault.empty()) throw std::runtime_error(where + fault);
+        if (const auto [before, fresh] = lines.emplace(option, line_number); !fresh)
+            throw std::runtime_error(where + option + " stands here again, first in line " +
+                                     std::to_string(before->second));
     }
     if (const std::string fault = checkOptions(changed); !fault.empty())
         throw std::runtime_error(name + ": " + fault);
