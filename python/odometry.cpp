@@ -4,12 +4,11 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <fstream>
 #include <mutex>
 
-#include "../libroevo/mrpt_module/src/whole_file.h"
 #include "bindings.h"
 #include "images.h"
+#include "roevo_mrpt/map_file.h"
 
 namespace py = pybind11;
 
@@ -85,21 +84,12 @@ class Session {
 
     int loadMap(const std::filesystem::path& file, bool localise_only) {
         return alone([&](Odometry& odometry) {
-            return odometry.loadMap(file.string(), localise_only ? MapUse::kLocalise : MapUse::kExtend);
+            return loadMapFile(file.string(), odometry, localise_only ? MapUse::kLocalise : MapUse::kExtend);
         });
     }
 
     int saveMap(const std::filesystem::path& file) {
-        return alone([&](Odometry& odometry) {
-            int keyframes = 0;
-            writeWholeFile(file.string(), [&](const std::string& temporary) {
-                std::ofstream out(temporary, std::ios::binary);
-                keyframes = odometry.saveMap(out);
-                out.close();
-                return !out.fail();
-            });
-            return keyframes;
-        });
+        return alone([&](Odometry& odometry) { return saveMapFile(odometry, file.string()); });
     }
 
     /// What a constant function of the odometry gives.

@@ -21,6 +21,7 @@
 #include "programs/whole_outputs.h"
 #include "recordings/frame_source.h"
 #include "roevo_mrpt/config_file.h"
+#include "roevo_mrpt/map_file.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/scene_builder.h"
 
@@ -180,7 +181,7 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
 // Begins with the map that was asked for.
 void loadMap(const RunSettings& settings, Odometry& odometry, RunReport& report) {
     const MapUse use = settings.localise_only ? MapUse::kLocalise : MapUse::kExtend;
-    const int keyframes = odometry.loadMap(settings.map_in, use);
+    const int keyframes = loadMapFile(settings.map_in, odometry, use);
     report.map_in = LoadedMap{settings.map_in, keyframes, settings.localise_only};
 }
 
@@ -271,7 +272,10 @@ SceneContent finishMap(Odometry& odometry, RunReport& report) {
     report.trajectory = odometry.trajectory();
     report.keyframes = odometry.keyframes();
     if (report.map_in)  // those of this recording
-        report.keyframes.erase(report.keyframes.begin(), report.keyframes.begin() + report.map_in->keyframes);
+        report.keyframes.erase(
+            std::remove_if(report.keyframes.begin(), report.keyframes.end(),
+                           [&](const KeyframeInfo& k) { return k.id < report.map_in->keyframes; }),
+            report.keyframes.end());
     SceneContent content;
     content.map = odometry.map();
     content.semi_dense = odometry.semiDense();

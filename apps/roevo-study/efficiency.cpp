@@ -11,12 +11,12 @@
 namespace roevo {
 namespace {
 
-struct Operations {
+struct OperationRow {
     const char *pipeline, *operation;
     std::vector<Operation> parts;  // that are added up
 };
-const std::vector<Operations>& rows() {
-    static const std::vector<Operations> rows = {
+const std::vector<OperationRow>& rows() {
+    static const std::vector<OperationRow> rows = {
         {"ROEVO", "edge detection", {kDetect}},
         {"ROEVO", "organizing edges", {kOrganize}},
         {"ROEVO", "coarse tracking", {kCoarse}},
@@ -47,7 +47,7 @@ double middle(const Measured& measured, const std::vector<Operation>& parts) {
 }
 
 void addRows(CsvTable& table, const Measured& measured) {
-    for (const Operations& row : rows()) {
+    for (const OperationRow& row : rows()) {
         const std::vector<double> ms = values(measured, row.parts);
         const ErrorStatistics statistics = errorStatistics(ms);
         table.add({measured.name, row.pipeline, row.operation, CsvTable::number(statistics.median, 4),

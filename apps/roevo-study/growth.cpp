@@ -17,10 +17,10 @@
 namespace roevo {
 namespace {
 
-constexpr double kSizes[] = {0.5, 0.75, 1, 1.5, 2, 3};  // of the images' width and height
-constexpr std::size_t kFramesOfSizes = 150;             // at each of these sizes
-constexpr std::size_t kFewestOfPiece = 25;              // frames that a point of a curve stands for
-constexpr std::size_t kMostPieces = 40;                 // of a curve
+constexpr double kSizeFactors[] = {0.5, 0.75, 1, 1.5, 2, 3};  // of the images' width and height
+constexpr std::size_t kFramesOfSizes = 150;                   // at each of these sizes
+constexpr std::size_t kFewestOfPiece = 25;                    // frames that a point of a curve stands for
+constexpr std::size_t kMostPieces = 40;                       // of a curve
 
 /// Held by this process's allocator, images included, MB.
 double memoryInUseMb() {
@@ -191,12 +191,12 @@ StudyReport studyGrowth(const std::vector<StudyInput>& inputs, const std::string
          "ms per keyframe, mapping", "memory at the end, MB", "ATE, cm"}};
     std::vector<std::string> names;
     std::vector<OfRecording> recordings;
-    Progress progress("growth", inputs.size() * std::size(kSizes));
+    Progress progress("growth", inputs.size() * std::size(kSizeFactors));
     std::size_t done = 0;
     forEachInput(inputs, report, [&](const StudyInput& input) {
         OfRecording runs;
         runs.whole = measure(input, 1, std::numeric_limits<std::size_t>::max());
-        for (const double factor : kSizes) {
+        for (const double factor : kSizeFactors) {
             runs.sizes.push_back(measure(input, factor, kFramesOfSizes));
             if (runs.sizes.back().frames.empty()) throw std::runtime_error("no frame could be read");
             progress.update(++done);
@@ -211,7 +211,7 @@ StudyReport studyGrowth(const std::vector<StudyInput>& inputs, const std::string
     addTable(report, folder, "growth_frames.csv", of_frames);
     drawAll(report, folder, names, recordings);
     report.summary =
-        counted(recordings.size(), "recording") + " at " + std::to_string(std::size(kSizes)) + " sizes";
+        counted(recordings.size(), "recording") + " at " + std::to_string(std::size(kSizeFactors)) + " sizes";
     report.table = markdownTable(shown);
     report.notes.push_back(
         "Times are processor time, without decoding: of the thread that tracks, and of mapping beside it. "

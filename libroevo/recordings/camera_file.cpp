@@ -29,7 +29,7 @@ struct LensKey {
 };
 constexpr LensKey kFiveTerms{"distortion_k1_k2_p1_p2_k3", 5, LensModel::kBrownConrady};
 constexpr LensKey kEightTerms{"distortion_k1_k2_p1_p2_k3_k4_k5_k6", 8, LensModel::kBrownConrady};
-constexpr LensKey kFisheye{"fisheye_k1_k2_k3_k4", 4, LensModel::kKannalaBrandt};
+constexpr LensKey kFisheyeTerms{"fisheye_k1_k2_k3_k4", 4, LensModel::kKannalaBrandt};
 
 struct Value {
     std::string where;
@@ -42,7 +42,7 @@ std::vector<std::string> knownKeys() {
     std::vector<std::string> keys{"depth_scale", "frame_rate", kDepthPose};
     for (const char* prefix : {"", "depth_"})
         for (const char* key :
-             {"width", "height", "fx", "fy", "cx", "cy", kFiveTerms.key, kEightTerms.key, kFisheye.key})
+             {"width", "height", "fx", "fy", "cx", "cy", kFiveTerms.key, kEightTerms.key, kFisheyeTerms.key})
             keys.push_back(std::string(prefix) + key);
     return keys;
 }
@@ -125,7 +125,7 @@ void requireAll(const Values& values, const std::vector<std::string>& missing, c
 /// @param prefix  of the keys: "" or "depth_"
 void readLens(const Values& values, const std::string& prefix, PinholeCamera& camera) {
     std::string known;
-    for (const LensKey& lens : {kFiveTerms, kEightTerms, kFisheye}) {
+    for (const LensKey& lens : {kFiveTerms, kEightTerms, kFisheyeTerms}) {
         const std::string key = prefix + lens.key;
         const auto found = values.find(key);
         if (found == values.end()) continue;
@@ -227,7 +227,7 @@ std::string cameraFileText(const PinholeCamera& camera, double depth_scale,
     const std::pair<const char*, double> values[] = {
         {"fx", camera.fx}, {"fy", camera.fy}, {"cx", camera.cx}, {"cy", camera.cy}};
     for (const auto& [key, value] : values) text += std::string(key) + ": " + number(value) + "\n";
-    const LensKey& lens = camera.lens == LensModel::kKannalaBrandt ? kFisheye
+    const LensKey& lens = camera.lens == LensModel::kKannalaBrandt ? kFisheyeTerms
                           : camera.isRational()                    ? kEightTerms
                                                                    : kFiveTerms;
     text += std::string(lens.key) + ":";

@@ -9,8 +9,8 @@ namespace roevo {
 namespace {
 
 constexpr char kAssociations[] = "--associations", kIntrinsics[] = "--intrinsics",
-               kDistortion[] = "--distortion", kFisheyeOption[] = "--fisheye",
-               kDepthScale[] = "--depth-scale", kFrameRate[] = "--frame-rate";
+               kDistortion[] = "--distortion", kFisheye[] = "--fisheye", kDepthScale[] = "--depth-scale",
+               kFrameRate[] = "--frame-rate";
 
 std::string joined(const std::vector<double>& values) {
     std::string text;
@@ -25,7 +25,7 @@ std::vector<std::pair<std::string, std::string>> FolderChoice::options() const {
     if (!associations.empty()) out.emplace_back(kAssociations, associations);
     if (!intrinsics.empty()) out.emplace_back(kIntrinsics, joined(intrinsics));
     if (!distortion.empty()) out.emplace_back(kDistortion, joined(distortion));
-    if (!fisheye.empty()) out.emplace_back(kFisheyeOption, joined(fisheye));
+    if (!fisheye.empty()) out.emplace_back(kFisheye, joined(fisheye));
     if (depth_scale > 0) out.emplace_back(kDepthScale, plainNumber(depth_scale));
     if (frame_rate > 0) out.emplace_back(kFrameRate, plainNumber(frame_rate));
     return out;
@@ -37,9 +37,9 @@ void FolderChoice::check() const {
         throw UsageError(std::string(kDistortion) +
                          ": 4, 5 or 8 numbers (k1 k2 p1 p2 [k3 [k4 k5 k6]]), not " + std::to_string(terms));
     if (terms != 0 && !fisheye.empty())
-        throw UsageError(std::string(kDistortion) + " and " + kFisheyeOption + ": one lens at a time");
+        throw UsageError(std::string(kDistortion) + " and " + kFisheye + ": one lens at a time");
     if (intrinsics.empty() && (terms != 0 || !fisheye.empty()))
-        throw UsageError(std::string(terms != 0 ? kDistortion : kFisheyeOption) + " needs " + kIntrinsics);
+        throw UsageError(std::string(terms != 0 ? kDistortion : kFisheye) + " needs " + kIntrinsics);
     if (!intrinsics.empty() && !(depth_scale > 0))
         throw UsageError(std::string(kIntrinsics) + " needs " + kDepthScale +
                          " (units per metre; of images in mm 1000)");
@@ -57,8 +57,7 @@ void addFolderOptions(CLI::App& app, FolderChoice& choice) {
                    "With --intrinsics: lens k1 k2 p1 p2 [k3 [k4 k5 k6]] as OpenCV has it")
         ->expected(4, 8)
         ->delimiter(',');
-    app.add_option(kFisheyeOption, choice.fisheye,
-                   "With --intrinsics: fish-eye lens k1 k2 k3 k4 (Kannala-Brandt)")
+    app.add_option(kFisheye, choice.fisheye, "With --intrinsics: fish-eye lens k1 k2 k3 k4 (Kannala-Brandt)")
         ->expected(4)
         ->delimiter(',');
     app.add_option(kDepthScale, choice.depth_scale, "Folders: units per metre of the depth images")

@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 namespace roevo {
 namespace {
 
-constexpr double kScanRate = 30;  // Hz
-constexpr double kScanUnits = 1000;
+constexpr double kScanNetRate = 30;  // Hz
+constexpr double kScanNetUnitsPerMetre = 1000;
 
 /// The camera in the corner of a 4x4 matrix, without its size.
 PinholeCamera readIntrinsic(const fs::path& file) {
@@ -44,7 +44,7 @@ CameraDescription readCameras(const fs::path& folder, const DatasetDescription& 
     const fs::path place = folder / "intrinsic";
     CameraDescription out;
     out.camera = readIntrinsic(place / "intrinsic_color.txt");
-    out.depth_scale = kScanUnits;
+    out.depth_scale = kScanNetUnitsPerMetre;
     out.source = "intrinsic/intrinsic_color.txt";
     if (!fs::exists(place / "intrinsic_depth.txt")) return out;
     for (const char* file : {"extrinsic_color.txt", "extrinsic_depth.txt"}) requireIdentity(place / file);
@@ -77,7 +77,7 @@ DatasetDescription loadScanNet(const std::string& folder_name, const DatasetOpti
     const NamedImages colours = imagesIn(folder / "color"), depths = imagesIn(folder / "depth");
     requireImages(colours, (folder / "color").string());
     requireImages(depths, (folder / "depth").string());
-    const double rate = options.folder.frame_rate > 0 ? options.folder.frame_rate : kScanRate;
+    const double rate = options.folder.frame_rate > 0 ? options.folder.frame_rate : kScanNetRate;
     out.notes.push_back(pairByName(colours, depths, rate, options.max_time_difference, out));
     finishFrames(out);
     const auto given = givenCamera(folder_name, options.folder);

@@ -29,18 +29,18 @@ using test::expectError;
 using test::readFile;
 using test::runProgram;
 
-constexpr std::size_t kWritten = 8;
+constexpr std::size_t kWrittenFrames = 8;
 const mrpt::poses::CPose3D kMount(0.3, -0.1, 1.2, 0.4, 0.2, -0.1);
 
 class MrptOutputsProgram : public test::OdometryProgram {
   protected:
     /// A walk through a room, the camera mounted askew on a robot with an inertial sensor.
     void record() const {
-        ASSERT_EQ(
-            runProgram("rawlog-simulate", {"--scene", "livingroom", "--frames", std::to_string(kWritten),
-                                           "--size", "320x240", "--output", folder_ / "level.rawlog"})
-                .exit_code,
-            0);
+        ASSERT_EQ(runProgram("rawlog-simulate",
+                             {"--scene", "livingroom", "--frames", std::to_string(kWrittenFrames), "--size",
+                              "320x240", "--output", folder_ / "level.rawlog"})
+                      .exit_code,
+                  0);
         RawlogReader reader(folder_ / "level.rawlog");
         std::optional<RawlogWriter> writer;
         while (const auto scan = reader.next()) {
@@ -143,10 +143,10 @@ TEST_F(MrptOutputsProgram, TheRawlogHasAPoseAndAMotionAtEveryScan) {
     ASSERT_EQ(runMounted({"--rawlog-with-poses", posed}).exit_code, 0);
     mrpt::obs::CRawlog log;
     ASSERT_TRUE(log.loadFromRawLogFile(posed));
-    ASSERT_EQ(log.size(), 2 * kWritten);
+    ASSERT_EQ(log.size(), 2 * kWrittenFrames);
     const auto path = robot();
-    ASSERT_EQ(path.size(), kWritten);
-    for (std::size_t i = 0; i < kWritten; ++i) {
+    ASSERT_EQ(path.size(), kWrittenFrames);
+    for (std::size_t i = 0; i < kWrittenFrames; ++i) {
         const auto frame = log.getAsObservations(2 * i + 1);
         ASSERT_TRUE(frame);
         EXPECT_TRUE(frame->getObservationByClass<mrpt::obs::CObservationIMU>());

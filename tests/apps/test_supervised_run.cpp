@@ -30,7 +30,7 @@ using test::soon;
 using test::TemporaryFolder;
 using test::writeFile;
 
-constexpr double kWhile = 60;  // s
+constexpr double kLongTimeout = 60;  // s
 
 TEST(Contention, WaitingForOtherProgramsIsSeen) {
     if (!fs::exists("/proc/thread-self/schedstat")) GTEST_SKIP() << "the system does not tell";
@@ -41,7 +41,7 @@ TEST(Contention, WaitingForOtherProgramsIsSeen) {
     CPU_SET(static_cast<std::size_t>(core), &only);
     ASSERT_EQ(sched_setaffinity(0, sizeof only, &only), 0);
     {
-        ChildProcess rival(shell("while :; do :; done"), core, kWhile);
+        ChildProcess rival(shell("while :; do :; done"), core, kLongTimeout);
         const CoreContention contention;
         test::work(400);
         EXPECT_GT(contention.shareLost(), 0.2) << "two want one core";
@@ -69,7 +69,7 @@ TEST(CoreClaims, NoTwoAreOfOneCoreAndTheyComeFreeAgain) {
 
 class Supervised : public testing::Test {
   protected:
-    RunTask task(double timeout = kWhile) const {
+    RunTask task(double timeout = kLongTimeout) const {
         RunTask task;
         task.sequence = "clip";
         task.input = "clip.rawlog";
@@ -82,7 +82,7 @@ class Supervised : public testing::Test {
     }
 
     // Runs a script; $RUN is the folder for the result.
-    MethodRun make(const std::string& script, double timeout = kWhile) const {
+    MethodRun make(const std::string& script, double timeout = kLongTimeout) const {
         const auto command = [&](const std::string& partial) {
             return shell("RUN='" + partial + "'; " + script);
         };
@@ -109,7 +109,7 @@ class Supervised : public testing::Test {
         for (int i = 0; i < 3; ++i) run.trajectory.push_back({1.0 + i, Pose::Identity()});
         return leave("made", run);
     }
-    std::string failure(const std::string& script, double timeout = kWhile) const {
+    std::string failure(const std::string& script, double timeout = kLongTimeout) const {
         const MethodRun made = make(script, timeout);
         EXPECT_EQ(kept().failure, made.failure) << "what is kept is what is said";
         EXPECT_EQ(kept().key, "k");

@@ -14,7 +14,7 @@ namespace {
 
 using testing::uniform;
 
-const PinholeCamera kTumCamera{640, 480, 517.3, 530.1, 318.6, 255.3, {}};
+const PinholeCamera kUnequalCamera{640, 480, 517.3, 530.1, 318.6, 255.3, {}};
 
 /// What one match, of a point in the camera with an edge of this normal, adds to the system with these
 /// residuals.
@@ -37,7 +37,7 @@ PoseSystem systemOf(const Eigen::Vector3d& point, const Eigen::Vector2d& normal,
     kernels::best().liftEdges({x.data(), y.data(), z.data(), nullptr, nullptr, current.data()},
                               {nullptr, nullptr, nx.data(), ny.data(), nullptr, nullptr}, weight.data(),
                               residual.data(), of_depth.data(), depth.data(), kernels::kLanes,
-                              static_cast<float>(kTumCamera.fx), static_cast<float>(kTumCamera.fy),
+                              static_cast<float>(kUnequalCamera.fx), static_cast<float>(kUnequalCamera.fy),
                               rows.arrays(1));
     PoseSystem system;
     system.add(rows.sum());
@@ -66,15 +66,15 @@ TEST(FineJacobians, PointToTangentResidualIsDifferentiatedRight) {
     std::mt19937 random(101);
     for (int i = 0; i < 500; ++i) {
         const Pose pose = testing::randomPose(random, 0.5, 0.4);
-        const Eigen::Vector3d in_camera =
-            kTumCamera.backProject(uniform(random, 0, 640), uniform(random, 0, 480), uniform(random, 0.4, 8));
+        const Eigen::Vector3d in_camera = kUnequalCamera.backProject(
+            uniform(random, 0, 640), uniform(random, 0, 480), uniform(random, 0.4, 8));
         const Eigen::Vector3d in_keyframe = pose.inverse() * in_camera;
         const double angle = uniform(random, 0, 6.3);
         const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
-        const Eigen::Vector2d seen =
-            kTumCamera.project(in_camera) + Eigen::Vector2d(uniform(random, -5, 5), uniform(random, -5, 5));
+        const Eigen::Vector2d seen = kUnequalCamera.project(in_camera) +
+                                     Eigen::Vector2d(uniform(random, -5, 5), uniform(random, -5, 5));
         const auto residual = [&](const Pose& at) {
-            return normal.dot(kTumCamera.project(at * in_keyframe) - seen);
+            return normal.dot(kUnequalCamera.project(at * in_keyframe) - seen);
         };
         const double r = residual(pose);
         expectNear(systemOf(in_camera, normal, r, 1, 0, 0), numericJacobian(pose, residual), r);
@@ -103,18 +103,18 @@ TEST(FineJacobians, GaussNewtonOnThemConverges) {
     std::vector<Eigen::Vector3d> points;
     std::vector<Eigen::Vector2d> normals, seen;
     for (int i = 0; i < 60; ++i) {
-        points.push_back(kTumCamera.backProject(uniform(random, 50, 590), uniform(random, 50, 430),
-                                                uniform(random, 1, 4)));
+        points.push_back(kUnequalCamera.backProject(uniform(random, 50, 590), uniform(random, 50, 430),
+                                                    uniform(random, 1, 4)));
         const double angle = uniform(random, 0, 6.3);
         normals.emplace_back(std::cos(angle), std::sin(angle));
-        seen.push_back(kTumCamera.project(truth * points.back()));
+        seen.push_back(kUnequalCamera.project(truth * points.back()));
     }
     Pose pose = Pose::Identity();
     for (int iteration = 0; iteration < 6; ++iteration) {
         PoseSystem system;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Eigen::Vector3d p = pose * points[i];
-            const double r = normals[i].dot(kTumCamera.project(p) - seen[i]);
+            const double r = normals[i].dot(kUnequalCamera.project(p) - seen[i]);
             const PoseSystem one = systemOf(p, normals[i], r, 1, 0, 0);
             system.hessian += one.hessian;
             system.gradient += one.gradient;

@@ -15,7 +15,7 @@ namespace {
 
 using testing::Sequence;
 
-constexpr int kRound = 112;  // about four more than once round the room
+constexpr int kRoundFrames = 112;  // about four more than once round the room
 
 /// Once round the room, at 5 Hz. On the way depths grow too large and right again, so that the camera does
 /// not arrive where it began.
@@ -23,10 +23,10 @@ const Sequence& roundTheRoom() {
     static const Sequence sequence = [] {
         simulator::SimulationOptions options = testing::smallRoom();
         options.path = simulator::PathKind::kWalk;
-        options.frames = kRound;
+        options.frames = kRoundFrames;
         options.fps = 5;
         options.speed = 1;
-        Sequence sequence = testing::simulate(options, kRound);
+        Sequence sequence = testing::simulate(options, kRoundFrames);
         for (int i = 0; i < 90; ++i) {
             cv::Mat& depth = sequence.frames[static_cast<std::size_t>(i)].depth;
             depth = cv::Mat(depth * (1 + 0.08 * std::pow(std::sin(i / 90.0 * 3.14159), 2)));

@@ -121,7 +121,8 @@ TEST_P(MapFile, WrittenReadAndWrittenAgainIsTheSame) {
         Odometry odometry = odometryOf(yesterday());
         const int keyframes = load(odometry, yesterdaysMap(mode));
         EXPECT_GE(keyframes, 3);
-        EXPECT_EQ(static_cast<int>(odometry.keyframes().size()), keyframes);
+        EXPECT_TRUE(odometry.keyframes().empty()) << "they are in no world of this recording yet";
+        EXPECT_FALSE(odometry.isLocalised());
         EXPECT_TRUE(mapOf(odometry) == yesterdaysMap(mode));
     }
 }
@@ -138,6 +139,7 @@ TEST_P(MapFile, AnotherRecordingIsLocalisedFromItsFirstFrameOn) {
     EXPECT_LT(worstError(odometry.trajectory(), today()), 0.01);
     EXPECT_EQ(odometry.trajectory().size(), today().frames.size()) << "frames of this recording only";
     EXPECT_GT(static_cast<int>(odometry.keyframes().size()), keyframes);
+    EXPECT_TRUE(odometry.isLocalised());
 }
 
 TEST_P(MapFile, ARecordingThatBeginsElsewhereIsJoined) {
@@ -171,7 +173,9 @@ TEST_P(MapFile, ACameraThatComesToRestBeforeAKnownPlaceIsLocalised) {
         if (i < 3) frame.mask = hidden;
         const FrameResult result = odometry.processFrame(frame);
         ASSERT_TRUE(result.hasPose()) << result.reason;
-        if (i == 0) ASSERT_EQ(result.found_at, -1) << "else it is no test";
+        if (i == 0) {
+            ASSERT_EQ(result.found_at, -1) << "else it is no test";
+        }
         if (result.joined_at >= 0) found = i;
     }
     ASSERT_TRUE(found);
@@ -189,6 +193,8 @@ TEST_P(MapFile, AnotherRoomIsNeverRecognised) {
         EXPECT_EQ(result.joined_at, -1);
     }
     EXPECT_EQ(odometry.trajectory().front().T_world_camera.matrix(), Pose().matrix()) << "its own world";
+    EXPECT_FALSE(odometry.isLocalised());
+    for (const KeyframeInfo& keyframe : odometry.keyframes()) EXPECT_GE(keyframe.id, keyframes);
     for (const MapEdge& edge : odometry.map())
         EXPECT_GE(edge.keyframe_id, keyframes) << "the map's is not shown";
     EXPECT_TRUE(mapOf(odometry) == map()) << "and nothing is added to it";

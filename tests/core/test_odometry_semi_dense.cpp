@@ -47,7 +47,7 @@ double distanceToScene(const simulator::Scene& scene, const Eigen::Vector3d& poi
     return nearest;
 }
 
-simulator::SimulationOptions colouredNoise() {
+simulator::SimulationOptions noisyOptions() {
     simulator::SimulationOptions options = smallRoom();
     options.useKinectNoise();
     return options;
@@ -71,7 +71,7 @@ const Sequence& colouredRoom() {
     return sequence;
 }
 const Sequence& noisy() {
-    static const Sequence sequence = inColour(colouredNoise(), 40);
+    static const Sequence sequence = inColour(noisyOptions(), 40);
     return sequence;
 }
 
@@ -128,7 +128,7 @@ TEST(OdometrySemiDense, LiesOnTheRoomsSurfacesInEveryMode) {
 }
 
 TEST(OdometrySemiDense, WithAKinectsNoiseLiesWithinIt) {
-    const simulator::Simulator simulator(colouredNoise());
+    const simulator::Simulator simulator(noisyOptions());
     const auto odometry = run(noisy(), manyKeyframes());
     const auto points = odometry->semiDense();
     ASSERT_GE(points.size(), 4u * kPoints);

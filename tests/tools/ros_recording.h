@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <opencv2/imgcodecs.hpp>
 
 #include "recordings/dataset_reader.h"
 #include "support/run_program.h"

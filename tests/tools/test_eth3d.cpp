@@ -9,7 +9,7 @@ namespace {
 using test::errorOf;
 using test::SmallDataset;
 
-std::string openEth3d(const SmallDataset& folder) {
+std::string errorOfOpening(const SmallDataset& folder) {
     return errorOf([&] { openDataset(folder.path()); });
 }
 
@@ -17,25 +17,25 @@ TEST(Eth3d, CalibrationIsOneLineOfFourNumbersAndTheSizeIsThatOfTheImages) {
     const SmallDataset folder("eth3d");
     EXPECT_CONTAINS(openDataset(folder.path()).summary(), "from calibration.txt, size from the images");
     folder.write("calibration.txt", "60 61 31.5\n");
-    EXPECT_CONTAINS(openEth3d(folder), "calibration.txt must have one line 'fx fy cx cy'");
+    EXPECT_CONTAINS(errorOfOpening(folder), "calibration.txt must have one line 'fx fy cx cy'");
     folder.write("calibration.txt", "");
-    EXPECT_CONTAINS(openEth3d(folder), "no intrinsics");
+    EXPECT_CONTAINS(errorOfOpening(folder), "no intrinsics");
     folder.write("calibration.txt", "60 61 x 23.5\n");
-    EXPECT_CONTAINS(openEth3d(folder), "calibration.txt:1: 'x' is not a number");
+    EXPECT_CONTAINS(errorOfOpening(folder), "calibration.txt:1: 'x' is not a number");
     folder.write("calibration.txt", "60 61 310.5 230.5\n");  // of a larger image
-    EXPECT_CONTAINS(openEth3d(folder), "principal point (310.5, 230.5) is outside the 64x48 image");
+    EXPECT_CONTAINS(errorOfOpening(folder), "principal point (310.5, 230.5) is outside the 64x48 image");
     folder.write("calibration.txt", "0 61 31.5 23.5\n");
-    EXPECT_CONTAINS(openEth3d(folder), "no intrinsics");
+    EXPECT_CONTAINS(errorOfOpening(folder), "no intrinsics");
 }
 
 TEST(Eth3d, WithoutCalibrationItIsStillRecognised) {
     const SmallDataset folder("eth3d");
     folder.remove("calibration.txt");
-    EXPECT_CONTAINS(openEth3d(folder), "calibration.txt is missing");
-    EXPECT_CONTAINS(openEth3d(folder), "one line 'fx fy cx cy'");
+    EXPECT_CONTAINS(errorOfOpening(folder), "calibration.txt is missing");
+    EXPECT_CONTAINS(errorOfOpening(folder), "one line 'fx fy cx cy'");
     folder.remove("rgb.txt");
     folder.remove("depth.txt");
-    EXPECT_CONTAINS(openEth3d(folder), "calibration.txt is missing");
+    EXPECT_CONTAINS(errorOfOpening(folder), "calibration.txt is missing");
     folder.writeCamera("5000");  // the user's word
     EXPECT_EQ(openDataset(folder.path()).description().format, "eth3d");
 }
@@ -43,7 +43,7 @@ TEST(Eth3d, WithoutCalibrationItIsStillRecognised) {
 TEST(Eth3d, AUsersAssociatedListDoesNotTakeASequenceFromTum) {
     const SmallDataset named("eth3d", 3, "rgbd_dataset_freiburg1_desk"), described("eth3d");
     named.remove("calibration.txt");
-    EXPECT_CONTAINS(openEth3d(named), "64x48, but the camera is 640x480") << "that of freiburg1";
+    EXPECT_CONTAINS(errorOfOpening(named), "64x48, but the camera is 640x480") << "that of freiburg1";
     described.remove("calibration.txt");
     described.writeCamera("5000");
     EXPECT_EQ(openDataset(described.path()).description().format, "tum");
@@ -54,7 +54,7 @@ TEST(Eth3d, SizeIsTakenFromTheFirstImageThatCanBeRead) {
     std::filesystem::resize_file(folder / folder.colour(0), 40);
     EXPECT_EQ(openDataset(folder.path()).camera().width, 64);
     for (int i = 0; i < 3; i++) std::filesystem::resize_file(folder / folder.colour(i), 40);
-    EXPECT_CONTAINS(openEth3d(folder), folder.colour(0));
+    EXPECT_CONTAINS(errorOfOpening(folder), folder.colour(0));
 }
 
 TEST(Eth3d, InertialSamplesInEitherOrderOfColumns) {

@@ -20,7 +20,7 @@ namespace {
 
 #ifdef ROEVO_HAVE_MRPT_VISION
 
-constexpr char kNoVision[] = "";
+constexpr char kDifodoUnavailable[] = "";
 
 /// Coarsest level of the pyramid, as in the authors' own programs.
 constexpr unsigned kCoarsestColumns = 20;
@@ -141,17 +141,17 @@ class Difodo : public RegistrationMethod {
     cv::Mat buffer_;
 };
 
-std::unique_ptr<Method> makeDifodo(const PinholeCamera& camera, const OdometryOptions& options, int width,
-                                   int height) {
+std::unique_ptr<Method> createDifodo(const PinholeCamera& camera, const OdometryOptions& options, int width,
+                                     int height) {
     return std::make_unique<Difodo>(camera, options, width, height);
 }
 
 #else
 
-constexpr char kNoVision[] = "this MRPT has no vision module (package libmrpt-vision-dev)";
+constexpr char kDifodoUnavailable[] = "this MRPT has no vision module (package libmrpt-vision-dev)";
 
-std::unique_ptr<Method> makeDifodo(const PinholeCamera&, const OdometryOptions&, int, int) {
-    throw std::invalid_argument(kNoVision);
+std::unique_ptr<Method> createDifodo(const PinholeCamera&, const OdometryOptions&, int, int) {
+    throw std::invalid_argument(kDifodoUnavailable);
 }
 
 #endif
@@ -160,7 +160,7 @@ std::unique_ptr<Method> makeDifodo(const PinholeCamera&, const OdometryOptions&,
 
 std::vector<MethodInfo> difodoMethods() {
     MethodInfo low, high;
-    low.unavailable = high.unavailable = kNoVision;
+    low.unavailable = high.unavailable = kDifodoUnavailable;
     low.name = "difodo-240";
     low.label = "DIFODO 240x320";
     high.name = "difodo-480";
@@ -173,8 +173,8 @@ std::vector<MethodInfo> difodoMethods() {
 
 std::unique_ptr<Method> makeDifodo(const std::string& name, const PinholeCamera& camera,
                                    const OdometryOptions& options) {
-    if (name == "difodo-240") return makeDifodo(camera, options, 320, 240);
-    if (name == "difodo-480") return makeDifodo(camera, options, 640, 480);
+    if (name == "difodo-240") return createDifodo(camera, options, 320, 240);
+    if (name == "difodo-480") return createDifodo(camera, options, 640, 480);
     throw std::invalid_argument("there is no method called '" + name + "' in the family of DIFODO");
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 #ifdef ROEVO_HAVE_MRPT_SLAM
 
-constexpr char kNoSlam[] = "";
+constexpr char kIcpUnavailable[] = "";
 
 /// Grid on which the depth image of a reference is sampled, and that of a frame which is registered to it.
 /// They must not fit into each other: each point would find the one at its own pixel, and surfaces seem to
@@ -161,16 +161,17 @@ class Icp : public RegistrationMethod {
     Cloud reference_;
 };
 
-std::unique_ptr<Method> makeIcp(const PinholeCamera& camera, const OdometryOptions& options, bool keyframes) {
+std::unique_ptr<Method> createIcp(const PinholeCamera& camera, const OdometryOptions& options,
+                                  bool keyframes) {
     return std::make_unique<Icp>(camera, options, keyframes);
 }
 
 #else
 
-constexpr char kNoSlam[] = "this MRPT has no slam module (package libmrpt-slam-dev)";
+constexpr char kIcpUnavailable[] = "this MRPT has no slam module (package libmrpt-slam-dev)";
 
-std::unique_ptr<Method> makeIcp(const PinholeCamera&, const OdometryOptions&, bool) {
-    throw std::invalid_argument(kNoSlam);
+std::unique_ptr<Method> createIcp(const PinholeCamera&, const OdometryOptions&, bool) {
+    throw std::invalid_argument(kIcpUnavailable);
 }
 
 #endif
@@ -179,7 +180,7 @@ std::unique_ptr<Method> makeIcp(const PinholeCamera&, const OdometryOptions&, bo
 
 std::vector<MethodInfo> icpMethods() {
     MethodInfo frame, keyframe;
-    frame.unavailable = keyframe.unavailable = kNoSlam;
+    frame.unavailable = keyframe.unavailable = kIcpUnavailable;
     frame.name = "icp-frame";
     frame.label = "MRPT ICP frame";
     frame.note =
@@ -194,8 +195,8 @@ std::vector<MethodInfo> icpMethods() {
 
 std::unique_ptr<Method> makeIcp(const std::string& name, const PinholeCamera& camera,
                                 const OdometryOptions& options) {
-    if (name == "icp-frame") return makeIcp(camera, options, false);
-    if (name == "icp-keyframe") return makeIcp(camera, options, true);
+    if (name == "icp-frame") return createIcp(camera, options, false);
+    if (name == "icp-keyframe") return createIcp(camera, options, true);
     throw std::invalid_argument("there is no method called '" + name + "' in the family of ICP");
 }
 

@@ -18,13 +18,13 @@ namespace {
 
 #ifdef ROEVO_HAVE_OPENCV_RGBD
 
-constexpr char kNoRgbd[] = "";
+constexpr char kRgbdUnavailable[] = "";
 
 using cv::rgbd::Odometry;
 using cv::rgbd::OdometryFrame;
 
 /// Least share of the pixels with a depth.
-constexpr double kLeastKnownDepth = 0.02;
+constexpr double kLeastShareKnown = 0.02;
 
 class OpencvRgbd : public RegistrationMethod {
   public:
@@ -74,7 +74,7 @@ class OpencvRgbd : public RegistrationMethod {
         cv::Mat grey, depth;
         // Not zero for unknown depth: its pyramid would mix the two.
         resampler_.apply(frame.depth, depth, std::numeric_limits<float>::quiet_NaN());
-        result.becomes_reference = countKnown(depth) > kLeastKnownDepth * static_cast<double>(depth.total());
+        result.becomes_reference = countKnown(depth) > kLeastShareKnown * static_cast<double>(depth.total());
         cv::Ptr<OdometryFrame> prepared;
         if (result.becomes_reference) {
             undistorter_.apply(frame.grey, grey);
@@ -101,16 +101,17 @@ class OpencvRgbd : public RegistrationMethod {
     cv::Ptr<OdometryFrame> reference_;
 };
 
-std::unique_ptr<Method> makeRgbd(const PinholeCamera& camera, const OdometryOptions& options, bool with_icp) {
+std::unique_ptr<Method> createRgbd(const PinholeCamera& camera, const OdometryOptions& options,
+                                   bool with_icp) {
     return std::make_unique<OpencvRgbd>(camera, options, with_icp);
 }
 
 #else
 
-constexpr char kNoRgbd[] = "this OpenCV has no rgbd module (package libopencv-contrib-dev)";
+constexpr char kRgbdUnavailable[] = "this OpenCV has no rgbd module (package libopencv-contrib-dev)";
 
-std::unique_ptr<Method> makeRgbd(const PinholeCamera&, const OdometryOptions&, bool) {
-    throw std::invalid_argument(kNoRgbd);
+std::unique_ptr<Method> createRgbd(const PinholeCamera&, const OdometryOptions&, bool) {
+    throw std::invalid_argument(kRgbdUnavailable);
 }
 
 #endif
@@ -119,7 +120,7 @@ std::unique_ptr<Method> makeRgbd(const PinholeCamera&, const OdometryOptions&, b
 
 std::vector<MethodInfo> opencvRgbdMethods() {
     MethodInfo rgbd, icp;
-    rgbd.unavailable = icp.unavailable = kNoRgbd;
+    rgbd.unavailable = icp.unavailable = kRgbdUnavailable;
     rgbd.name = "opencv-rgbd";
     rgbd.label = "OpenCV RGB-D";
     rgbd.note =
@@ -135,8 +136,8 @@ std::vector<MethodInfo> opencvRgbdMethods() {
 
 std::unique_ptr<Method> makeOpencvRgbd(const std::string& name, const PinholeCamera& camera,
                                        const OdometryOptions& options) {
-    if (name == "opencv-rgbd") return makeRgbd(camera, options, false);
-    if (name == "opencv-rgbd-icp") return makeRgbd(camera, options, true);
+    if (name == "opencv-rgbd") return createRgbd(camera, options, false);
+    if (name == "opencv-rgbd-icp") return createRgbd(camera, options, true);
     throw std::invalid_argument("there is no method called '" + name + "' in the family of OpenCV");
 }
 

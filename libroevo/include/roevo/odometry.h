@@ -1,7 +1,6 @@
 #pragma once
 #include <iosfwd>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "roevo/camera/pinhole_camera.h"
@@ -62,8 +61,6 @@ class Odometry {
     /// camera, or recognising is off (options().loss). The odometry is then as it was
     /// @throws std::logic_error when there is a frame or a map already
     int loadMap(std::istream& in, MapUse use = MapUse::kExtend);
-    /// The same from a file, which errors name.
-    int loadMap(const std::string& file, MapUse use = MapUse::kExtend);
     /// Writes a map that loadMap() reads: the keyframes with their edges, places and surfaces, those of the
     /// map that was loaded and those that were joined to it; without one, those of the longest piece. Waits
     /// for what is still being mapped. Whether all was written is in the stream's state.
@@ -106,8 +103,10 @@ class Odometry {
     /// not make a motion of the camera.
     Pose motion(std::size_t from, std::size_t to) const;
 
-    /// Those of a map that was loaded come first.
+    /// Those of a map that was loaded come first, once the camera was recognised in it.
     std::vector<KeyframeInfo> keyframes() const;
+    /// Whether all is in the world of a map that was loaded: the camera was recognised in it.
+    bool isLocalised() const;
 
     /// The 3-D edges in the world: fused over all keyframes in mode ba, else the keyframes' own.
     EdgeMap map() const;

@@ -36,6 +36,7 @@ constexpr char kNoName[] = "(no name)";
 
 }  // namespace
 
+// Not in the unnamed namespace: RawlogReader::Impl, which has linkage, has one
 /// Remembers how far it got and whether it ran dry, which tells a proper end from a cut one; keeps damaged
 /// images from MRPT.
 class WatchedStream {

@@ -1,16 +1,19 @@
 #include "roevo_mrpt/roevo_odometry.h"
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <utility>
 
 #include "coloured_points.h"
 #include "input/excerpt.h"
+#include "input/regular_file.h"
+#include "roevo_mrpt/map_file.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "roevo_mrpt/time_conversions.h"
-#include "whole_file.h"
 
 namespace roevo {
 namespace {
@@ -53,27 +56,26 @@ void CRoevoOdometry::initialize(const mrpt::poses::CPose3D& robot_pose) {
 
 void CRoevoOdometry::loadMapFromFile(const std::string& file, MapUse use) {
     if (odometry_) throw std::logic_error("a map is loaded before the first observation");
+    requireRegularInput(file);
+    if (!std::ifstream(file)) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno));
     map_to_load_ = {file, use};
 }
 
 int CRoevoOdometry::saveMapToFile(const std::string& file) const {
     if (!odometry_) throw std::runtime_error("cannot write " + file + ": there is no keyframe");
-    int keyframes = 0;
-    writeWholeFile(file, [&](const std::string& temporary) {
-        std::ofstream out(temporary, std::ios::binary);
-        keyframes = odometry_->saveMap(out);
-        out.close();
-        return !out.fail();
-    });
-    return keyframes;
+    return saveMapFile(*odometry_, file);
 }
 
 void CRoevoOdometry::begin(const CObservation3DRangeScan& scan, const Pose& T_robot_camera) {
     Odometry fresh(colourCameraOf(scan), options.odometry, T_world_robot_start_ * T_robot_camera);
-    if (map_to_load_) fresh.loadMap(map_to_load_->file, map_to_load_->use);
-    odometry_ = std::move(fresh);
+    if (map_to_load_) {
+        const mrpt::system::CTimeLoggerEntry entry(profiler_, "load");
+        const int keyframes = loadMapFile(map_to_load_->file, fresh, map_to_load_->use);
+        logFmt(mrpt::system::LVL_INFO, "%s: a map of %d keyframes", map_to_load_->file.c_str(), keyframes);
+    }
     sensor_label_ = scan.sensorLabel;
     context_.mounts[fromMrptTime(scan.timestamp)] = T_robot_camera;
+    odometry_ = std::move(fresh);
 }
 
 RgbdFrame CRoevoOdometry::convert(const CObservation3DRangeScan& scan) {

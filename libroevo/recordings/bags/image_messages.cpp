@@ -14,7 +14,7 @@
 namespace roevo {
 namespace {
 
-constexpr double kWrittenUnits = 5000;
+constexpr double kWrittenUnitsPerMetre = 5000;
 
 bool contains(std::string_view text, std::string_view part) {
     return text.find(part) != std::string_view::npos;
@@ -75,7 +75,7 @@ cv::Mat compressedDepth(const CompressedImageMessage& message, const std::string
             const auto value = stored.at<std::uint16_t>(v, u);
             metres.at<float>(v, u) = value == 0 ? 0.f : a / (static_cast<float>(value) - b);
         }
-    return depthInUnits(metres, kWrittenUnits, too_far);
+    return depthInUnits(metres, kWrittenUnitsPerMetre, too_far);
 }
 
 }  // namespace
@@ -102,7 +102,7 @@ ImageKind kindOf(const CompressedImageMessage& message) {
 }
 
 double depthUnitsPerMetre(const std::string& encoding) {
-    return encoding == "32FC1" ? kWrittenUnits : 1000;
+    return encoding == "32FC1" ? kWrittenUnitsPerMetre : 1000;
 }
 
 BagImage::BagImage(const BagTopic& topic, const MessageBytes& message) : is_raw_(topic.isRaw()) {
@@ -139,7 +139,7 @@ cv::Mat BagImage::depth(std::size_t& too_far) const {
         return ordered(viewOf(raw_, CV_16UC1), raw_.big_endian);
     if (encoding_ != "32FC1")
         throw std::runtime_error("encoding " + excerpt(encoding_) + " is no depth image");
-    return depthInUnits(ordered(viewOf(raw_, CV_32FC1), raw_.big_endian), kWrittenUnits, too_far);
+    return depthInUnits(ordered(viewOf(raw_, CV_32FC1), raw_.big_endian), kWrittenUnitsPerMetre, too_far);
 }
 
 }  // namespace roevo

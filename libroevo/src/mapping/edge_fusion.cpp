@@ -8,7 +8,7 @@ namespace roevo {
 namespace {
 
 constexpr std::size_t kMinRun = 4;  ///< points of the shortest run that is stitched
-constexpr std::int32_t kAlone = -1;
+constexpr std::int32_t kUnassigned = -1;
 /// Farther from the reference than this, a point shows something else.
 constexpr double kReachAngle = 12.5 / 525, kReachSigmas = 8;  // rad
 
@@ -124,7 +124,7 @@ std::int32_t EdgeFuser::fit(const Eigen::Vector3d& p, std::size_t near) const {
     const Eigen::Vector3d chord = chain_[after].position - chain_[before].position;
     const double length = chord.squaredNorm();
     const double k = length > 0 ? (p - chain_[before].position).dot(chord) / length : -1;  // Eq. (14)
-    if (!(k > 0 && k < 1)) return kAlone;
+    if (!(k > 0 && k < 1)) return kUnassigned;
     const Eigen::Vector3d foot = chain_[before].position + k * chord;  // Eq. (15)
     std::size_t closest = near;
     for (const std::size_t candidate : {before, after}) {
@@ -154,7 +154,7 @@ void EdgeFuser::merge(const std::vector<WindowKeyframe>& window, const Member& m
         }
         return;
     }
-    assigned_.assign(count, kAlone);
+    assigned_.assign(count, kUnassigned);
     std::size_t near = 0;
     bool search_all = true;
     for (std::size_t i = 0; i < count; ++i) {
@@ -162,13 +162,13 @@ void EdgeFuser::merge(const std::vector<WindowKeyframe>& window, const Member& m
         search_all = !isNear(points_[i], chain_[near].position, view.T_world_camera.translation());
         if (search_all) continue;
         assigned_[i] = fit(points_[i], near);
-        if (assigned_[i] != kAlone || !atEnd(near)) continue;
+        if (assigned_[i] != kUnassigned || !atEnd(near)) continue;
         // Past an end of the reference: a closed edge goes on at its other end
         const std::size_t other = nearest(points_[i], near == 0 ? chain_.size() - 1 : 0, false);
         if (atEnd(other) || !isNear(points_[i], chain_[other].position, view.T_world_camera.translation()))
             continue;
         assigned_[i] = fit(points_[i], other);
-        if (assigned_[i] != kAlone) near = other;
+        if (assigned_[i] != kUnassigned) near = other;
     }
     for (std::size_t i = 0; i < count; ++i) {
         if (assigned_[i] >= 0) observe(static_cast<std::size_t>(assigned_[i]), observation(i));

@@ -10,7 +10,7 @@
 namespace roevo {
 namespace {
 
-constexpr int kGraphIterations = 20;
+constexpr int kMostGraphIterations = 20;
 constexpr double kSmallStep = 1e-7;       // m and rad
 constexpr double kVarianceFloor = 1e-12;  // m^2, rad^2
 
@@ -62,7 +62,7 @@ bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstrain
     std::vector<Matrix6d> information;
     for (const PoseConstraint& c : constraints) information.push_back(informationOf(c));
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
-    for (int iteration = 0; iteration < kGraphIterations; ++iteration) {
+    for (int iteration = 0; iteration < kMostGraphIterations; ++iteration) {
         Equations sum;
         sum.gradient = Eigen::VectorXd::Zero(6 * count);
         for (std::size_t k = 0; k < constraints.size(); ++k) {

@@ -19,10 +19,10 @@ constexpr double kSideways = 15 * kDegree;
 constexpr std::size_t kMostLooks = 12;  ///< points of an edge that are looked for, evenly along it
 /// An edge is in an image when this share of it has an edge point near it and about in its direction:
 constexpr double kImageShare = 0.5;
-constexpr float kLookRadius = 3;      ///< within this radius, px of a 640x480 Kinect
-constexpr float kLookSine = 0.35F;    ///< and turned by no more than this, sine of the angle
-constexpr std::size_t kChord = 3;     ///< points to each side that a tangent is taken between
-constexpr double kFrameEvidence = 3;  ///< keyframes that all frames since a keyframe count as
+constexpr float kLookRadius = 3;        ///< within this radius, px of a 640x480 Kinect
+constexpr float kLookSine = 0.35F;      ///< and turned by no more than this, sine of the angle
+constexpr std::size_t kChordReach = 3;  ///< points to each side that a tangent is taken between
+constexpr double kFrameEvidence = 3;    ///< keyframes that all frames since a keyframe count as
 
 /// Every so many of an edge's points are looked for.
 std::size_t strideOf(std::size_t points) {
@@ -148,8 +148,8 @@ bool PseudoEdgeJudge::isInImage(const View& view, const OrganizedEdges& image, c
         ++inside;
         project(view, edges.points[p], pixel);
         before = after = pixel;  // where a neighbour is behind the camera
-        project(view, edges.points[std::max(first + kChord, p) - kChord], before);
-        project(view, edges.points[std::min(end - 1, p + kChord)], after);
+        project(view, edges.points[std::max(first + kChordReach, p) - kChordReach], before);
+        project(view, edges.points[std::min(end - 1, p + kChordReach)], after);
         const Eigen::Vector2f chord = after - before;
         const float limit = kLookSine * chord.norm();
         found += grid_.any(pixel.x(), pixel.y(), radius, [&](std::size_t i) {

@@ -1,11 +1,7 @@
 #include "roevo/odometry.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <stdexcept>
 
-#include "input/regular_file.h"
 #include "map_file.h"
 #include "odometry_impl.h"
 #include "stopwatch.h"
@@ -39,16 +35,6 @@ int Odometry::loadMap(std::istream& in, MapUse use) {
         throw std::logic_error("a map is loaded before the first frame, and once");
     impl_->world.load(readMap(in), use == MapUse::kLocalise);
     return impl_->world.loaded();
-}
-int Odometry::loadMap(const std::string& file, MapUse use) {
-    requireRegularInput(file);
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno));
-    try {
-        return loadMap(in, use);
-    } catch (const std::runtime_error& fault) {
-        throw std::runtime_error(file + ": " + fault.what());
-    }
 }
 int Odometry::saveMap(std::ostream& out) const {
     StoredMap map = impl_->world.map();
@@ -97,7 +83,10 @@ Matrix6d Odometry::motionCovariance(std::size_t from, std::size_t to) const {
     return impl_->world.motionCovariance(from, to);
 }
 std::vector<KeyframeInfo> Odometry::keyframes() const {
-    return impl_->world.finalTrajectory().keyframes();
+    return impl_->world.keyframes();
+}
+bool Odometry::isLocalised() const {
+    return impl_->world.isLocalised();
 }
 EdgeMap Odometry::map() const {
     return impl_->world.fusedMap();

@@ -32,9 +32,10 @@ FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // 
     lost_frames = 0;
     learn(outcome.tracking, prediction);
     if (!lost.empty()) trackBack(outcome.tracking);
-    if (keyframeIsDue(world.reference(), outcome.tracking, options.keyframe) ||
-        world.showsOtherTrack(*frame, outcome.tracking.pose))
+    if (keyframeIsDue(world.reference(), outcome.tracking, options.keyframe))
         renewReference(outcome);  // Sec. VI
+    else
+        lookForOtherTrack(outcome);
     // A tracked pose is what the next one is predicted from
     motion.measure(frame->timestamp(), outcome.tracking.pose.T_keyframe_camera, outcome.tracking.measured);
     if (outcome.is_keyframe) motion.becomeReference();
@@ -279,6 +280,15 @@ void Odometry::Impl::renewReference(Outcome& outcome) {
     again.searched = tracking.searched;
     again.fault = tracking.fault;
     tracking = std::move(again);
+}
+
+/// A frame that shows where another track was becomes a keyframe, so that they can be joined.
+void Odometry::Impl::lookForOtherTrack(Outcome& outcome) {
+    const Tracking& tracking = outcome.tracking;
+    if (tracking.doubtful || tracking.depth_fault) return;  // nothing is joined by those
+    if (!world.lookForOtherTrack(*frame, tracking.pose)) return;
+    renewReference(outcome);
+    outcome.no_keyframe = {};  // none was due
 }
 
 /// What a tracked frame tells besides its pose, and what a gap before it leaves unknown.

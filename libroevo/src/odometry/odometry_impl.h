@@ -57,6 +57,7 @@ struct Odometry::Impl {
     Outcome findAgain(Outcome outcome, double since_measured);
     Outcome bridge(Outcome outcome, double since_measured);
     void renewReference(Outcome& outcome);
+    void lookForOtherTrack(Outcome& outcome);
     void learn(Tracking& tracking, const Prediction& prediction);
     MotionModel startingHere(const Pose& T_keyframe_camera) const;
     void trackBack(const Tracking& tracking);

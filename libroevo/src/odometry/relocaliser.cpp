@@ -177,9 +177,11 @@ std::optional<RelativePose> Relocaliser::find(const Frame& frame, Among tracks, 
     if (edges.size() == 0) return std::nullopt;
     const PlacePoints points = describer_.describe(edges, frame.pyramid.level(0));
     const std::vector<int>& track_of = trajectory.tracks();
-    const std::vector<Alike> alike = lookUp(points, -1, [&](int id) {
-        return tracks == Among::kAllTracks || at(track_of, id) != track_of.back();
-    });
+    const auto wanted = [&](int id) {
+        const bool own = at(track_of, id) == track_of.back();
+        return tracks == Among::kAllTracks || own == (tracks == Among::kOwnTrack);
+    };
+    const std::vector<Alike> alike = lookUp(points, -1, wanted);
     const auto found = surest(registered(alike, frame, edges, RowMotion()), trajectory, whereabouts);
     if (!found || !found->sure) return std::nullopt;
     return found->pose;

@@ -164,7 +164,6 @@ Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker
     fresh->id = trajectory_.beginTrack(frame.timestamp(), T_world_camera, covariance);
     misplacements_[fresh->id] = misplaced;
     track_begun_at_ = timestamp_;
-    waitForNextLook();
     adopt(std::move(fresh), frame, RelativePose());
     return {};
 }
@@ -192,6 +191,7 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
                          closesLoops() ? fresh->id - kStillInView : 0);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
+        waitForNextLook();
     }
     semi_dense_.add(fresh->edges.image, of.images, fresh->row_motion);
     mapper_->insert({*fresh, std::move(colours), trajectory_.keyframePose(fresh->id), tracked,
@@ -345,9 +345,10 @@ std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& 
     return relocaliser_.find(frame, Among::kAllTracks, trajectory_, whereabouts(last, since_measured));
 }
 
-bool World::showsOtherTrack(const Frame& frame, const RelativePose& pose) {
-    if (!options_.loss.recognise || timestamp_ < next_look_ || !hasOtherTracks(trajectory_.tracks()))
-        return false;
+bool World::lookForOtherTrack(const Frame& frame, const RelativePose& pose) {
+    // The newest keyframe is looked up itself
+    if (!options_.loss.recognise || recognising_ || timestamp_ < next_look_) return false;
+    if (!hasOtherTracks(trajectory_.tracks())) return false;
     waitForNextLook();
     return relocaliser_.find(frame, Among::kOtherTracks, trajectory_, whereabouts(pose, 0)).has_value();
 }
@@ -362,6 +363,12 @@ std::vector<MapRefusal> World::refineAll() {
     std::vector<MapRefusal> before = std::exchange(change_.map_refusals, {});
     for (const MapUpdate& update : mapper_->refineAll()) takeUpdate(update);
     return std::exchange(change_.map_refusals, std::move(before));
+}
+
+std::vector<KeyframeInfo> World::keyframes() const {
+    std::vector<KeyframeInfo> all = finalTrajectory().keyframes();
+    all.erase(all.begin(), all.begin() + unrelated());
+    return all;
 }
 
 Trajectory World::finalTrajectory() const {

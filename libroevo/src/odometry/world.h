@@ -66,9 +66,9 @@ class World {
     /// @param since_measured  s, since the camera's pose was known
     [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, const RelativePose& last,
                                                    double since_measured);
-    /// Whether a frame that was tracked shows a place of a track that this one is not joined to yet. Looks
-    /// for one now and then, ever less often.
-    [[nodiscard]] bool showsOtherTrack(const Frame& frame, const RelativePose& pose);
+    /// Now and then, ever less often: whether a frame that was tracked shows a place of a track that this one
+    /// is not joined to yet, for sure.
+    [[nodiscard]] bool lookForOtherTrack(const Frame& frame, const RelativePose& pose);
     /// The reference before this one, of the same track, and where this one is from there. Null where there
     /// is none.
     [[nodiscard]] const Keyframe* previous(Pose& T_previous_reference);
@@ -82,7 +82,9 @@ class World {
 
     /// With what has not taken effect yet.
     Trajectory finalTrajectory() const;
-    // A map that the camera was never recognised in is in a world of its own
+    /// The camera was recognised in the map that was loaded. Before that, the map is in a world of its own.
+    bool isLocalised() const { return localised_; }
+    std::vector<KeyframeInfo> keyframes() const;
     EdgeMap fusedMap() const { return inThisWorld(mapper_->fusedMap()); }
     EdgeMap keyframeEdges() const { return inThisWorld(mapper_->keyframeEdges()); }
     std::vector<ColouredPoint> semiDense() {
@@ -131,11 +133,12 @@ class World {
     bool held_ = false;
     bool localised_ = false;  // in the map that was loaded
     double timestamp_ = 0, seconds_per_row_ = 0;
-    std::map<int, Reach> misplacements_;         // of tracks that were begun after a loss
-    double track_begun_at_ = 0, next_look_ = 0;  // s; at other tracks
-    double recognised_at_ = 0;                   // s; when the place of the newest keyframe is to be known
-    bool recognising_ = false;                   // it is not known yet
-    std::optional<Look> look_;                   // that a second one must agree with
+    std::map<int, Reach> misplacements_;  // of tracks that were begun after a loss
+    double track_begun_at_ = 0;           // s
+    double next_look_ = 0;                // s; not before are frames looked up among other tracks
+    double recognised_at_ = 0;            // s; when the place of the newest keyframe is to be known
+    bool recognising_ = false;            // it is not known yet
+    std::optional<Look> look_;            // that a second one must agree with
     FrameResult change_;
 };
 

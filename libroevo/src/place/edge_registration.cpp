@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kSearchRadius = 12;  ///< px of a camera with f = 525 px: what the pose may be off
 constexpr int kMostIterations = 15;
-constexpr double kSettled = 0.03;  ///< px; tracking goes on from here
+constexpr double kRegistrationStill = 0.03;  ///< px; tracking goes on from here
 
 // What it takes to hold a pose
-constexpr int kLeastMatches = 150;
+constexpr int kLeastHeldInliers = 150;
 constexpr double kLeastVisible = 0.25;
 constexpr double kMostSigmaTranslation = 0.02;  ///< m
 constexpr double kMostSigmaRotation = 1 * kDegree;
@@ -47,7 +47,7 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     term_.start(keyframe, frame);
     GaussNewtonOptions loop{options_.fine.max_iterations, ideal_.fx, keyframe.typicalDepth()};
     loop.settled_from = term_.narrowed();
-    loop.still = kSettled;
+    loop.still = kRegistrationStill;
     loop.relaxation = kOverRelaxation;
     loop.relaxed_from = term_.narrowed();
     const GaussNewtonResult found = minimise(T_start, RollingShutter{rows}, {&term_}, loop);
@@ -62,7 +62,7 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     out.inliers = term_.inliers();
     out.keyframe_matched = term_.matches().matchedRatio();
     lookBack(keyframe, frame_edges, out);
-    out.held = out.inliers >= kLeastMatches && out.visible >= kLeastVisible &&
+    out.held = out.inliers >= kLeastHeldInliers && out.visible >= kLeastVisible &&
                worstSigma(out.covariance.topLeftCorner<3, 3>()) <= kMostSigmaTranslation &&
                worstSigma(out.covariance.bottomRightCorner<3, 3>()) <= kMostSigmaRotation;
     return out;

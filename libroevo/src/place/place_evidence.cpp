@@ -8,12 +8,12 @@ namespace {
 // Of 28,000 pairs of views of different doors and rooms that are alike (simulated, with and without noise; 8
 // points or more agree and edges hold the pose) one is conclusive, 11 more are strong and 8 more fit; of such
 // pairs of one place in real recordings 38 and 45 of a hundred are the first and the first two, and one in a
-// hundred is below the least. Shares of points and of edges that agree tell less, but where less than half is
-// in view of both: seen from so far elsewhere, surroundings look different at the right place, too.
+// hundred is below kLeastAlike. Shares of points and of edges that agree tell less, but where less than half
+// is in view of both: seen from so far elsewhere, surroundings look different at the right place, too.
 constexpr int kLeastInView = 30;
 constexpr double kDepths = 0.7;                                     ///< of them, those that agree
 constexpr double kSame = 0.99, kSimilar = 0.98, kLeastAlike = 0.8;  ///< shares of what surrounds the points
-constexpr double kLeastSeen = 0.5;                                  ///< share in view
+constexpr double kSeenFromElsewhere = 0.5;                          ///< share in view
 constexpr double kMatched = 0.8;                                    ///< of the edges, both ways
 constexpr double kFit = 0.7;  ///< mean of these shares and that of the points
 /// Points that agree: symmetric furniture, seen from its other side, had up to 15.
@@ -34,7 +34,7 @@ Evidence evidenceOf(const Verification& points, const EdgeRegistration& edges, c
     const bool some = points.inliers >= kSomePoints, many = points.inliers >= kManyPoints;
     if (some && alike >= kSame) return Evidence::kConclusive;
     if (some && alike >= kSimilar) return Evidence::kStrong;
-    const bool from_elsewhere = edges.visible < kLeastSeen;
+    const bool from_elsewhere = edges.visible < kSeenFromElsewhere;
     const double agreed = static_cast<double>(points.inliers) / points.matches;
     const double fit = (agreed + edges.keyframe_matched + edges.frame_matched) / 3;
     if (many && from_elsewhere && fit >= kFit &&

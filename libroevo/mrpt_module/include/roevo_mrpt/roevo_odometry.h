@@ -56,13 +56,16 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     void initialize(const mrpt::poses::CPose3D& robot_pose);
 
     /// Begins with the map of an earlier run: poses are in its world from where the camera is recognised in
-    /// it. To be called between initialize() and the first observation.
+    /// it (odometry()->isLocalised()). To be called between initialize(), which forgets it, and the first
+    /// observation.
     /// @param file  of saveMapToFile(); of roevo-odometry --map-out, too, whose worlds are not upright: they
-    /// have the axes of a camera. Read at the first observation
-    /// @throws std::logic_error after the first observation
+    /// have the axes of a camera. Its contents are read at the first observation
+    /// @throws std::runtime_error when the file cannot be read; std::logic_error after the first observation
     void loadMapFromFile(const std::string& file, MapUse use = MapUse::kExtend);
-    /// Writes a map for loadMapFromFile(), see Odometry::saveMap(). @return how many keyframes it has
+    /// Writes a map for loadMapFromFile(), see Odometry::saveMap(): where the camera was not recognised in
+    /// the map that was loaded, that alone. @return how many keyframes it has
     /// @throws std::runtime_error when there is none, or the file cannot be written; what was there is kept
+    /// @throws std::logic_error when a map is used to localise only
     int saveMapToFile(const std::string& file) const;
 
     /// What is always in view and moves with the camera, such as the robot's own arm, is left out from the
@@ -74,11 +77,13 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// logged; so do those of another sensorLabel than the first one's: this follows one camera.
     /// @return T_world_camera and its covariance are of the optical frame of the colour camera, in the
     /// robot's world.
-    /// @throws std::runtime_error or std::invalid_argument when the first observation's intrinsics, an option
-    /// or the map to begin with are unusable.
+    /// @throws std::runtime_error or std::invalid_argument as long as the first observation's intrinsics, an
+    /// option or the map to begin with are unusable, and what mapping threw in its thread, e.g.
+    /// std::bad_alloc
     FrameResult processObservation(const mrpt::obs::CObservation3DRangeScan& scan);
 
     /// Tracks every range image of the frame. The action is not used.
+    /// @throws as processObservation(), with those that follow not tracked
     void processActionObservation(mrpt::obs::CActionCollection& action,
                                   mrpt::obs::CSensoryFrame& observations);
 
@@ -93,7 +98,8 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     void refineAll();
 
     /// The keyframes: robot pose, and the keyframe's edges as it saw them (pseudo-edges too) as a
-    /// CObservationPointCloud of a CColouredPointsMap.
+    /// CObservationPointCloud of a CColouredPointsMap. Those of a map that was loaded have the sensor's pose
+    /// of today, and no covariance.
     void getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out) const;
     unsigned int getCurrentlyBuiltMapSize() const;
     void saveCurrentMapToFile(const std::string& simplemap_file) const;
@@ -118,7 +124,7 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
   private:
     struct MapToLoad {
         std::string file;
-        MapUse use;
+        MapUse use = MapUse::kExtend;
     };
     void begin(const mrpt::obs::CObservation3DRangeScan& scan, const Pose& T_robot_camera);
     RgbdFrame convert(const mrpt::obs::CObservation3DRangeScan& scan);
