@@ -87,7 +87,7 @@ class Relocaliser {
                                                             const Whereabouts& whereabouts);
 
     /// The keyframe that the frame shows for sure, and its pose relative to that.
-    /// @param tracks      among which it is looked for, not the newest keyframe's alone
+    /// @param tracks      among which it is looked for
     /// @param trajectory  with the keyframes
     [[nodiscard]] std::optional<RelativePose> find(const Frame& frame, Among tracks,
                                                    const Trajectory& trajectory,

@@ -348,8 +348,8 @@ std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& 
 bool World::lookForOtherTrack(const Frame& frame, const RelativePose& pose) {
     // The newest keyframe is looked up itself
     if (!options_.loss.recognise || recognising_ || timestamp_ < next_look_) return false;
-    if (!hasOtherTracks(trajectory_.tracks())) return false;
     waitForNextLook();
+    if (!hasOtherTracks(trajectory_.tracks())) return false;
     return relocaliser_.find(frame, Among::kOtherTracks, trajectory_, whereabouts(pose, 0)).has_value();
 }
 
