@@ -7,6 +7,7 @@
 #include <set>
 
 #include "programs/interrupt.h"
+#include "programs/output_folder.h"
 #include "programs/program.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/pose_conversions.h"
@@ -62,16 +63,11 @@ std::vector<PosedScan> posedScans(const RunReport& report, const Odometry& odome
     return scans;
 }
 
-bool isSameOutput(const std::string& a, const std::string& b) {
-    return !a.empty() && !b.empty() &&
-           std::filesystem::weakly_canonical(a) == std::filesystem::weakly_canonical(b);
-}
-
 void checkOutputs(const RunSettings& settings) {
     const auto check = [](const char* option, const std::string& file,
                           std::initializer_list<std::pair<const char*, const std::string&>> others) {
         for (const auto& [other, name] : others)
-            if (isSameOutput(file, name))
+            if (isSameFile(file, name))
                 throw UsageError(std::string(option) + " " + file + " is what " + other +
                                  " names; give another name");
     };

@@ -48,10 +48,6 @@ const std::vector<std::string> kResults = {
     "trajectory.txt", "trajectory_live.txt", "trajectory_robot.txt", "keyframes.txt", "map.3Dscene",
     "map.ply",        "map_semi_dense.ply",  "config_used.ini",      "frames.csv",    "summary.json"};
 
-bool isSameFile(const fs::path& a, const fs::path& b) {
-    return fs::weakly_canonical(a) == fs::weakly_canonical(b);
-}
-
 // What is written besides the results must not take the place of what is read, or of a result.
 void checkNames(const RunSettings& settings, const std::string& ground_truth) {
     const auto check = [&](const char* option, const std::string& file) {
@@ -64,7 +60,8 @@ void checkNames(const RunSettings& settings, const std::string& ground_truth) {
         if (!isWithin(file, settings.output_dir) || isSameFile(settings.output_dir, settings.input))
             keepInputs(option, file, {settings.input});
         for (const std::string& name : kResults)
-            if (isSameFile(file, fs::path(settings.output_dir) / name)) refuse("what the run writes itself");
+            if (isSameFile(file, (fs::path(settings.output_dir) / name).string()))
+                refuse("what the run writes itself");
     };
     check("--covariances", settings.covariances);
     check("--map-out", settings.map_out);
@@ -72,7 +69,7 @@ void checkNames(const RunSettings& settings, const std::string& ground_truth) {
     check("--rawlog-with-poses", settings.rawlog_with_poses);
     if (settings.covariances.empty()) return;
     for (const std::string& map : {settings.map_in, settings.map_out})
-        if (!map.empty() && isSameFile(settings.covariances, map))
+        if (isSameFile(settings.covariances, map))
             throw UsageError("--covariances " + settings.covariances + " is the map; give another name");
 }
 

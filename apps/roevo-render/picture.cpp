@@ -55,7 +55,7 @@ void drawPicture(const PictureSettings& settings) {
     // Seen from above, the grid would reach beyond the picture
     if (settings.view == kTop && !settings.from) cropGrid(*scene, boundsOf(content));
     const float larger = std::max(1.f, static_cast<float>(settings.height) / kPointSizeHeight);
-    const bool all_layers = settings.layer == "all";
+    const bool all_layers = settings.layer == kAllLayers;
     const auto below = preparePoints(*scene, kSuperSampling * larger, background, all_layers);
     prepareGrid(*scene, background);
 

@@ -26,7 +26,6 @@ constexpr LayerName kLayers[] = {{"edges", SceneNames::kEdges},
                                  {"covisibility", SceneNames::kCovisibility},
                                  {"semi-dense", SceneNames::kSemiDense},
                                  {"pseudo-edges", SceneNames::kPseudoEdges}};
-constexpr char kAllLayers[] = "all";
 constexpr float kLineDistance = 0.46f, kSurfaceDistance = 0.13f;  // in brightness, from the background
 // Share of the way to the background, where all layers are shown and for the grid
 constexpr float kFaintSurface = 0.55f, kFaintLines = 0.55f, kFaintPseudoEdges = 0.45f, kFaintGrid = 0.72f;

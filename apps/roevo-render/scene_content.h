@@ -9,13 +9,15 @@
 
 namespace roevo {
 
+inline constexpr char kAllLayers[] = "all";
+
 /// Loads a .3Dscene file. @throws std::runtime_error
 compat::Scene::Ptr loadScene(const std::string& path);
 
 /// Layers of a map that can be shown, as users name them.
 std::vector<std::string> layerNames();
 
-/// Shows one layer of the map ("all": every one) and hides the others; what is no layer stays as it is.
+/// Shows one layer of the map (kAllLayers: every one) and hides the others; what is no layer stays as it is.
 /// @throws std::runtime_error when the scene does not hold it
 void showLayer(compat::Scene& scene, const std::string& layer);
 

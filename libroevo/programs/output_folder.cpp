@@ -25,6 +25,10 @@ bool isWithin(const std::string& file, const std::string& folder) {
     return !from_there.empty() && *from_there.begin() != "..";
 }
 
+bool isSameFile(const std::string& a, const std::string& b) {
+    return !a.empty() && !b.empty() && fs::weakly_canonical(a) == fs::weakly_canonical(b);
+}
+
 void keepInputs(const char* option, const std::string& output, const std::vector<std::string>& inputs) {
     if (output.empty()) return;
     std::error_code none;
@@ -34,7 +38,7 @@ void keepInputs(const char* option, const std::string& output, const std::vector
         const fs::path path(input), images = path.parent_path() / (path.stem().string() + "_Images");
         const bool among_files = exists && ((fs::is_directory(path, none) && isWithin(output, input)) ||
                                             (path.extension() == ".rawlog" && isWithin(output, images)));
-        if (among_files || fs::weakly_canonical(output) == fs::weakly_canonical(path))
+        if (among_files || isSameFile(output, input))
             throw UsageError(std::string(option) + " " + output + " is an input; give another name");
     }
 }

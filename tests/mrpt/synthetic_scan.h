@@ -79,8 +79,4 @@ class ColourAsJpeg {
     bool as_it_was_ = mrpt::img::CImage::DISABLE_JPEG_COMPRESSION();
 };
 
-inline bool same(const cv::Mat& a, const cv::Mat& b) {
-    return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
-}
-
 }  // namespace roevo::test

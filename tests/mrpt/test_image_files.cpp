@@ -6,12 +6,14 @@
 #include "mrpt/synthetic_scan.h"
 #include "mrpt/test_helpers.h"
 #include "roevo_mrpt/image_conversions.h"
+#include "support/images.h"
 
 namespace roevo {
 namespace {
 
 using test::errorOf;
 using test::readFile;
+using test::same;
 using test::TemporaryFolder;
 using test::writeFile;
 
@@ -38,9 +40,6 @@ class ImageFiles : public ::testing::Test {
 };
 
 TEST_F(ImageFiles, WholeOnesAreDecodedAsOpenCvDoes) {
-    const auto same = [](const cv::Mat& a, const cv::Mat& b) {
-        return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
-    };
     for (const char* name : {"colour.png", "colour.jpg", "progressive.jpg"}) {
         const cv::Mat expected = cv::imread(folder_ / name, cv::IMREAD_ANYCOLOR);
         EXPECT_TRUE(same(readColourFile(folder_ / name), expected)) << name;

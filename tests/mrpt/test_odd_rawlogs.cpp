@@ -20,6 +20,7 @@
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/rawlog_reader.h"
+#include "support/images.h"
 
 namespace roevo {
 namespace {

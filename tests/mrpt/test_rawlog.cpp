@@ -17,6 +17,7 @@
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_mrpt/rawlog_writer.h"
+#include "support/images.h"
 
 namespace roevo {
 namespace {

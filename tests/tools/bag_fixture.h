@@ -8,6 +8,7 @@
 #include "mrpt/test_helpers.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
+#include "support/images.h"
 #include "tools/bag_writer.h"
 
 namespace roevo::test {
@@ -58,10 +59,6 @@ inline cv::Mat rangeImageOf(const mrpt::obs::CObservation3DRangeScan& scan) {
     return cv::Mat(static_cast<int>(range.rows()), static_cast<int>(range.cols()), CV_16UC1,
                    const_cast<std::uint16_t*>(&range(0, 0)))
         .clone();
-}
-
-inline bool equal(const cv::Mat& a, const cv::Mat& b) {
-    return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
 }  // namespace roevo::test

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "recordings/dataset_reader.h"
+#include "support/images.h"
 #include "support/run_program.h"
 #include "tools/ros_containers.h"
 
@@ -137,9 +138,5 @@ inline const std::vector<BagKind> kBagKinds = {
     {"SqliteFolder", Encoding::kCdrLittle, "", &writeFolder<false>},
     {"McapFolder", Encoding::kCdrLittle, "", &writeFolder<true>},
 };
-
-inline bool equal(const cv::Mat& a, const cv::Mat& b) {
-    return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
-}
 
 }  // namespace roevo::test

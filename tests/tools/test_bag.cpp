@@ -25,10 +25,10 @@ TEST_F(Bag2Rawlog, KeepsMillimetresColourStampsIntrinsicsAndTheFramesName) {
         EXPECT_EQ(scan.sensorLabel, "rgb_optical");
         EXPECT_TRUE(scan.range_is_depth);
         EXPECT_EQ(scan.rangeUnits, 1e-3f);
-        EXPECT_TRUE(equal(rangeImageOf(scan), depthImage(i)));
+        EXPECT_TRUE(same(rangeImageOf(scan), depthImage(i)));
         const RgbdFrame frame = toRgbdFrame(scan);
         EXPECT_EQ(frame.timestamp, secondsOf(i));
-        EXPECT_TRUE(equal(frame.colour, colourImage(i)));
+        EXPECT_TRUE(same(frame.colour, colourImage(i)));
         PinholeCamera camera;
         camera.width = kBagWidth, camera.height = kBagHeight;
         camera.fx = 60, camera.fy = 61, camera.cx = 15.5, camera.cy = 11.5;
@@ -61,7 +61,7 @@ TEST_F(Bag2Rawlog, MetresBecomeTheNearestFifthOfAMillimetre) {
     cv::Mat expected = 5 * depthImage(0);
     for (std::size_t i = 0; i < special.size(); i++)
         expected.at<std::uint16_t>(3, static_cast<int>(i)) = static_cast<std::uint16_t>(special[i].second);
-    EXPECT_TRUE(equal(rangeImageOf(*all[0]), expected));
+    EXPECT_TRUE(same(rangeImageOf(*all[0]), expected));
     EXPECT_TRUE(said("3 depth values beyond 13.107 m")) << result_.all();
 }
 
@@ -84,8 +84,8 @@ TEST_F(Bag2Rawlog, ReadsEveryColourOrderGreyAndPaddedRows) {
         const auto all = scans();
         ASSERT_EQ(all.size(), 1u) << encoding;
         const RgbdFrame frame = toRgbdFrame(*all[0]);
-        EXPECT_TRUE(equal(channels == 1 ? frame.grey : frame.colour, expected)) << encoding;
-        EXPECT_TRUE(equal(rangeImageOf(*all[0]), depthImage(0))) << encoding;
+        EXPECT_TRUE(same(channels == 1 ? frame.grey : frame.colour, expected)) << encoding;
+        EXPECT_TRUE(same(rangeImageOf(*all[0]), depthImage(0))) << encoding;
     }
 }
 
@@ -114,8 +114,8 @@ TEST_F(Bag2Rawlog, PairsOneToOneByTheStampsOfTheHeaders) {
     for (std::size_t k = 0; k < 3; k++) {
         const RgbdFrame frame = toRgbdFrame(*all[k]);
         EXPECT_EQ(frame.timestamp, secondsOf(colour[k]));
-        EXPECT_TRUE(equal(frame.colour, colourImage(colour[k]))) << k;
-        EXPECT_TRUE(equal(rangeImageOf(*all[k]), depthImage(depth[k]))) << k;
+        EXPECT_TRUE(same(frame.colour, colourImage(colour[k]))) << k;
+        EXPECT_TRUE(same(rangeImageOf(*all[k]), depthImage(depth[k]))) << k;
     }
     EXPECT_TRUE(said("3 frames matched, 1 colour and 1 depth images dropped, 1 repeated")) << result_.all();
     EXPECT_TRUE(said("largest gap 2.000 s")) << result_.all();
@@ -138,7 +138,7 @@ TEST_F(Bag2Rawlog, TakesColourBeforeGreyAndAlignedBeforeRawDepth) {
     ASSERT_EQ(all.size(), 1u);
     EXPECT_EQ(all[0]->sensorLabel, "color_optical");
     EXPECT_EQ(colourCameraOf(*all[0]).fx, 60);
-    EXPECT_TRUE(equal(rangeImageOf(*all[0]), depthImage(0)));
+    EXPECT_TRUE(same(rangeImageOf(*all[0]), depthImage(0)));
     EXPECT_TRUE(said("depth is aligned to colour"));
 }
 
@@ -164,7 +164,7 @@ TEST_F(Bag2Rawlog, WritesBothCamerasWhereDepthIsNotAligned) {
     ASSERT_EQ(all.size(), 1u);
     EXPECT_EQ(colourCameraOf(*all[0]).fx, 60);
     EXPECT_EQ(all[0]->cameraParams.fx(), 33);
-    EXPECT_TRUE(equal(rangeImageOf(*all[0]), depthImage(0))) << "depth as it was recorded";
+    EXPECT_TRUE(same(rangeImageOf(*all[0]), depthImage(0))) << "depth as it was recorded";
     const Pose T_depth_colour = T_base_depth.inverse() * T_base_link * T_link_rgb;
     const Pose written = sensorFromOptical().inverse() * toEigen(all[0]->relativePoseIntensityWRTDepth);
     EXPECT_LT((written.matrix() - T_depth_colour.matrix()).cwiseAbs().maxCoeff(), 1e-6);
@@ -249,7 +249,7 @@ TEST_F(Bag2Rawlog, ReadsCompressedBags) {
         });
         const auto all = scans();
         ASSERT_EQ(all.size(), 2u);
-        EXPECT_TRUE(equal(rangeImageOf(*all[1]), depthImage(1)));
+        EXPECT_TRUE(same(rangeImageOf(*all[1]), depthImage(1)));
     }
 }
 
@@ -261,7 +261,7 @@ TEST_F(Bag2Rawlog, PathsMayHaveSpacesAndOtherLetters) {
     RawlogReader reader(rawlog);
     const auto scan = reader.next();
     ASSERT_TRUE(scan);
-    EXPECT_TRUE(equal(toRgbdFrame(*scan).colour, colourImage(0)));
+    EXPECT_TRUE(same(toRgbdFrame(*scan).colour, colourImage(0)));
 }
 
 // The odometry sees the same bytes, whether it reads a folder or a bag made of the same images.
@@ -296,8 +296,8 @@ TEST_F(Bag2Rawlog, GivesTheFramesOfTheFolderThatTheBagWasMadeOf) {
     for (std::size_t i = 0; i < all.size(); i++) {
         const RgbdFrame original = dataset.readFrame(i), converted = toRgbdFrame(*all[i]);
         EXPECT_EQ(converted.timestamp, original.timestamp);
-        EXPECT_TRUE(equal(converted.grey, original.grey)) << i;
-        EXPECT_TRUE(equal(converted.depth, original.depth)) << i;
+        EXPECT_TRUE(same(converted.grey, original.grey)) << i;
+        EXPECT_TRUE(same(converted.depth, original.depth)) << i;
         EXPECT_EQ(colourCameraOf(*all[i]), dataset.camera());
     }
 }

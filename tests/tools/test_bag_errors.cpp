@@ -107,7 +107,7 @@ TEST_F(Bag2RawlogErrors, SeveralTopicsMustBeChosenFrom) {
         bag.depth(5, "rgb_optical", "/filtered/image");
     });
     expectRefusal({"several topics with depth", "--depth-topic", kDepthTopic, "/filtered/image"});
-    EXPECT_TRUE(equal(rangeImageOf(*scans({"--depth-topic", kDepthTopic}).at(0)), depthImage(0)));
+    EXPECT_TRUE(same(rangeImageOf(*scans({"--depth-topic", kDepthTopic}).at(0)), depthImage(0)));
 }
 
 TEST_F(Bag2RawlogErrors, NamedTopicsMustBeThereAndFit) {
@@ -160,7 +160,7 @@ TEST_F(Bag2RawlogErrors, OtherEncodings) {
         bag.add(kDepthTopic, imageMessage(depthImage(0), "mono16", "rgb_optical", stampOf(0)));
     });
     expectRefusal({"no topic with depth", "mono16"});
-    EXPECT_TRUE(equal(rangeImageOf(*scans({"--depth-topic", kDepthTopic}).at(0)), depthImage(0)));
+    EXPECT_TRUE(same(rangeImageOf(*scans({"--depth-topic", kDepthTopic}).at(0)), depthImage(0)));
 }
 
 TEST_F(Bag2RawlogErrors, UnalignedDepthWithoutExtrinsicsOrIntrinsics) {
@@ -226,7 +226,7 @@ TEST_F(Bag2RawlogErrors, BadMessagesAreLeftOutAndNamed) {
     });
     const auto all = scans();
     ASSERT_EQ(all.size(), 3u);
-    EXPECT_TRUE(equal(toRgbdFrame(*all[2]).colour, colourImage(6)));
+    EXPECT_TRUE(same(toRgbdFrame(*all[2]).colour, colourImage(6)));
     for (const char* words : {kColourTopic.c_str(), "message 3", "100 bytes is too short", "10x10",
                               "no time stamp", "32FC1, where others have 16UC1", "3 frames written"})
         EXPECT_TRUE(said(words)) << words << "\n" << result_.all();

@@ -108,8 +108,8 @@ TEST_F(RosImages, OfAllEncodings) {
         cv::Mat expected = tinyColour(5, channels);
         if (code >= 0) cv::cvtColor(expected, expected, code);
         const DatasetReader bag = open();
-        EXPECT_TRUE(equal(bag.readImage(0), expected)) << encoding;
-        EXPECT_TRUE(equal(bag.readDepth(0), tinyDepth(0))) << encoding;
+        EXPECT_TRUE(same(bag.readImage(0), expected)) << encoding;
+        EXPECT_TRUE(same(bag.readDepth(0), tinyDepth(0))) << encoding;
         EXPECT_EQ(bag.depthUnit(), 1e-3f);
     }
 }
@@ -136,7 +136,7 @@ TEST_F(RosImages, OfACameraOneOfWhoseMessagesIsDamaged) {
     recording_.push_back({kColourInfo, "sensor_msgs/CameraInfo", "cut"});
     const DatasetReader bag = open();  // a whole one follows
     EXPECT_NEAR(bag.camera().fx, tinyCamera().fx, 1e-9);
-    EXPECT_TRUE(equal(bag.readDepth(0), tinyDepth(0)));
+    EXPECT_TRUE(same(bag.readDepth(0), tinyDepth(0)));
 }
 
 TEST_F(RosImages, OfEitherByteOrder) {
@@ -149,7 +149,7 @@ TEST_F(RosImages, OfEitherByteOrder) {
         const bool is_metres = depth.depth() == CV_32F;
         image(tinyColour(0), "bgr8", kColour);
         image(turned, is_metres ? "32FC1" : "16UC1", kDepth, true);
-        EXPECT_TRUE(equal(open().readDepth(0), is_metres ? cv::Mat(5 * tinyDepth(0)) : tinyDepth(0)));
+        EXPECT_TRUE(same(open().readDepth(0), is_metres ? cv::Mat(5 * tinyDepth(0)) : tinyDepth(0)));
     }
 }
 
@@ -159,8 +159,8 @@ TEST_F(RosImages, CompressedAsPngAndJpeg) {
         compressed(encoded(".png", tinyDepth(1)),
                    std::string(format) == "png" ? "png" : "16UC1; png compressed ", kDepth + "/compressed");
         const DatasetReader bag = open();
-        EXPECT_TRUE(equal(bag.readImage(0), tinyColour(1))) << format;
-        EXPECT_TRUE(equal(bag.readDepth(0), tinyDepth(1))) << format;
+        EXPECT_TRUE(same(bag.readImage(0), tinyColour(1))) << format;
+        EXPECT_TRUE(same(bag.readDepth(0), tinyDepth(1))) << format;
         EXPECT_EQ(bag.depthUnit(), 1e-3f);
     }
     for (const char* format : {"rgb8; jpeg compressed bgr8", "jpeg"}) {
@@ -168,7 +168,7 @@ TEST_F(RosImages, CompressedAsPngAndJpeg) {
         compressed(jpeg, format, kColour + "/compressed");
         image(tinyDepth(0), "16UC1", kDepth);
         const std::vector<std::uint8_t> bytes(jpeg.begin(), jpeg.end());
-        EXPECT_TRUE(equal(open().readImage(0), cv::imdecode(bytes, cv::IMREAD_COLOR))) << format;
+        EXPECT_TRUE(same(open().readImage(0), cv::imdecode(bytes, cv::IMREAD_COLOR))) << format;
     }
 }
 
@@ -179,8 +179,8 @@ TEST_F(RosImages, TheRawOnesAreTakenWhereBothWereRecorded) {
     compressed(std::string(12, '\0') + encoded(".png", tinyDepth(7)), "16UC1; compressedDepth",
                kDepth + "/compressedDepth");
     const DatasetReader bag = open();
-    EXPECT_TRUE(equal(bag.readImage(0), tinyColour(0)));
-    EXPECT_TRUE(equal(bag.readDepth(0), tinyDepth(0)));
+    EXPECT_TRUE(same(bag.readImage(0), tinyColour(0)));
+    EXPECT_TRUE(same(bag.readDepth(0), tinyDepth(0)));
 }
 
 /// What image_transport writes: kind of compression, two numbers, PNG.
@@ -193,7 +193,7 @@ TEST_F(RosImages, CompressedDepthOfMillimetresLosesNothing) {
     image(tinyColour(0), "bgr8", kColour);
     compressed(depthBytes(0, 0, tinyDepth(3)), "16UC1; compressedDepth png", kDepth + "/compressedDepth");
     const DatasetReader bag = open();
-    EXPECT_TRUE(equal(bag.readDepth(0), tinyDepth(3)));
+    EXPECT_TRUE(same(bag.readDepth(0), tinyDepth(3)));
     EXPECT_EQ(bag.depthUnit(), 1e-3f);
 }
 
@@ -266,7 +266,7 @@ TEST_F(RosImages, OfRealSenseViewer) {
     const DatasetReader bag = openDataset(writeRos1<'l'>(folder_ / "viewer.bag", recording_));
     EXPECT_EQ(bag.camera(), tinyCamera(60));
     EXPECT_EQ(bag.depthScale(), 4000);
-    EXPECT_TRUE(equal(bag.readDepth(0), tinyDepth(0)));
+    EXPECT_TRUE(same(bag.readDepth(0), tinyDepth(0)));
     ASSERT_TRUE(bag.description().registration);
     EXPECT_EQ(bag.depthCamera(), tinyCamera(33));
     EXPECT_TRUE(bag.description().registration->T_colour_depth.isApprox(T_colour_reference, 1e-9));

@@ -5,11 +5,12 @@
 #include "programs/gnuplot.h"
 #include "programs/text.h"
 #include "roevo-compare/report/distributions.h"
+#include "roevo-compare/report/plots.h"
 
 namespace roevo {
 namespace {
 
-constexpr int kDistributionWidth = 960, kCurveHeight = 340, kBoxHeight = 70, kBoxHead = 70;  // px
+constexpr int kCurveHeight = 340, kBoxHeight = 70, kBoxHead = 70;  // px
 constexpr double kLeastValue = 1e-4;  // of any unit: what is less has no logarithm worth showing
 
 // By method: figures in ascending order, and how many runs there are.
@@ -99,7 +100,7 @@ Figure boxFigure(const Metric& metric, const std::vector<SequenceResults>& resul
         plot += (plot.empty() ? "plot $" : ", $") + block + " using 1:2 with points pt 6 ps 0.6 lc rgb '" +
                 style.colour + "'";
     }
-    return drawFigure(script + plot + "\n", kDistributionWidth, kBoxHead + kBoxHeight * count,
+    return drawFigure(script + plot + "\n", kFigureWidth, kBoxHead + kBoxHeight * count,
                       metric.title + ", a box for each method",
                       "Box: half of the recordings; whiskers: 5 and 95 %; points: those beyond.");
 }
@@ -126,7 +127,7 @@ Figure cumulativeFigure(const Metric& metric, const std::vector<SequenceResults>
         lines.emplace_back(legend.methods[m].label, legend.styles[m]);
     }
     Figure figure = drawFigure(
-        script + plot + "\n", kDistributionWidth, kCurveHeight, metric.title + ", cumulative",
+        script + plot + "\n", kFigureWidth, kCurveHeight, metric.title + ", cumulative",
         "Share of the recordings whose error is at most so much. One without a result never gets there.");
     figure.lines = lines;
     return figure;

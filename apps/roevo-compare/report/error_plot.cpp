@@ -13,8 +13,8 @@
 namespace roevo {
 namespace {
 
-constexpr std::size_t kMaxIntervals = 800;  // of a line, each with its largest error
-constexpr int kErrorWidth = 960, kHeight = 300, kAxesHeight = 480, kDriftWidth = 480;  // px
+constexpr std::size_t kMaxIntervals = 800;                          // of a line, each with its largest error
+constexpr int kHeight = 300, kAxesHeight = 480, kDriftWidth = 480;  // px
 const std::string kMargins = "unset key\nset lmargin 10\nset rmargin 2\nset tmargin 1\nset bmargin 2.6\n";
 constexpr double kMinError = 1e-3;  // cm, deg: what is less is of no interest, and has no logarithm
 constexpr double kAxesFoot = 0.08, kAxesShare = (1 - kAxesFoot) / 3;  // of the picture with the axes
@@ -157,7 +157,7 @@ Figure overTime(const SequenceResults& results, const Legend& legend, std::vecto
         kMargins + timeRange(lines) + "set xlabel 'time [s]' offset 0,0.4\nset ylabel '" + what + " [" +
         unit + "]'\n" + logarithmic('y', rangeOf(lines, values)) +
         plotOf(lines, [&](const ErrorLine& line) { return thinned(line.times, line.*values); });
-    return draw(lines, script, kErrorWidth, kHeight, results.sequence->name + ": " + what + " over time",
+    return draw(lines, script, kFigureWidth, kHeight, results.sequence->name + ": " + what + " over time",
                 note);
 }
 
@@ -248,7 +248,7 @@ Figure axisErrorFigure(const SequenceResults& results, const Legend& legend) {
     }
     for (const ErrorLine& line : lines)
         if (extentOf(line) > extent) leaving += (leaving.empty() ? "" : ", ") + line.name;
-    return draw(lines, script + "unset multiplot\n", kErrorWidth, kAxesHeight,
+    return draw(lines, script + "unset multiplot\n", kFigureWidth, kAxesHeight,
                 results.sequence->name + ": position error along the axes over time",
                 "Estimate minus ground truth along the axes of the ground truth’s world." +
                     (leaving.empty() ? "" : " Leaving the picture: " + leaving));
@@ -261,7 +261,7 @@ Figure cumulativeErrorFigure(const SequenceResults& results, const Legend& legen
                                "set xlabel 'position error [cm]' offset 0,0.4\nset ylabel 'poses [%]'\n"
                                "set yrange [0:100]\n" +
                                plotOf(lines, cumulative);
-    return draw(lines, script, kErrorWidth, kHeight, results.sequence->name + ": cumulative position error",
+    return draw(lines, script, kFigureWidth, kHeight, results.sequence->name + ": cumulative position error",
                 "Share of the paired poses whose error is at most so much.");
 }
 

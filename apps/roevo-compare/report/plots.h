@@ -8,6 +8,8 @@
 
 namespace roevo {
 
+inline constexpr int kFigureWidth = 960;  ///< px, of what fills a page
+
 /// A drawing and what has to be said of it. No drawing when there is nothing to draw; then `note` says why.
 struct Figure {
     std::string svg;   ///< an <svg> element that can stand in a page with others

@@ -9,12 +9,12 @@
 namespace roevo {
 namespace {
 
-constexpr int kStageWidth = 960, kBarHeight = 30, kBesideBars = 56;  // px
-constexpr std::size_t kLongestLabel = 42;                            // characters
-constexpr double kMarginByCharacter = 0.95;                          // gnuplot counts in widths of a wide one
-constexpr double kLabelPixelsByCharacter = 6.7;                      // of a label, on the whole
-constexpr double kPixelsOfMargin = 8.4;                              // of a character of a margin
-constexpr int kRightMargin = 15;                                     // characters, for the means
+constexpr int kBarHeight = 30, kBesideBars = 56;  // px
+constexpr std::size_t kLongestLabel = 42;         // characters
+constexpr double kMarginByCharacter = 0.95;       // gnuplot counts in widths of a wide one
+constexpr double kLabelPixelsByCharacter = 6.7;   // of a label, on the whole
+constexpr double kPixelsOfMargin = 8.4;           // of a character of a margin
+constexpr int kRightMargin = 15;                  // characters, for the means
 constexpr double kClipBarAt =
     5;  // times the median bar: what is longer is cut off, so that others stay legible
 constexpr double kMarksAt = 2;       // times the longest bar: marks that lie further out are cut off, too
@@ -107,7 +107,7 @@ double drawnEnd(const Bar& bar, double end, double left_margin) {
     if (bar.total.mean <= end) return end;
     const double text =
         kLabelPixelsByCharacter * static_cast<double>(countCharacters(labelOf(bar, end).text) + 1);
-    return end * std::max(0.1, 1 - text / (kStageWidth - kPixelsOfMargin * (left_margin + kRightMargin)));
+    return end * std::max(0.1, 1 - text / (kFigureWidth - kPixelsOfMargin * (left_margin + kRightMargin)));
 }
 
 std::string axes(const std::vector<Bar>& bars, double end) {
@@ -186,7 +186,7 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
     const bool beyond =
         std::any_of(bars.begin(), bars.end(), [&](const Bar& bar) { return labelOf(bar, end).beyond; });
     const int height = kBarHeight * static_cast<int>(bars.size()) + kBesideBars;
-    Figure figure = drawFigure(axes(bars, end) + plotScript(bars, end), kStageWidth, height,
+    Figure figure = drawFigure(axes(bars, end) + plotScript(bars, end), kFigureWidth, height,
                                results.sequence->name + ": time per frame by stage",
                                !beyond ? ""
                                        : "A bar whose mean has a ▶ goes on beyond the right edge, as do the "
