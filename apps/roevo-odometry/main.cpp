@@ -35,6 +35,7 @@ void writeDefaultConfig(const std::string& path) {
 
 int run(int argc, char** argv) {
     RunSettings settings;
+    settings.command.assign(argv, argv + argc);
     std::string config_file, mode, default_config;
     std::vector<std::string> sets;
     CLI::App app("RGB-D visual odometry from organized edges.", kName);

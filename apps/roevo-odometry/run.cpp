@@ -234,6 +234,7 @@ void writeMap(WholeOutputs& files, const RunReport& report, const Odometry& odom
 
 RunReport reportOn(const FrameSource& source, const RunSettings& settings) {
     RunReport report;
+    report.command = settings.command;
     report.input = settings.input;
     report.kind = source.kind();
     report.camera = source.camera();

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "recordings/input_choice.h"
 #include "roevo/options.h"
@@ -10,6 +11,7 @@ namespace roevo {
 
 /// What to run, from the command line.
 struct RunSettings {
+    std::vector<std::string> command;  ///< the program and its arguments, for the record
     std::string input, output_dir, ground_truth;
     InputChoice choice;
     std::string map_in, map_out;                ///< files; empty: none

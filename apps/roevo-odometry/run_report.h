@@ -43,6 +43,7 @@ struct SavedMap {
 
 /// All that a run came to.
 struct RunReport {
+    std::vector<std::string> command;  ///< that this is the result of
     std::string input, kind, camera_source, warning, sensor_label;
     PinholeCamera camera;
     double readout_time = 0;  ///< of the rolling shutter, as learned or set, s

@@ -242,6 +242,7 @@ std::string summaryJson(const RunReport& report) {
     std::string mrpt = mrpt::system::MRPT_getVersion();  // "MRPT 2.5.8"
     mrpt.erase(0, mrpt.find_first_of("0123456789"));
     json["versions"] = {{"roevo", versionText()}, {"mrpt", mrpt}, {"opencv", CV_VERSION}, {"eigen", eigen}};
+    json["command"] = report.command;
     json["input"] = {{"path", report.input}, {"kind", report.kind}, {"warning", report.warning}};
     json["failure"] = report.failure();
     json["mode"] = toString(report.mode);

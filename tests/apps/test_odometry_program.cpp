@@ -42,6 +42,7 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
     EXPECT_EQ(readTumTrajectory(output() + "/trajectory_live.txt").size(), 40u);
 
     const auto json = summary();
+    EXPECT_EQ(json["command"].at(1), "--input");
     EXPECT_EQ(json["mode"], "ba");
     EXPECT_EQ(json["frames"]["total"], 40);
     EXPECT_EQ(json["frames"]["ok"], 39);

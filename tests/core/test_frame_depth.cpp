@@ -31,6 +31,19 @@ TEST_F(FrameDepth, AFrameWithoutDepthIsTracked) {
     feedRoom(10, 13);
 }
 
+// As little as the flying pixels of an outline are.
+TEST_F(FrameDepth, AHandfulOfWrongDepthsContradictsNothing) {
+    feedRoom(0, 8);
+    RgbdFrame frame = frameAt(8);
+    frame.depth = cv::Mat::zeros(240, 320, CV_32FC1);
+    const cv::Rect scrap(150, 100, 30, 30);
+    frame.depth(scrap) = 2 * frameAt(8).depth(scrap);
+    const FrameResult result = feed(frame);
+    EXPECT_EQ(result.status, FrameStatus::kOk);
+    EXPECT_EQ(result.reason, "");
+    EXPECT_LT(errorAt(result, 8), 0.006);
+}
+
 TEST_F(FrameDepth, AfterAGapAPoseIsConfirmedByDepthOrSaidToBePredicted) {
     feedRoom(0, 8);
     RgbdFrame frame = frameAt(13);  // five frames were dropped

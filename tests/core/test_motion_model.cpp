@@ -179,6 +179,19 @@ TEST(MotionModel, TwoStampsThatNearlyCoincideMakeNoVelocity) {
     EXPECT_LT((next.T_reference_camera.translation() - (kStart * kStep * kStep).translation()).norm(), 0.005);
 }
 
+// Frames that arrive together were not taken together.
+TEST(MotionModel, TwoStampsThatNearlyCoincideSayNothingOfHowFarTheCameraMoved) {
+    MotionModel model = makeModel();
+    for (int i = 0; i < 4; ++i) {
+        model.expect(10 + i / 30.);
+        model.measure(10 + i / 30., Pose());
+    }
+    const double arrival = 10.1 + 0.002;
+    model.expect(arrival);
+    EXPECT_NEAR(sigmaOfPosition(model.predict(arrival).prior),
+                sigmaOfPosition(model.predict(10.1 + 1 / 30.).prior), 1e-3);
+}
+
 TEST(MotionModel, TwoStampsThatNearlyCoincideAfterAnAnchorMakeNoneEither) {
     MotionModel model = makeModel();
     model.anchor(10, kStart);
@@ -288,6 +301,11 @@ TEST(MotionModel, AGapIsWhatIsLongAndLongerThanUsual) {
     std::vector<double> slower{10, 10.03, 10.06, 10.09};
     for (int i = 1; i <= 20; ++i) slower.push_back(10 + i);
     EXPECT_FALSE(isBlindAfter(slower)) << "the rate has changed";
+}
+
+TEST(MotionModel, AGapOfAFastCameraIsAsLongAsThatOfAnother) {
+    EXPECT_FALSE(isBlindAfter({10, 10.016, 10.032, 10.048, 10.098})) << "two frames of 60 Hz were dropped";
+    EXPECT_TRUE(isBlindAfter({10, 10.016, 10.032, 10.048, 10.148}));
 }
 
 TEST(MotionModel, FastCamerasHaveAVelocityToo) {

@@ -10,6 +10,7 @@
 #include "mapping/map_keyframe.h"
 #include "place/place_evidence.h"
 #include "tracking/camera_scale.h"
+#include "tracking/rolling_shutter.h"
 
 namespace roevo {
 namespace {
@@ -52,6 +53,42 @@ TEST_F(PlaceRegistration, ConvergesFromWhatSimilarPointsTell) {
         EXPECT_GT(found.depth_agreement, 0.8);
         EXPECT_LT(std::sqrt(found.covariance.topLeftCorner<3, 3>().trace()), 0.01);
     }
+}
+
+/// How the rows of a frame moved, as the frames beside it tell.
+RowMotion rowsOf(const Sequence& sequence, std::size_t i, double readout) {
+    const StampedPose &before = sequence.truth[i - 1], &after = sequence.truth[i + 1];
+    const Velocity velocity = velocityOf(before.T_world_camera.inverse() * after.T_world_camera,
+                                         after.timestamp - before.timestamp);
+    return {velocity.linear, velocity.turn, readout / sequence.camera.height,
+            (sequence.camera.height - 1) / 2.};
+}
+
+TEST(PlaceRegistrationOfRows, ThatMovedInBothImagesBringsBothToOneMoment) {
+    constexpr double kReadout = 0.066;  // s
+    simulator::SimulationOptions options = smallRoom();
+    options.rolling_shutter = kReadout;
+    options.fps = 15;
+    options.speed = 1.2;
+    const Sequence sequence = simulate(options, 31);
+    constexpr std::size_t kKeyframe = 20, kFrame = 24;
+    const auto viewOf = [&](std::size_t i) {
+        return makePlaceView(sequence.camera, sequence.frames[i], sequence.truth[i].T_world_camera,
+                             static_cast<int>(i));
+    };
+    const auto keyframe = viewOf(kKeyframe), frame = viewOf(kFrame);
+    keyframe->keyframe.setRowMotion(rowsOf(sequence, kKeyframe, kReadout));
+    const Pose truth = frame->T_world_camera.inverse() * keyframe->T_world_camera;
+    EdgeRegistrar registrar(sequence.camera, OdometryOptions(), false);
+    const auto registered = [&](const RowMotion& rows) {
+        Keyframe own = frame->keyframe;
+        own.setRowMotion(rows);
+        return registrar.registerEdges(keyframe->keyframe, frame->frame, own.edges, truth, rows);
+    };
+    const EdgeRegistration moved = registered(rowsOf(sequence, kFrame, kReadout)), still = registered({});
+    EXPECT_LT(poseError(moved.T_frame_keyframe, truth), 0.004);
+    EXPECT_LT(poseError(moved.T_frame_keyframe, truth), poseError(still.T_frame_keyframe, truth) / 2);
+    EXPECT_GT(std::min(moved.keyframe_matched, moved.frame_matched), 0.85);
 }
 
 /// One of so many points of its edges.

@@ -98,6 +98,16 @@ TEST(Pose, StaysRigidThroughAnyChain) {
     EXPECT_TRUE(chained.isFinite());
 }
 
+TEST(ImageMotion, DoesNotDependOnWhereTheWorldBegins) {
+    const Pose T_a_b = poseIncrement((Vector6d() << 0.002, 0, 0, 0, 0.0035, 0).finished());
+    std::mt19937 random(67);
+    for (const double distance : {0., 3., 30., 300.}) {
+        const Pose T_a_world = randomPose(random, distance, 3);
+        EXPECT_NEAR(imageMotion(T_a_world, T_a_b.inverse() * T_a_world, 525, 2), 525 * (0.0035 + 0.001), 1e-6)
+            << distance;
+    }
+}
+
 TEST(Pose, InverseIsExactlyTheTransposedRotation) {
     std::mt19937 random(65);
     for (int i = 0; i < 100; ++i) {

@@ -1,6 +1,7 @@
 // Tracks that are joined, loops that are closed, and what is known of poses then.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "core/support/trajectories.h"
@@ -45,6 +46,27 @@ TEST(Trajectory, AJoinedTrackMovesAsAWholeAndSoDoesWhatTheMapSaysOfItLater) {
     after.poses = {{2, at(3.6)}, {3, at(4.6)}};
     trajectory.apply(after);
     EXPECT_NEAR(trajectory.keyframePose(2).translation().x(), 3.6, 1e-12);
+}
+
+TEST(Trajectory, OfAJoinedTrackThatIsKnownBestWhichWasRecognised) {
+    for (const int recognised : {1, 3, 5}) {
+        Trajectory trajectory;
+        beginTrack(trajectory, 0, at(0));
+        beginTrack(trajectory, 1, at(50));
+        for (int id = 2; id <= 5; ++id) {
+            RelativePose step = from(id - 1, at(1));
+            step.uncertainty.independent = 1e-4 * Matrix6d::Identity();
+            trajectory.addKeyframe(id, step, {});
+        }
+        RelativePose place = from(0, at(3));
+        place.uncertainty.independent = 1e-6 * Matrix6d::Identity();
+        trajectory.join(recognised, place);
+        for (int id = 1; id <= 5; ++id) {
+            const double variance = trajectory.worldCovariance(from(id, Pose()))(0, 0);
+            EXPECT_NEAR(variance, 1e-6 + 1e-4 * std::abs(id - recognised), 1e-9)
+                << id << " of " << recognised;
+        }
+    }
 }
 
 TEST(Trajectory, OfTwoTracksThatMeetTheYoungerOneMoves) {

@@ -149,13 +149,19 @@ Outcome Odometry::Impl::start() {
 Tracking Odometry::Impl::confirmed(const Keyframe& keyframe, Tracking tracking,
                                    const Prediction& prediction) {
     const int gap_ms = static_cast<int>(std::min(1e3 * prediction.since_measured, 2e9));
-    const auto pose = world.confirm(keyframe, *frame, tracking.pose.T_keyframe_camera);
+    // The mean velocity of a gap is not that of its end, and where the keyframe's rows are taken for still so
+    // are the frame's
+    const bool moved = keyframe.row_motion.known() && !prediction.blind;
+    const auto pose = world.confirm(keyframe, *frame, tracking.pose.T_keyframe_camera,
+                                    moved ? tracking.rows : motion.stillRows());
     if (!pose) {
         tracking.reject(tracking.doubtful ? tracking.depth_fault
                                           : Fault{Fault::Kind::kUnconfirmed, {gap_ms}});
         return tracking;
     }
-    Tracking again = tracker->trackFrom(keyframe, *frame, prediction, pose->T_keyframe_camera);
+    Prediction onwards = prediction;
+    if (tracking.searched) onwards.prior = prediction.search_prior;  // it is not where it was likely to be
+    Tracking again = tracker->trackFrom(keyframe, *frame, onwards, pose->T_keyframe_camera);
     again.searched = tracking.searched || prediction.blind;
     again.ms_coarse += tracking.ms_coarse;
     again.ms_fine += tracking.ms_fine;
@@ -208,7 +214,7 @@ std::optional<RelativePose> Odometry::Impl::trackFromHere() {
     const Tracking back = tracker->track(*here, *frame_before, backwards.predict(-frame_before->timestamp()));
     if (back.lost()) return std::nullopt;
     return world.confirm(world.reference(), *frame,
-                         motion.measuredPose() * back.pose.T_keyframe_camera.inverse());
+                         motion.measuredPose() * back.pose.T_keyframe_camera.inverse(), motion.stillRows());
 }
 
 /// Where tracking lost the camera, a keyframe that it has seen before may tell where it is.
@@ -294,19 +300,19 @@ void Odometry::Impl::lookForOtherTrack(Outcome& outcome) {
 /// What a tracked frame tells besides its pose, and what a gap before it leaves unknown.
 void Odometry::Impl::learn(Tracking& tracking, const Prediction& prediction) {
     motion.setBrightness(tracking.brightness);
+    auto& reference = world.reference();
+    reference.count(tracking.matches.visible, tracking.found);
     if (prediction.blind) {
-        // The mean velocity of a gap says nothing of how the camera moves at its end. What is `measured`
+        // The mean velocity of a gap says nothing of how the camera moves at its ends. What is `measured`
         // stays: it is meant for known rows, and the next velocity is made of it
         tracking.rows = motion.stillRows();
         addErrorsFromElsewhere(tracking.pose.uncertainty);
-    }
-    auto& reference = world.reference();
-    reference.count(tracking.matches.visible, tracking.found);
-    if (!reference.row_motion.known())
+    } else if (!reference.row_motion.known()) {
         reference.setRowMotion(
             motion.firstRows(frame->timestamp() - reference.timestamp, tracking.pose.T_keyframe_camera));
-    else if (!prediction.blind)
+    } else {
         tracker->learnReadout(reference, *frame, tracking, prediction.shutter, motion.readout());
+    }
 }
 
 /// Backwards in time, from a pose of this frame.

@@ -51,6 +51,7 @@ Relocaliser::Relocaliser(const PinholeCamera& camera, const OdometryOptions& opt
 
 void Relocaliser::load(std::vector<KnownPlace> places) {
     places_ = std::move(places);
+    loaded_ = static_cast<int>(places_.size());
     for (std::size_t id = 0; id < places_.size(); ++id)
         index_.insert(static_cast<int>(id), places_[id].points);
 }
@@ -60,9 +61,10 @@ const std::vector<KnownPlace>& Relocaliser::places() {
     return places_;
 }
 
-void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours,
-                      std::vector<int> tracks, int end) {
+void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, const Keyframe* previous,
+                      std::vector<Rgb> colours, std::vector<int> tracks, int end) {
     collect();
+    if (previous != nullptr) places_[static_cast<std::size_t>(previous->id)].learned = previous->row_motion;
     Keyframe copy;  // of what is remembered
     copy.id = keyframe.id;
     copy.edges = keyframe.edges;
@@ -117,27 +119,30 @@ Keyframe Relocaliser::unpacked(int id) const {
     place.edges.unpackInto(edges, ideal_, options_.sensor);
     Keyframe keyframe;
     keyframe.id = id;
+    const RowMotion& rows = place.learned.known() ? place.learned : place.row_motion;
+    edges.row_motion = place.row_motion;
+    if (id >= loaded_) setRowMotion(edges, rows.at(seconds_per_row_), ideal_);
+    keyframe.row_motion = edges.row_motion;
     keyframe.edges.image = std::move(edges.image);
     keyframe.edges.points = std::move(edges.points);
     keyframe.edges.weight = std::move(edges.weight);
     keyframe.edges.correction.assign(keyframe.edges.size(), 0);
     for (int e = 0; e < keyframe.edges.image.numEdges(); ++e) keyframe.clusters.push_back(e);
     keyframe.median_depth = place.median_depth;
-    keyframe.row_motion = place.row_motion;
     return keyframe;
 }
 
-EdgePoints3D Relocaliser::lifted(const Frame& frame) const {
+EdgePoints3D Relocaliser::lifted(const Frame& frame, const RowMotion& rows) const {
     if (frame.images.depth.empty()) return {};
-    return liftEdges(frame.edges, frame.images.depth, camera_, RowMotion(), options_.edges, options_.sensor);
+    return liftEdges(frame.edges, frame.images.depth, camera_, rows, options_.edges, options_.sensor);
 }
 
 std::optional<RelativePose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& frame,
-                                                 const Pose& T_keyframe_camera) {
-    const EdgePoints3D edges = lifted(frame);
+                                                 const Pose& T_keyframe_camera, const RowMotion& rows) {
+    const EdgePoints3D edges = lifted(frame, rows);
     if (edges.size() == 0) return std::nullopt;
     const EdgeRegistration found =
-        confirmer_.registerEdges(keyframe, frame, edges, T_keyframe_camera.inverse());
+        confirmer_.registerEdges(keyframe, frame, edges, T_keyframe_camera.inverse(), rows);
     collect();
     const PlacePoints& points = places_[static_cast<std::size_t>(keyframe.id)].points;
     const Likeness likeness =
@@ -166,14 +171,15 @@ std::optional<RecognisedPlace> Relocaliser::recognised(Among tracks, const Traje
     collect();
     const std::vector<Alike>& alike = tracks == Among::kOwnTrack ? newest_.alike : newest_.elsewhere;
     if (alike.empty()) return std::nullopt;
-    return surest(registered(alike, *newest_.frame, newest_.edges, places_.back().row_motion), trajectory,
-                  whereabouts);
+    return surest(
+        registered(alike, *newest_.frame, newest_.edges, places_.back().row_motion.at(seconds_per_row_)),
+        trajectory, whereabouts);
 }
 
 std::optional<RelativePose> Relocaliser::find(const Frame& frame, Among tracks, const Trajectory& trajectory,
                                               const Whereabouts& whereabouts) {
     collect();
-    const EdgePoints3D edges = lifted(frame);
+    const EdgePoints3D edges = lifted(frame, RowMotion());
     if (edges.size() == 0) return std::nullopt;
     const PlacePoints points = describer_.describe(edges, frame.pyramid.level(0));
     const std::vector<int>& track_of = trajectory.tracks();

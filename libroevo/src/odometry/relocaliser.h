@@ -33,7 +33,8 @@ struct KnownPlace {
     PlacePoints points;
     PackedKeyframe edges;
     double median_depth = 0;  ///< m
-    RowMotion row_motion;
+    RowMotion row_motion;     ///< that the edges were moved with
+    RowMotion learned;        ///< since then; unknown: nothing
 };
 
 /// Keyframes, as seen from the newest one.
@@ -68,14 +69,18 @@ class Relocaliser {
     /// Of all keyframes, by their ids; waits for the thread.
     const std::vector<KnownPlace>& places();
 
+    /// What is known of the read-out time by now, for all keyframes that were not loaded.
+    void setReadout(double seconds_per_row) { seconds_per_row_ = seconds_per_row; }
+
     /// In a thread of its own, or when it is asked for where there is but one.
     /// @param frame    that the keyframe was made of
+    /// @param previous the keyframe before, if there is one: how its rows moved is known by now
     /// @param colours  of the keyframe's points
     /// @param tracks   of all keyframes. Those of its own track are looked for apart from the others: they
     ///                 look more like the new one.
     /// @param end      only keyframes of its own track before this one are looked for
-    void add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, std::vector<int> tracks,
-             int end);
+    void add(const Keyframe& keyframe, const Frame& frame, const Keyframe* previous, std::vector<Rgb> colours,
+             std::vector<int> tracks, int end);
 
     /// Older keyframes of its own track that the newest one looks like, and its poses relative to them by
     /// points alone: about right, with no covariance. Waits for the thread.
@@ -95,8 +100,10 @@ class Relocaliser {
 
     /// The pose about this one that the edges of keyframe and frame, their depths and their surroundings
     /// agree on, if they do (see confirms()).
+    /// @param rows  how the frame's moved; where they are taken for still, the keyframe's edges are when the
+    ///              frame's are looked for among them
     [[nodiscard]] std::optional<RelativePose> confirm(const Keyframe& keyframe, const Frame& frame,
-                                                      const Pose& T_keyframe_camera);
+                                                      const Pose& T_keyframe_camera, const RowMotion& rows);
 
   private:
     using Alike = std::pair<Verification, int>;  ///< and the keyframe
@@ -117,7 +124,7 @@ class Relocaliser {
                                             const EdgePoints3D& edges, const RowMotion& rows);
     void collect();
     Keyframe unpacked(int id) const;
-    EdgePoints3D lifted(const Frame& frame) const;
+    EdgePoints3D lifted(const Frame& frame, const RowMotion& rows) const;
 
     PinholeCamera camera_, ideal_;
     OdometryOptions options_;  // scaled to the camera
@@ -127,6 +134,8 @@ class Relocaliser {
     EdgeRegistrar registrar_;         ///< to what is remembered of keyframes
     EdgeRegistrar confirmer_;         ///< to a whole one
     std::vector<KnownPlace> places_;  ///< of each keyframe, by its id
+    int loaded_ = 0;                  ///< of them: those of an earlier recording
+    double seconds_per_row_ = 0;
     Described newest_;                ///< keyframe; its place is among places_
     std::future<Described> at_work_;  // last: waits for the thread
 };

@@ -34,6 +34,13 @@ void forgetAll(PoseUncertainty& uncertainty) {
     forget(uncertainty, [](std::int32_t) { return true; });
 }
 
+/// Where posteriors made a keyframe better known than one before it, differences are no covariances.
+Matrix6d positivePart(const Matrix6d& difference) {
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(difference);
+    return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() *
+           axes.eigenvectors().transpose();
+}
+
 double changeOfView(const Pose& motion) {
     return motion.translation().norm() + kTypicalDepth * rotationAngle(motion);
 }
@@ -154,10 +161,16 @@ Correction Trajectory::join(int keyframe, const RelativePose& pose) {
     at(links_, begin) = {link.keyframe,
                          keyframePose(link.keyframe).inverse() * keyframePose(begin),
                          {carried(link.covariance(), keyframe, begin), {}}};
+    // The recognised one is as well known as that, the others less by what they drifted from it
+    const Matrix6d recognised = inWorld(pose).covariance();
+    std::vector<std::pair<int, Matrix6d>> known;
+    for (const auto& [id, by] : join.motions) {
+        const int newer = std::max(id, keyframe);
+        const Matrix6d drifted = positivePart(drift(std::min(id, keyframe), newer));
+        known.emplace_back(id, carried(recognised, keyframe, id) + carried(drifted, newer, id));
+    }
+    for (auto& [id, covariance] : known) at(in_world_, id) = {covariance, {}};
     findTracks();
-    for (const auto& [id, by] : join.motions) at(in_world_, id) = inWorld(at(links_, id)).uncertainty;
-    for (const auto& [id, by] : join.motions)
-        if (id + 1 < static_cast<int>(keyframes_.size())) forgetAll(at(in_world_, id));
     corrections_.push_back(join);
     return join;
 }
@@ -240,9 +253,7 @@ Matrix6d Trajectory::drift(int older, int keyframe) const {
 /// Where older keyframes are seen again, a new one errs no more than they do, but for what pulls it to the
 /// oldest one of the window.
 void Trajectory::takePosterior(const WindowPosterior& posterior, int keyframe) {
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(drift(posterior.reused, posterior.oldest));
-    const Matrix6d drifted =
-        axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() * axes.eigenvectors().transpose();
+    const Matrix6d drifted = positivePart(drift(posterior.reused, posterior.oldest));
     PoseUncertainty seen_again = posterior.uncertainty;
     seen_again.independent +=
         carried(at(in_world_, posterior.reused).covariance(), posterior.reused, keyframe) +

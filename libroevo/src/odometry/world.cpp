@@ -66,8 +66,11 @@ void World::load(StoredMap map, bool held) {
     if (loaded_ > 0) misplacements_[0].distance = kAnywhere;
     std::vector<KnownPlace> places;
     for (std::size_t id = 0; id < map.places.size(); ++id)
-        places.push_back({std::move(map.places[id]), map.edges[id].points, map.edges[id].median_depth,
-                          map.edges[id].row_motion});
+        places.push_back({std::move(map.places[id]),
+                          map.edges[id].points,
+                          map.edges[id].median_depth,
+                          map.edges[id].row_motion,
+                          {}});
     relocaliser_.load(std::move(places));
     mapper_->load(map.graph.keyframes, std::move(map.edges));
     semi_dense_.load(std::move(map.surfaces));
@@ -86,9 +89,9 @@ StoredMap World::map() {
     for (std::size_t id = 0; id < places.size(); ++id) {
         map.places.push_back(places[id].points);
         if (id < map.edges.size()) continue;
-        const auto& [points, edges, median_depth, rows] = places[id];
-        const std::vector<float> found(static_cast<std::size_t>(edges.numEdges()), -1);
-        map.edges.push_back({edges, median_depth, rows, found, {}, {}});
+        const KnownPlace& place = places[id];
+        const std::vector<float> found(static_cast<std::size_t>(place.edges.numEdges()), -1);
+        map.edges.push_back({place.edges, place.median_depth, place.row_motion, found, {}, {}});
     }
     map.surfaces = semi_dense_.keyframes();
     map.surfaces.resize(map.places.size());
@@ -110,6 +113,7 @@ EdgeMap World::inThisWorld(EdgeMap edges) const {
 void World::advance(double timestamp, double seconds_per_row) {
     timestamp_ = timestamp;
     seconds_per_row_ = seconds_per_row;
+    relocaliser_.setReadout(seconds_per_row);
     for (const MapUpdate& update : mapper_->due(timestamp, change_.ms.waiting)) takeUpdate(update);
     if (recognising_ && timestamp >= recognised_at_) recognise();
     if (reference_) reference_->setRowMotion(reference_->row_motion.at(seconds_per_row));
@@ -187,7 +191,7 @@ Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Trac
 void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
     std::vector<Rgb> colours = coloursOf(fresh->edges.image, of.images, camera_);
     if (remembersPlaces()) {
-        relocaliser_.add(*fresh, of, colours, trajectory_.tracks(),
+        relocaliser_.add(*fresh, of, reference_.get(), colours, trajectory_.tracks(),
                          closesLoops() ? fresh->id - kStillInView : 0);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
@@ -291,7 +295,7 @@ bool World::joinElsewhere(const Whereabouts& near) {
     const auto place = relocaliser_.recognised(Among::kOtherTracks, trajectory_, near);
     if (!place) return false;
     const Look newest{reference_->id, *place};
-    const auto before = agreeingLook(newest, kJoinTolerance);
+    const auto before = agreeing(join_look_, newest, kJoinTolerance);
     if (!place->sure && !before) return false;
     const bool earlier = !place->sure && before->place.likeness > place->likeness;
     join(earlier ? *before : newest);
@@ -303,14 +307,15 @@ void World::join(const Look& look) {
     mapper_->correct(trajectory_.join(look.keyframe, look.place.pose));
     noteMotion(before);
     change_.joined_at = look.place.pose.keyframe;
-    look_.reset();
+    join_look_.reset();
     noteTrack();
 }
 
-/// The look before that this one agrees with on where the track belongs, if it does. From now on this one is
-/// the look before.
-std::optional<World::Look> World::agreeingLook(const Look& newest, double tolerance) {
-    const auto before = std::exchange(look_, newest);
+/// The look before, if this one agrees with it on where the track belongs. From now on this one is the look
+/// before.
+std::optional<World::Look> World::agreeing(std::optional<Look>& look, const Look& newest,
+                                           double tolerance) const {
+    const auto before = std::exchange(look, newest);
     if (!before || newest.keyframe - before->keyframe > kInARow) return std::nullopt;
     if (!trajectory_.areOfOneTrack(before->keyframe, newest.keyframe) ||
         !trajectory_.areOfOneTrack(before->place.pose.keyframe, newest.place.pose.keyframe))
@@ -328,7 +333,7 @@ std::optional<World::Look> World::agreeingLook(const Look& newest, double tolera
 
 /// Where the map cannot relate the edges of a place that is seen again, since the camera has drifted too far.
 void World::closeLoop(const Look& newest) {
-    const auto first = agreeingLook(newest, 1);
+    const auto first = agreeing(loop_look_, newest, 1);
     if (!first) return;
     const Pose before = trajectory_.lastPose();
     const Correction correction =
@@ -337,7 +342,7 @@ void World::closeLoop(const Look& newest) {
     mapper_->correct(correction);
     noteMotion(before);
     change_.closed_at = newest.place.pose.keyframe;
-    look_.reset();
+    loop_look_.reset();
 }
 
 std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& last, double since_measured) {

@@ -74,8 +74,8 @@ class World {
     [[nodiscard]] const Keyframe* previous(Pose& T_previous_reference);
     /// The pose against a keyframe that edges agree on with nothing known of the motion, if they do.
     [[nodiscard]] std::optional<RelativePose> confirm(const Keyframe& keyframe, const Frame& frame,
-                                                      const Pose& T_keyframe_camera) {
-        return relocaliser_.confirm(keyframe, frame, T_keyframe_camera);
+                                                      const Pose& T_keyframe_camera, const RowMotion& rows) {
+        return relocaliser_.confirm(keyframe, frame, T_keyframe_camera, rows);
     }
     /// See Odometry::refineAll().
     std::vector<MapRefusal> refineAll();
@@ -99,7 +99,7 @@ class World {
         int keyframe = -1;
         RecognisedPlace place;
     };
-    std::optional<Look> agreeingLook(const Look& newest, double tolerance);
+    std::optional<Look> agreeing(std::optional<Look>& look, const Look& newest, double tolerance) const;
     /// How far a keyframe's track may be from where it was put, at the keyframe.
     Reach misplacementOf(int keyframe) const;
     /// How far a keyframe may have drifted from the first one of its track.
@@ -133,12 +133,12 @@ class World {
     bool held_ = false;
     bool localised_ = false;  // in the map that was loaded
     double timestamp_ = 0, seconds_per_row_ = 0;
-    std::map<int, Reach> misplacements_;  // of tracks that were begun after a loss
-    double track_begun_at_ = 0;           // s
-    double next_look_ = 0;                // s; not before are frames looked up among other tracks
-    double recognised_at_ = 0;            // s; when the place of the newest keyframe is to be known
-    bool recognising_ = false;            // it is not known yet
-    std::optional<Look> look_;            // that a second one must agree with
+    std::map<int, Reach> misplacements_;         // of tracks that were begun after a loss
+    double track_begun_at_ = 0;                  // s
+    double next_look_ = 0;                       // s; not before are frames looked up among other tracks
+    double recognised_at_ = 0;                   // s; when the place of the newest keyframe is to be known
+    bool recognising_ = false;                   // it is not known yet
+    std::optional<Look> join_look_, loop_look_;  // that a second one must agree with
     FrameResult change_;
 };
 

@@ -16,7 +16,8 @@ constexpr int kMostIterations = 15;
 constexpr double kRegistrationStill = 0.03;  ///< px; tracking goes on from here
 
 // What it takes to hold a pose
-constexpr int kLeastHeldInliers = 150;
+constexpr double kEnoughInliers = 150;
+constexpr double kLeastOfVisible = 0.5;  ///< of the points in view, where fewer are
 constexpr double kLeastVisible = 0.25;
 constexpr double kMostSigmaTranslation = 0.02;  ///< m
 constexpr double kMostSigmaRotation = 1 * kDegree;
@@ -37,6 +38,7 @@ OdometryOptions widened(const PinholeCamera& camera, const OdometryOptions& give
 EdgeRegistrar::EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions& options, bool thinned)
     : ideal_(camera.undistorted()),
       options_(widened(camera, options, thinned)),
+      thinned_(thinned),
       term_(camera, options_),
       associator_(ideal_, options_.fine, options_.edges.tangent_span) {}
 
@@ -61,17 +63,21 @@ EdgeRegistration EdgeRegistrar::registerEdges(const Keyframe& keyframe, const Fr
     term_.assess(out.T_frame_keyframe, rows);
     out.inliers = term_.inliers();
     out.keyframe_matched = term_.matches().matchedRatio();
-    lookBack(keyframe, frame_edges, out);
-    out.held = out.inliers >= kLeastHeldInliers && out.visible >= kLeastVisible &&
+    const bool as_seen = !thinned_ && rows.seconds_per_row != 0;
+    lookBack(keyframe, frame_edges, as_seen ? keyframe.row_motion : RowMotion(), out);
+    const double needed =
+        std::max<double>(options_.fine.min_inliers, kLeastOfVisible * term_.matches().visible_points);
+    out.held = out.inliers >= std::min(needed, kEnoughInliers) && out.visible >= kLeastVisible &&
                worstSigma(out.covariance.topLeftCorner<3, 3>()) <= kMostSigmaTranslation &&
                worstSigma(out.covariance.bottomRightCorner<3, 3>()) <= kMostSigmaRotation;
     return out;
 }
 
-void EdgeRegistrar::lookBack(const Keyframe& keyframe, const EdgePoints3D& frame_edges,
+/// @param rows  how those of the keyframe's image moved
+void EdgeRegistrar::lookBack(const Keyframe& keyframe, const EdgePoints3D& frame_edges, const RowMotion& rows,
                              EdgeRegistration& out) {
     const Pose T_keyframe_frame = out.T_frame_keyframe.inverse();
-    project(frame_edges.points, T_keyframe_frame, ideal_, RowMotion(), projected_);
+    project(frame_edges.points, T_keyframe_frame, ideal_, rows, projected_);
     grid_.build(keyframe.edges.image, ideal_.width, ideal_.height);
     associator_.associate(frame_edges.image, projected_, T_keyframe_frame, keyframe.edges.image, grid_,
                           options_.fine.final_radius, matches_);

@@ -26,10 +26,11 @@ class EdgeRegistrar {
   public:
     /// @param camera   with its lens
     /// @param options  as given: scaled to the camera here
-    /// @param thinned  keyframes come with every n-th point of their edges
+    /// @param thinned  keyframes come with every n-th point of their edges, where that would be seen at the
+    ///                 reference row's time
     EdgeRegistrar(const PinholeCamera& camera, const OdometryOptions& options, bool thinned);
 
-    /// @param frame_edges  those of the frame that have depth
+    /// @param frame_edges  those of the frame that have depth, brought to the reference row's time by `rows`
     /// @param T_start      T_frame_keyframe
     /// @param rows         how the frame's rows moved, where that is known
     [[nodiscard]] EdgeRegistration registerEdges(const Keyframe& keyframe, const Frame& frame,
@@ -37,10 +38,12 @@ class EdgeRegistrar {
                                                  const RowMotion& rows = RowMotion());
 
   private:
-    void lookBack(const Keyframe& keyframe, const EdgePoints3D& frame_edges, EdgeRegistration& out);
+    void lookBack(const Keyframe& keyframe, const EdgePoints3D& frame_edges, const RowMotion& rows,
+                  EdgeRegistration& out);
 
     PinholeCamera ideal_;
     OdometryOptions options_;
+    bool thinned_;
     EdgeTerm term_;
     EdgeAssociator associator_;
     EdgeGrid grid_;  ///< of the keyframe

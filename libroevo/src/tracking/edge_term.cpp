@@ -18,7 +18,8 @@ constexpr double kNarrowing = 2;    ///< iterations in which the radius narrows 
 constexpr int kFirstPoints = 1600;  ///< looked up as it does
 /// Neighbours along an edge look at much the same pixels of the depth image: every n-th speaks for all.
 constexpr std::size_t kDepthStride = 6;
-constexpr float kUnknown = -1;  ///< depth not looked up yet
+constexpr std::size_t kTellingDepths = 20;  ///< fewer, as a scrap at an outline has, contradict nothing
+constexpr float kUnknown = -1;              ///< depth not looked up yet
 
 }  // namespace
 
@@ -191,14 +192,15 @@ void EdgeTerm::tangentResiduals(const RowMotion& rows) {
 double EdgeTerm::depthAgreement() {
     int known = 0, agreed = 0;
     if (!use_depth_ || frame_->images.depth.empty()) return 1;
-    for (std::size_t k = 0; k < matches_.size(); k += kDepthStride) {
+    const std::size_t stride = matches_.size() < kTellingDepths * kDepthStride ? 1 : kDepthStride;
+    for (std::size_t k = 0; k < matches_.size(); k += stride) {
         if (weight_[k] <= 0) continue;
         const double seen = static_cast<double>(currentDepth(static_cast<std::size_t>(matches_.current[k])));
         if (seen <= 0) continue;
         ++known;
         if (depthsAgree(static_cast<double>(matched_.projected.z[k]), seen, sensor_)) ++agreed;
     }
-    return known > 0 ? static_cast<double>(agreed) / known : 1;
+    return known >= static_cast<int>(kTellingDepths) ? static_cast<double>(agreed) / known : 1;
 }
 
 Matrix6d EdgeTerm::movedByVelocity(const RowMotion& rows, const Matrix6d& prior_information) {

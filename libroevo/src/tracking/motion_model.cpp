@@ -14,13 +14,14 @@ namespace {
 constexpr double kLongestPrediction = 0.5;  ///< s; nobody moves on evenly for longer
 constexpr double kLongestAway = 3600;       ///< s; by then it may be anywhere
 constexpr double kAnyTurn = 180;            ///< degrees
-constexpr double kUsual = 2.5;              ///< times the mean interval between frames: still a usual one
-constexpr double kShortestStep = 0.005,     ///< s, or half of the usual interval
-    kLongestStep = 0.35;                    ///< s between two poses that make a velocity
-constexpr double kLeastSigma = 1e-3;        ///< m and rad, of any motion
-constexpr double kSearchTurn = 20;          ///< degrees, one sigma, of a camera that is searched for
-constexpr double kLongestReadout = 0.1;     ///< s
-constexpr double kLearning = 0.2;           ///< share of the newest frame in means
+/// Times the mean interval between frames, or that of a Kinect where it is longer: still a usual one.
+constexpr double kUsual = 2.5;
+constexpr double kShortestStep = 0.005,  ///< s, or half of the usual interval
+    kLongestStep = 0.35;                 ///< s between two poses that make a velocity
+constexpr double kLeastSigma = 1e-3;     ///< m and rad, of any motion
+constexpr double kSearchTurn = 20;       ///< degrees, one sigma, of a camera that is searched for
+constexpr double kLongestReadout = 0.1;  ///< s
+constexpr double kLearning = 0.2;        ///< share of the newest frame in means
 
 /// By axis: linear, and of a turn in degrees (squared in radians).
 Vector6d squared(double linear, double turn_deg) {
@@ -94,7 +95,7 @@ Prediction MotionModel::predict(double timestamp) const {
             shutter(timestamp),
             brightness_,
             dt,
-            usual_interval_ > 0 && dt > kUsual * usual_interval_};
+            usual_interval_ > 0 && dt > kUsual * std::max(usual_interval_, 1 / kFrameRate)};
 }
 
 Pose MotionModel::poseAt(double timestamp) const {
@@ -104,7 +105,9 @@ Pose MotionModel::poseAt(double timestamp) const {
 }
 
 PosePrior MotionModel::prior(double timestamp) const {
-    const double dt = timestamp - last_timestamp_;
+    // What moved between two stamps that nearly coincide, their errors decide
+    const double since = timestamp - last_timestamp_;
+    const double dt = since < shortestStep() ? std::max(since, usual_interval_) : since;
     const bool moving = interval_ > 0;
     // A mean velocity is that of the middle of its interval: x(dt) - v dt = a dt (dt + interval) / 2. In a
     // longer time it says nothing, and a camera comes as far as its speed lets it

@@ -35,7 +35,7 @@ Eigen::Vector2f imageRotation(const Pose& pose) {
 }
 
 double imageMotion(const Pose& a, const Pose& b, double focal_length, double depth) {
-    const Pose between = a.inverse() * b;
+    const Pose between = b * a.inverse();
     return focal_length * (rotationAngle(between) + between.translation().norm() / depth);
 }
 
