@@ -1,6 +1,7 @@
 #include "run_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <map>
@@ -116,6 +117,17 @@ std::string RunReport::mapWarning() const {
     if (!map_in || localised() != nullptr) return {};
     return map_in->file + ": never recognised in the map: the trajectory is in a world of its own" +
            (map_out.file.empty() ? "" : ", and nothing is added to the map");
+}
+
+std::string RunReport::cameraWarning() const {
+    constexpr double kMostOff = 0.25;  // of the image, from its middle: cameras are off by some hundredths
+    const auto isOff = [&](double centre, int size) { return std::abs(centre / size - 0.5) > kMostOff; };
+    if (!isOff(camera.cx, camera.width) && !isOff(camera.cy, camera.height)) return {};
+    return format(
+               "the optical axis is far from the middle of the image: pixel %.1f, %.1f of %d x %d. Are these "
+               "the intrinsics of another image size? They are from ",
+               camera.cx, camera.cy, camera.width, camera.height) +
+           camera_source;
 }
 
 std::size_t RunReport::count(FrameStatus status) const {

@@ -78,6 +78,8 @@ struct RunReport {
     int mapKeyframeOf(const FrameResult& frame) const;
     /// What is to be known where there is no such frame; else empty.
     std::string mapWarning() const;
+    /// That the camera's intrinsics seem to be of another image size; else empty.
+    std::string cameraWarning() const;
 
     /// Empty when at least one frame was tracked (or the only frame initialised), else the commonest reason.
     /// Poses that are not numbers are a failure, too: no result is printed then.

@@ -110,6 +110,20 @@ TEST(RunReport, SegmentsAreThePiecesOfTheTrajectory) {
     EXPECT_EQ(csv.substr(csv.size() - 3), ",1\n");
 }
 
+TEST(RunReport, IntrinsicsOfALargerImageAreWarnedOf) {
+    RunReport report = trackedReport();
+    report.camera = {320, 240, 262, 262, 159.5, 119.5, {}};
+    EXPECT_EQ(report.cameraWarning(), "");
+    report.camera = {320, 240, 525, 525, 319.5, 239.5, {}};
+    report.camera_source = "--intrinsics";
+    EXPECT_EQ(report.cameraWarning(),
+              "the optical axis is far from the middle of the image: pixel 319.5, 239.5 of 320 x 240. Are "
+              "these the "
+              "intrinsics of another image size? They are from --intrinsics");
+    report.camera = {320, 240, 262, 262, 159.5, 239.5, {}};
+    EXPECT_NE(report.cameraWarning(), "");
+}
+
 TEST(RunReport, AMapIsOnePieceWithWhatWasRecognisedInIt) {
     RunReport report = trackedReport();
     report.map_in = LoadedMap{"room.map", 5, false};

@@ -51,7 +51,6 @@ Relocaliser::Relocaliser(const PinholeCamera& camera, const OdometryOptions& opt
 
 void Relocaliser::load(std::vector<KnownPlace> places) {
     places_ = std::move(places);
-    loaded_ = static_cast<int>(places_.size());
     for (std::size_t id = 0; id < places_.size(); ++id)
         index_.insert(static_cast<int>(id), places_[id].points);
 }
@@ -61,10 +60,9 @@ const std::vector<KnownPlace>& Relocaliser::places() {
     return places_;
 }
 
-void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, const Keyframe* previous,
-                      std::vector<Rgb> colours, std::vector<int> tracks, int end) {
+void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours,
+                      std::vector<int> tracks, int end) {
     collect();
-    if (previous != nullptr) places_[static_cast<std::size_t>(previous->id)].learned = previous->row_motion;
     Keyframe copy;  // of what is remembered
     copy.id = keyframe.id;
     copy.edges = keyframe.edges;
@@ -119,16 +117,13 @@ Keyframe Relocaliser::unpacked(int id) const {
     place.edges.unpackInto(edges, ideal_, options_.sensor);
     Keyframe keyframe;
     keyframe.id = id;
-    const RowMotion& rows = place.learned.known() ? place.learned : place.row_motion;
-    edges.row_motion = place.row_motion;
-    if (id >= loaded_) setRowMotion(edges, rows.at(seconds_per_row_), ideal_);
-    keyframe.row_motion = edges.row_motion;
     keyframe.edges.image = std::move(edges.image);
     keyframe.edges.points = std::move(edges.points);
     keyframe.edges.weight = std::move(edges.weight);
     keyframe.edges.correction.assign(keyframe.edges.size(), 0);
     for (int e = 0; e < keyframe.edges.image.numEdges(); ++e) keyframe.clusters.push_back(e);
     keyframe.median_depth = place.median_depth;
+    keyframe.row_motion = place.row_motion;
     return keyframe;
 }
 
@@ -171,9 +166,8 @@ std::optional<RecognisedPlace> Relocaliser::recognised(Among tracks, const Traje
     collect();
     const std::vector<Alike>& alike = tracks == Among::kOwnTrack ? newest_.alike : newest_.elsewhere;
     if (alike.empty()) return std::nullopt;
-    return surest(
-        registered(alike, *newest_.frame, newest_.edges, places_.back().row_motion.at(seconds_per_row_)),
-        trajectory, whereabouts);
+    return surest(registered(alike, *newest_.frame, newest_.edges, places_.back().row_motion), trajectory,
+                  whereabouts);
 }
 
 std::optional<RelativePose> Relocaliser::find(const Frame& frame, Among tracks, const Trajectory& trajectory,

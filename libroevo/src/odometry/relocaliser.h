@@ -33,8 +33,7 @@ struct KnownPlace {
     PlacePoints points;
     PackedKeyframe edges;
     double median_depth = 0;  ///< m
-    RowMotion row_motion;     ///< that the edges were moved with
-    RowMotion learned;        ///< since then; unknown: nothing
+    RowMotion row_motion;
 };
 
 /// Keyframes, as seen from the newest one.
@@ -69,18 +68,14 @@ class Relocaliser {
     /// Of all keyframes, by their ids; waits for the thread.
     const std::vector<KnownPlace>& places();
 
-    /// What is known of the read-out time by now, for all keyframes that were not loaded.
-    void setReadout(double seconds_per_row) { seconds_per_row_ = seconds_per_row; }
-
     /// In a thread of its own, or when it is asked for where there is but one.
     /// @param frame    that the keyframe was made of
-    /// @param previous the keyframe before, if there is one: how its rows moved is known by now
     /// @param colours  of the keyframe's points
     /// @param tracks   of all keyframes. Those of its own track are looked for apart from the others: they
     ///                 look more like the new one.
     /// @param end      only keyframes of its own track before this one are looked for
-    void add(const Keyframe& keyframe, const Frame& frame, const Keyframe* previous, std::vector<Rgb> colours,
-             std::vector<int> tracks, int end);
+    void add(const Keyframe& keyframe, const Frame& frame, std::vector<Rgb> colours, std::vector<int> tracks,
+             int end);
 
     /// Older keyframes of its own track that the newest one looks like, and its poses relative to them by
     /// points alone: about right, with no covariance. Waits for the thread.
@@ -134,8 +129,6 @@ class Relocaliser {
     EdgeRegistrar registrar_;         ///< to what is remembered of keyframes
     EdgeRegistrar confirmer_;         ///< to a whole one
     std::vector<KnownPlace> places_;  ///< of each keyframe, by its id
-    int loaded_ = 0;                  ///< of them: those of an earlier recording
-    double seconds_per_row_ = 0;
     Described newest_;                ///< keyframe; its place is among places_
     std::future<Described> at_work_;  // last: waits for the thread
 };

@@ -66,11 +66,8 @@ void World::load(StoredMap map, bool held) {
     if (loaded_ > 0) misplacements_[0].distance = kAnywhere;
     std::vector<KnownPlace> places;
     for (std::size_t id = 0; id < map.places.size(); ++id)
-        places.push_back({std::move(map.places[id]),
-                          map.edges[id].points,
-                          map.edges[id].median_depth,
-                          map.edges[id].row_motion,
-                          {}});
+        places.push_back({std::move(map.places[id]), map.edges[id].points, map.edges[id].median_depth,
+                          map.edges[id].row_motion});
     relocaliser_.load(std::move(places));
     mapper_->load(map.graph.keyframes, std::move(map.edges));
     semi_dense_.load(std::move(map.surfaces));
@@ -113,7 +110,6 @@ EdgeMap World::inThisWorld(EdgeMap edges) const {
 void World::advance(double timestamp, double seconds_per_row) {
     timestamp_ = timestamp;
     seconds_per_row_ = seconds_per_row;
-    relocaliser_.setReadout(seconds_per_row);
     for (const MapUpdate& update : mapper_->due(timestamp, change_.ms.waiting)) takeUpdate(update);
     if (recognising_ && timestamp >= recognised_at_) recognise();
     if (reference_) reference_->setRowMotion(reference_->row_motion.at(seconds_per_row));
@@ -191,7 +187,7 @@ Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Trac
 void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
     std::vector<Rgb> colours = coloursOf(fresh->edges.image, of.images, camera_);
     if (remembersPlaces()) {
-        relocaliser_.add(*fresh, of, reference_.get(), colours, trajectory_.tracks(),
+        relocaliser_.add(*fresh, of, colours, trajectory_.tracks(),
                          closesLoops() ? fresh->id - kStillInView : 0);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
         recognising_ = true;
