@@ -65,13 +65,13 @@ RowMotion rowsOf(const Sequence& sequence, std::size_t i, double readout) {
 }
 
 TEST(PlaceRegistrationOfRows, ThatMovedInBothImagesBringsBothToOneMoment) {
-    constexpr double kReadout = 0.066;  // s
+    constexpr double kReadout = 0.1;  // s
     simulator::SimulationOptions options = smallRoom();
     options.rolling_shutter = kReadout;
-    options.fps = 15;
-    options.speed = 1.2;
+    options.fps = 10;
+    options.speed = 2;
     const Sequence sequence = simulate(options, 31);
-    constexpr std::size_t kKeyframe = 20, kFrame = 24;
+    constexpr std::size_t kKeyframe = 20, kFrame = 21;
     const auto viewOf = [&](std::size_t i) {
         return makePlaceView(sequence.camera, sequence.frames[i], sequence.truth[i].T_world_camera,
                              static_cast<int>(i));
@@ -88,7 +88,9 @@ TEST(PlaceRegistrationOfRows, ThatMovedInBothImagesBringsBothToOneMoment) {
     const EdgeRegistration moved = registered(rowsOf(sequence, kFrame, kReadout)), still = registered({});
     EXPECT_LT(poseError(moved.T_frame_keyframe, truth), 0.004);
     EXPECT_LT(poseError(moved.T_frame_keyframe, truth), poseError(still.T_frame_keyframe, truth) / 2);
-    EXPECT_GT(std::min(moved.keyframe_matched, moved.frame_matched), 0.85);
+    EXPECT_GT(moved.keyframe_matched, 0.9);
+    // Rows that are still move alike in both images, and are a fair way to look back, too
+    EXPECT_GT(moved.frame_matched, still.frame_matched - 0.002);
 }
 
 /// One of so many points of its edges.

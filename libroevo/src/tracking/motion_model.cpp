@@ -105,7 +105,7 @@ Pose MotionModel::poseAt(double timestamp) const {
 }
 
 PosePrior MotionModel::prior(double timestamp) const {
-    // What moved between two stamps that nearly coincide, their errors decide
+    // Where two stamps nearly coincide, the time between them is mostly their errors
     const double since = timestamp - last_timestamp_;
     const double dt = since < shortestStep() ? std::max(since, usual_interval_) : since;
     const bool moving = interval_ > 0;

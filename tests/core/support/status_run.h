@@ -32,7 +32,12 @@ class StatusRun : public ::testing::Test {
                 << i << " " << result.reason;
         }
     }
-    static const RgbdFrame& frameAt(int i) { return room().frames[static_cast<std::size_t>(i)]; }
+    /// With images of its own: what a test does to them it does not do to the room's.
+    static RgbdFrame frameAt(int i) {
+        RgbdFrame frame = room().frames[static_cast<std::size_t>(i)];
+        for (cv::Mat* image : {&frame.grey, &frame.depth}) *image = image->clone();
+        return frame;
+    }
     static double errorAt(const FrameResult& result, int i) {
         return (result.T_world_camera.translation() -
                 room().truth[static_cast<std::size_t>(i)].T_world_camera.translation())
