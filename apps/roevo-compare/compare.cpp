@@ -82,7 +82,6 @@ std::vector<std::string> childCommand(const CompareSettings& settings, const Seq
     if (sequence.skip > 0) add("--skip", std::to_string(sequence.skip));
     if (sequence.first > 0) add("--first", std::to_string(sequence.first));
     if (settings.memory_mb > 0) add("--memory", std::to_string(settings.memory_mb));
-    if (!sequence.ground_truth.empty()) add("--ground-truth", sequence.ground_truth);
     if (!sequence.note.empty()) add("--note", sequence.note);
     if (sequence.paper_ate_cm) add("--paper-ate", std::to_string(*sequence.paper_ate_cm));
     for (const auto& [option, value] : chosenOptions(sequence.choice)) add(option, value);

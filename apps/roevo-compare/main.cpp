@@ -34,7 +34,7 @@ constexpr char kFooter[] =
 
 struct Arguments {
     std::vector<std::string> inputs, methods, sets, report, baseline, trajectories;
-    std::string ground_truth, output, config, name, note, variant, key, command;
+    std::string output, config, name, note, variant, key, command;
     InputChoice choice;
     std::size_t first = 0, skip = 0;
     double timeout = kTimeout, memory = 0;
@@ -45,9 +45,6 @@ struct Arguments {
 
 void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--input", a.inputs, "Rawlogs, ROS bags or dataset folders, one or more");
-    app.add_option(
-        "--ground-truth", a.ground_truth,
-        "Trajectory to compare with, TUM or EuRoC, for a single --input (default: what lies beside each)");
     app.add_option("--methods", a.methods, "Names, separated by commas (default: all)")->delimiter(',');
     app.add_option(
         "--trajectory", a.trajectories,
@@ -123,7 +120,7 @@ void checkUsage(const Arguments& a) {
     if (!a.inputs.empty() && !a.report.empty()) throw UsageError("--input and --report exclude each other");
     if (!a.baseline.empty() && a.report.empty()) throw UsageError("--baseline is for --report");
     if (a.output.empty()) throw UsageError("--output is required");
-    const std::pair<const char*, bool> of_one[] = {{"--ground-truth", !a.ground_truth.empty()},
+    const std::pair<const char*, bool> of_one[] = {{"--ground-truth", !a.choice.ground_truth.empty()},
                                                    {"--name", !a.name.empty()},
                                                    {"--note", !a.note.empty()},
                                                    {"--trajectory", !a.trajectories.empty()},
@@ -149,7 +146,6 @@ std::vector<SequenceInput> inputSequences(const Arguments& a) {
         SequenceInput sequence;
         sequence.name = a.name.empty() ? names[i] : a.name;
         sequence.input = a.inputs[i];
-        sequence.ground_truth = a.ground_truth;
         sequence.choice = a.choice;
         sequence.skip = a.skip;
         sequence.first = a.first;
@@ -183,7 +179,8 @@ std::string failureOf(const ComparisonReport& report, const Arguments& a) {
         }
     }
     if (!some_good) return "no method gave a result; the first: " + failure;
-    if (!a.ground_truth.empty() && !some_evaluated) return a.ground_truth + ": " + no_evaluation;
+    if (!a.choice.ground_truth.empty() && !some_evaluated)
+        return a.choice.ground_truth + ": " + no_evaluation;
     return {};
 }
 

@@ -46,7 +46,7 @@ std::string faultOf(FrameSource& source, const SequenceInput& sequence) {
 }
 
 void setGroundTruth(SequenceComparison& out, const SequenceInput& sequence, const FrameSource& source) {
-    GroundTruth truth = groundTruthFor(sequence.ground_truth, source);
+    GroundTruth truth = source.groundTruth();
     out.ground_truth = truth.file;
     out.reference = std::move(truth.poses);
     if (!out.reference.empty()) {
@@ -94,11 +94,11 @@ SequenceComparison openSequence(const SequenceInput& sequence) {
     if (!sequence.note.empty()) out.notes.push_back(sequence.note);
     out.paper_ate_cm = sequence.paper_ate_cm;
     // Before all else: a file that was asked for must be good even if the recording is not
-    if (!sequence.ground_truth.empty()) readTrajectory(sequence.ground_truth);
+    if (!sequence.choice.ground_truth.empty()) readTrajectory(sequence.choice.ground_truth);
     try {
         const auto source = openSource(sequence.input, sequence.choice);
         out.part = partOf(sequence, source->size());
-        for (const std::string& note : source->notes())  // ground truth may be another one: told by itself
+        for (const std::string& note : source->notes())  // of the ground truth setGroundTruth() tells
             if (note.rfind("ground truth:", 0) != 0) out.notes.push_back(note);
         setGroundTruth(out, sequence, *source);
         out.failure = faultOf(*source, sequence);

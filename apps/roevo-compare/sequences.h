@@ -14,7 +14,6 @@ struct SequenceInput {
     std::string name;                    ///< unique, and fit for the name of a folder
     std::string input;                   ///< rawlog, bag or dataset folder, as given
     InputChoice choice;                  ///< of its frames
-    std::string ground_truth;            ///< file to be taken; empty: what lies beside the recording
     std::size_t skip = 0, first = 0;     ///< at most `first` frames (0: all) after leaving out `skip`
     std::optional<double> paper_ate_cm;  ///< the paper's figure for just these frames
     std::string note;                    ///< what a list says of it that a reader must know; may be empty

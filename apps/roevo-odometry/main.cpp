@@ -21,9 +21,9 @@ constexpr char kFooter[] =
     "  roevo-odometry --input rgbd_dataset_freiburg1_xyz --output out --set keyframe.max_rotation_deg=10\n"
     "Written into the output folder: trajectory.txt, trajectory_live.txt, keyframes.txt (TUM format), "
     "frames.csv,\n"
-    "map.3Dscene, map.ply, map_semi_dense.ply, summary.json, config_used.ini; trajectory_robot.txt when a "
-    "rawlog\n"
-    "says where the camera is mounted on the robot.";
+    "map.3Dscene, map.ply, map_semi_dense.ply, summary.json, config_used.ini; ground_truth.txt when "
+    "there is one;\n"
+    "trajectory_robot.txt when a rawlog says where the camera is mounted on the robot.";
 
 void writeDefaultConfig(const std::string& path) {
     const std::string text = toConfigText(OdometryOptions());
@@ -46,10 +46,6 @@ int run(int argc, char** argv) {
     addSetOption(app, sets);
     app.add_option("--mode", mode,
                    "ct: coarse tracking only; tr: coarse and fine; ba: with local mapping (default)");
-    app.add_option(
-        "--ground-truth", settings.ground_truth,
-        "Trajectory to compare with, TUM or EuRoC (default: <stem>_groundtruth.txt beside a rawlog or a bag, "
-        "groundtruth.txt in a folder)");
     app.add_option("--covariances", settings.covariances,
                    "Write the 6x6 covariance of every pose to this file, too")
         ->type_name("FILE");
@@ -110,13 +106,13 @@ int run(int argc, char** argv) {
     cv::setNumThreads(
         1);  // decoding runs beside tracking already; more threads would blur the times per frame
     const RunReport report = runOdometry(settings);
-    for (const std::string& warning :
-         {report.warning, report.cameraWarning(), report.scale_warning, report.mapWarning()})
+    for (const std::string& warning : {report.warning, report.cameraWarning(), report.evaluationWarning(),
+                                       report.scale_warning, report.mapWarning()})
         if (!warning.empty()) printWarning(kName, warning);
     if (!settings.quiet) printSummary(report, settings.output_dir);
     if (profile) printProfile(report);
-    if (!report.evaluation && !settings.ground_truth.empty())
-        throw std::runtime_error(settings.ground_truth + ": " + report.evaluation_fault);
+    if (!report.evaluation && !settings.choice.ground_truth.empty())
+        throw std::runtime_error(settings.choice.ground_truth + ": " + report.evaluation_fault);
     return 0;
 }
 

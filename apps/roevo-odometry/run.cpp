@@ -45,8 +45,9 @@ std::size_t expectedFrames(const FrameSource& source, const RunSettings& setting
 }
 
 const std::vector<std::string> kResults = {
-    "trajectory.txt", "trajectory_live.txt", "trajectory_robot.txt", "keyframes.txt", "map.3Dscene",
-    "map.ply",        "map_semi_dense.ply",  "config_used.ini",      "frames.csv",    "summary.json"};
+    "trajectory.txt",  "trajectory_live.txt", "trajectory_robot.txt", "keyframes.txt", "map.3Dscene",
+    "map.ply",         "map_semi_dense.ply",  "config_used.ini",      "frames.csv",    "summary.json",
+    "ground_truth.txt"};
 
 // What is written besides the results must not take the place of what is read, or of a result.
 void checkNames(const RunSettings& settings, const std::string& ground_truth) {
@@ -196,17 +197,22 @@ void evaluateRun(RunReport& report, const GroundTruth& ground_truth) {
     }
 }
 
-// The part of the ground truth that the run covers, moved onto the trajectory.
-std::vector<StampedPose> alignedReference(const RunReport& report,
-                                          const std::vector<StampedPose>& ground_truth) {
-    std::vector<StampedPose> aligned;
-    if (!report.evaluation) return aligned;
-    const Pose T_world_reference = report.evaluation->ate.T_reference_estimate.inverse();
+// What the run was compared with; empty where it was not.
+std::vector<StampedPose> coveredPart(const std::vector<StampedPose>& ground_truth, const RunReport& report) {
+    std::vector<StampedPose> covered;
+    if (!report.evaluation) return covered;
     for (const StampedPose& pose : ground_truth)
         if (pose.timestamp >= report.trajectory.front().timestamp - kDefaultMaxDt &&
             pose.timestamp <= report.trajectory.back().timestamp + kDefaultMaxDt)
-            aligned.push_back({pose.timestamp, T_world_reference * pose.T_world_camera});
-    return aligned;
+            covered.push_back(pose);
+    return covered;
+}
+
+// Moves it onto the trajectory.
+std::vector<StampedPose> aligned(std::vector<StampedPose> ground_truth, const RunReport& report) {
+    for (StampedPose& pose : ground_truth)
+        pose.T_world_camera = report.evaluation->ate.T_reference_estimate.inverse() * pose.T_world_camera;
+    return ground_truth;
 }
 
 std::vector<StampedPose> keyframePoses(const RunReport& report) {
@@ -243,18 +249,6 @@ RunReport reportOn(const FrameSource& source, const RunSettings& settings) {
     return report;
 }
 
-// The source names what lies beside it, which one that was given takes the place of.
-std::vector<std::string> notesOn(const FrameSource& source, const GroundTruth& truth, bool given) {
-    std::vector<std::string> notes = source.notes();
-    if (!given) return notes;
-    const auto found = std::find(notes.begin(), notes.end(), source.groundTruth().toText());
-    if (found == notes.end())
-        notes.push_back(truth.toText());
-    else
-        *found = truth.toText();
-    return notes;
-}
-
 void printInput(const RunReport& report, const std::vector<std::string>& notes) {
     std::printf("input       %s (%s), %d x %d, intrinsics from %s\n", report.input.c_str(),
                 report.kind.c_str(), report.camera.width, report.camera.height, report.camera_source.c_str());
@@ -288,7 +282,7 @@ SceneContent finishMap(Odometry& odometry, RunReport& report) {
 RunReport runOdometry(const RunSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
     auto source = openSource(settings.input, settings.choice);
-    const GroundTruth ground_truth = groundTruthFor(settings.ground_truth, *source);
+    const GroundTruth ground_truth = source->groundTruth();
     checkNames(settings, ground_truth.file);
     RunReport report = reportOn(*source, settings);
     Odometry odometry(source->camera(), settings.options);
@@ -301,7 +295,7 @@ RunReport runOdometry(const RunSettings& settings) {
     MrptOutputs for_mrpt(settings, *source);
 
     report.ground_truth = ground_truth.file;
-    if (!settings.quiet) printInput(report, notesOn(*source, ground_truth, !settings.ground_truth.empty()));
+    if (!settings.quiet) printInput(report, source->notes());
 
     skipFrames(*source, settings.skip, settings.input);
     processFrames(*source, odometry, settings, report);
@@ -323,7 +317,9 @@ RunReport runOdometry(const RunSettings& settings) {
         if (report.mounted)
             writeTumTrajectory(files.path("trajectory_robot.txt"),
                                robotTrajectory(report.trajectory, report.camera_on_robot));
-        writeMap(files, report, odometry, std::move(content), alignedReference(report, ground_truth.poses));
+        std::vector<StampedPose> reference = coveredPart(ground_truth.poses, report);
+        if (!reference.empty()) writeTumTrajectory(files.path("ground_truth.txt"), reference);
+        writeMap(files, report, odometry, std::move(content), aligned(std::move(reference), report));
         if (map_file) no_map = saveMap(odometry, settings.map_out, map_file, report);
         for_mrpt.write(report, odometry);
     }

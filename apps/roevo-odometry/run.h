@@ -12,7 +12,7 @@ namespace roevo {
 /// What to run, from the command line.
 struct RunSettings {
     std::vector<std::string> command;  ///< the program and its arguments, for the record
-    std::string input, output_dir, ground_truth;
+    std::string input, output_dir;
     InputChoice choice;
     std::string map_in, map_out;                ///< files; empty: none
     bool localise_only = false;                 ///< the map stays as it is

@@ -119,6 +119,13 @@ std::string RunReport::mapWarning() const {
            (map_out.file.empty() ? "" : ", and nothing is added to the map");
 }
 
+std::string RunReport::evaluationWarning() const {
+    if (!evaluation || 2 * evaluation->pairs.size() >= trajectory.size()) return {};
+    return ground_truth +
+           format(": only %zu of the %zu poses have ground truth within %g s: the errors are of these",
+                  evaluation->pairs.size(), trajectory.size(), kDefaultMaxDt);
+}
+
 std::string RunReport::cameraWarning() const {
     constexpr double kMostOff = 0.25;  // of the image, from its middle: cameras are off by some hundredths
     const auto isOff = [&](double centre, int size) { return std::abs(centre / size - 0.5) > kMostOff; };

@@ -78,6 +78,8 @@ struct RunReport {
     int mapKeyframeOf(const FrameResult& frame) const;
     /// What is to be known where there is no such frame; else empty.
     std::string mapWarning() const;
+    /// Where the errors are of less than half of the trajectory; else empty.
+    std::string evaluationWarning() const;
     /// That the camera's intrinsics seem to be of another image size; else empty.
     std::string cameraWarning() const;
 

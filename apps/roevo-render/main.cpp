@@ -102,20 +102,6 @@ int drawPicture(const Settings& settings, bool layer_wanted, bool is_movie) {
     return 0;
 }
 
-// The ground truth that was asked for, or the one that the run was compared with, if it is still there.
-NamedPath groundTruth(const std::string& file, const ResultFolder& result) {
-    constexpr char kTruth[] = "ground truth";
-    if (!file.empty()) return {kTruth, readTrajectory(file)};
-    if (result.ground_truth.empty()) return {kTruth, {}};
-    try {
-        return {kTruth, readTrajectory(result.ground_truth)};
-    } catch (const std::exception& e) {
-        printWarning(
-            kName, std::string("the view has no ground truth: ") + e.what() + "; name it by --ground-truth");
-        return {kTruth, {}};
-    }
-}
-
 int writeView(const Settings& settings) {
     AtomicFile page(settings.output);
     page.stream();  // what cannot be written is said before the work is done
@@ -123,7 +109,9 @@ int writeView(const Settings& settings) {
     if (!settings.title.empty()) result.name = settings.title;
     WebViewSettings view_settings;
     if (!settings.name.empty()) view_settings.name = settings.name;
-    view_settings.truth = groundTruth(settings.ground_truth, result);
+    view_settings.truth = {"ground truth", settings.ground_truth.empty()
+                                               ? result.ground_truth
+                                               : readTrajectory(settings.ground_truth)};
     view_settings.max_size_mb = settings.max_size_mb;
     for (const std::string& argument : settings.trajectories)
         view_settings.others.push_back(

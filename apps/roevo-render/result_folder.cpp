@@ -19,7 +19,7 @@ void readSummary(const std::string& path, ResultFolder& result) {
     std::ifstream in(path, std::ios::binary);
     const auto json = nlohmann::json::parse(in, nullptr, false);
     try {
-        if (json.contains("input")) {  // a run of roevo-compare has neither this nor a ground truth
+        if (json.contains("input")) {  // a run of roevo-compare has none
             fs::path input = json.at("input").at("path").get<std::string>();
             if (input.filename().empty()) input = input.parent_path();  // "folder/"
             result.name = input.filename().string();
@@ -31,9 +31,6 @@ void readSummary(const std::string& path, ResultFolder& result) {
         pinhole.fx = camera.at("fx").get<double>(), pinhole.fy = camera.at("fy").get<double>();
         pinhole.cx = camera.at("cx").get<double>(), pinhole.cy = camera.at("cy").get<double>();
         if (pinhole.check().empty()) result.camera = pinhole;
-        const auto truth = json.value("ground_truth", nlohmann::json());
-        if (truth.is_object() && truth.contains("ate_m"))  // else it could not be compared
-            result.ground_truth = truth.at("file").get<std::string>();
     } catch (const nlohmann::json::exception&) {
         throw std::runtime_error(path + " is no summary of roevo-odometry; is it cut off?");
     }
@@ -62,6 +59,8 @@ ResultFolder readResultFolder(const std::string& folder) {
     };
     take("trajectory_live.txt", [&](const std::string& path) { result.live = readTumTrajectory(path); });
     take("keyframes.txt", [&](const std::string& path) { result.keyframes = readTumTrajectory(path); });
+    if (fs::exists(file("ground_truth.txt")))
+        result.ground_truth = readTumTrajectory(file("ground_truth.txt"));
     take("summary.json", [&](const std::string& path) { readSummary(path, result); });
     take("map.ply", [&](const std::string& path) { result.edges = readEdgesPly(path); });
     take("map_semi_dense.ply", [&](const std::string& path) { result.surface = readPointsPly(path); });

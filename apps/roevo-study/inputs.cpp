@@ -53,7 +53,7 @@ void setGroundTruth(StudyInput& input, const InputSettings& settings, const Fram
         input.ground_truth_note = "no ground truth, as asked";
         return;
     }
-    GroundTruth truth = groundTruthFor(settings.ground_truth, source);
+    GroundTruth truth = source.groundTruth();
     input.ground_truth = std::move(truth.poses);
     if (!input.ground_truth.empty())
         input.ground_truth_note = "ground truth: " + truth.file;

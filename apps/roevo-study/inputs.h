@@ -10,7 +10,6 @@ namespace roevo {
 /// What the command line says of the recordings.
 struct InputSettings {
     std::vector<std::string> paths;    ///< rawlogs, bags or dataset folders
-    std::string ground_truth;          ///< for a single recording; empty: what is found beside each
     bool ignore_ground_truth = false;  ///< even where some is beside a recording
     InputChoice choice;                ///< of all recordings
     std::size_t first = 0, skip = 0;   ///< first 0: all frames

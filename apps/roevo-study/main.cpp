@@ -127,10 +127,10 @@ int runStudies(const std::vector<Study>& studies, const std::vector<StudyInput>&
 
 // @throws UsageError
 void checkUsage(const InputSettings& settings) {
-    if (!settings.ground_truth.empty() && settings.paths.size() > 1)
+    if (!settings.choice.ground_truth.empty() && settings.paths.size() > 1)
         throw UsageError("--ground-truth is for a single --input, and there are " +
                          std::to_string(settings.paths.size()));
-    if (!settings.ground_truth.empty() && settings.ignore_ground_truth)
+    if (!settings.choice.ground_truth.empty() && settings.ignore_ground_truth)
         throw UsageError("--ground-truth and --no-ground-truth exclude each other");
     if (settings.first > 0 && settings.first < kFewestFrames)
         throw UsageError("--first " + std::to_string(settings.first) + ": a study needs at least " +
@@ -161,9 +161,6 @@ int run(int argc, char** argv) {
     app.add_option("--mode", mode,
                    "Of the odometry, where the experiment does not choose it: ct, tr or ba (default; "
                    "loop, sigmas and distribution: ba and tr)");
-    app.add_option(
-        "--ground-truth", settings.ground_truth,
-        "Trajectory to compare with, TUM or EuRoC, for a single input (default: what is found beside each)");
     app.add_flag(
         "--no-ground-truth", settings.ignore_ground_truth,
         "Do without, even where some is beside a recording: repeatability is then judged by the odometry's "

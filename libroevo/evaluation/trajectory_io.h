@@ -25,7 +25,8 @@ struct RowTimes {
 };
 
 /// Reads a trajectory, sorted by time on return; of poses with one stamp the last counts.
-/// @param format  none: as its first row looks. @param times  for KITTI
+/// @param format  none: as its first row looks; stamps of TUM's that can only be ms, us or ns of this century
+/// become s then. @param times  for KITTI
 /// @throws std::runtime_error with file and line: not the numbers that the format has, a value that is not
 /// finite, a quaternion whose length is not one, a matrix that is no rotation, another number of rows than
 /// times; or a file with no pose at all

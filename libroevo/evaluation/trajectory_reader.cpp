@@ -180,6 +180,15 @@ void setTimes(std::vector<StampedPose>& poses, const RowTimes& times, const Rows
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i].timestamp = times.stamps[i];
 }
 
+// Some programs write TUM's format with the nanoseconds that their images have for names.
+void toSeconds(std::vector<StampedPose>& poses) {
+    constexpr double kYear2000 = 9.5e8, kYear2100 = 4.1e9;  // s; times from some other zero tell no unit
+    const double last = poses.back().timestamp;
+    for (const double unit : {1e3, 1e6, 1e9})
+        if (last / unit > kYear2000 && last / unit < kYear2100)
+            for (StampedPose& pose : poses) pose.timestamp /= unit;
+}
+
 // Published ground truth does repeat stamps (TUM fr2/desk); as in the benchmark's own script the last one
 // counts.
 void sortByTime(std::vector<StampedPose>& poses) {
@@ -211,7 +220,8 @@ std::vector<StampedPose> readTrajectory(const std::string& path, std::optional<T
                                         const RowTimes& times) {
     Rows rows(path, format);
     std::vector<StampedPose> poses;
-    const std::string expected = format ? rowOf(*format) : anyRow();
+    const bool chosen = format.has_value();
+    const std::string expected = chosen ? rowOf(*format) : anyRow();
     while (rows.next()) {
         if (!format) format = recognise(rows);
         if (!format) rows.failAsRow(expected);
@@ -220,6 +230,7 @@ std::vector<StampedPose> readTrajectory(const std::string& path, std::optional<T
     if (poses.empty()) throw std::runtime_error(path + ": no pose in it; expected lines of " + expected);
     if (*format == TrajectoryFormat::kKitti) setTimes(poses, times, rows, path);
     sortByTime(poses);
+    if (!chosen && *format == TrajectoryFormat::kTum) toSeconds(poses);
     return poses;
 }
 

@@ -23,6 +23,7 @@
 #include "recordings/phone.h"
 #include "recordings/plain.h"
 #include "recordings/scannet.h"
+#include "recordings/sensor_files.h"
 #include "recordings/seven_scenes.h"
 #include "recordings/time_units.h"
 #include "recordings/tum.h"
@@ -44,6 +45,8 @@ struct Format {
     bool (*recognises)(const std::string& folder);
     DatasetDescription (*load)(const std::string& folder, const DatasetOptions& options);
     const char* needs;
+    /// Turns the ground truth of this format into poses as GroundTruth wants them; null: it has those.
+    void (*convert_truth)(DatasetDescription& dataset) = nullptr;
 };
 
 /// The more particular layouts come first.
@@ -53,7 +56,8 @@ const Format kFormats[] = {
     {"scannet", &isScanNetFolder, &loadScanNet, "color/, depth/ and intrinsic/intrinsic_color.txt"},
     {"stray", &isStrayFolder, &loadStray, "rgb/ (or rgb.mp4), depth/, camera_matrix.csv and odometry.csv"},
     {"record3d", &isRecord3dFolder, &loadRecord3d, "rgb/, depth/ and metadata or metadata.json with K"},
-    {"icl", &isIclFolder, &loadIcl, "associations.txt with whole numbers for times, files named alike"},
+    {"icl", &isIclFolder, &loadIcl, "associations.txt with whole numbers for times, files named alike",
+     &convertIclTruth},
     {"tum", &isTumFolder, &loadTum, "rgb.txt and depth.txt, or associations.txt"},
     {"plain", &isPlainFolder, &loadPlain,
      "camera.txt or another calibration, rgb/ or color/, and depth/, with numbers or times for names"},
@@ -299,6 +303,8 @@ DatasetDescription load(const Format& format, const std::string& folder, const D
     DatasetDescription out = format.load(folder, options);
     if (const double scale = options.folder.depth_scale; scale > 0) out.depth_scale = scale;
     checkFrameRate(options.folder.frame_rate, out);
+    if (!options.ground_truth.empty()) out.ground_truth = readNamedGroundTruth(options.ground_truth);
+    if (format.convert_truth && !out.ground_truth.poses.empty()) format.convert_truth(out);
     settleClock(out);
     return out;
 }

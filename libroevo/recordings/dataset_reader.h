@@ -66,8 +66,9 @@ struct DatasetOptions {
     double max_time_difference = 0.02;  ///< s, between a colour and its depth image
     /// Listed images that are not there: go on, the frame cannot be read then; else openDataset() throws.
     bool tolerate_missing = false;
-    BagTopicNames topics{};  ///< of bags
-    FolderChoice folder{};   ///< of folders
+    BagTopicNames topics{};      ///< of bags
+    FolderChoice folder{};       ///< of folders
+    std::string ground_truth{};  ///< file in place of what lies in the folder, converted alike; empty: that
 };
 
 /// An RGB-D dataset in a folder or a bag, read frame by frame.

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "evaluation/trajectory_io.h"
 #include "input/excerpt.h"
 #include "programs/program.h"
 #include "programs/text.h"
@@ -19,6 +18,7 @@
 #include "recordings/sensor_files.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
+#include "roevo_mrpt/rawlog_writer.h"
 #include "roevo_mrpt/time_conversions.h"
 
 namespace roevo {
@@ -74,6 +74,7 @@ class DatasetSource : public FrameSource {
         options.tolerate_missing = true;  // such frames are rejected with the reason, the others tracked
         options.topics = choice.topics;
         options.folder = choice.folder;
+        options.ground_truth = choice.ground_truth;
         return openDataset(path, options);
     }
 
@@ -83,13 +84,14 @@ class DatasetSource : public FrameSource {
 
 class RawlogSource : public FrameSource {
   public:
-    RawlogSource(const std::string& path, const std::string& sensor_label)
-        : path_(path), reader_(path, sensor_label), scan_(reader_.next()) {
+    RawlogSource(const std::string& path, const InputChoice& choice)
+        : reader_(path, choice.sensor_label), scan_(reader_.next()), truth_(truthOf(path, choice)) {
         // next() throws by itself when there is no scan at all.
         if (!scan_) return;
         camera_ = colourCameraOf(*scan_);
         following_ = reader_.next();
         noteFacts();
+        if (const std::string truth = truth_.toText(); !truth.empty()) notes_.push_back(truth);
     }
 
     bool next(SourceFrame& frame) override {
@@ -123,16 +125,17 @@ class RawlogSource : public FrameSource {
     std::string cameraSource() const override {
         return "the rawlog's observations, sensor '" + excerpt(reader_.report().label) + "'";
     }
-    GroundTruth groundTruth() const override {
-        fs::path beside = path_;
-        beside.replace_filename(beside.stem().string() + "_groundtruth.txt");
-        return readGroundTruth(beside.string());
-    }
+    GroundTruth groundTruth() const override { return truth_; }
     std::vector<std::string> notes() const override { return notes_; }
     std::size_t size() const override { return 0; }
     std::string warning() const override { return reader_.report().warning(); }
 
   private:
+    static GroundTruth truthOf(const std::string& path, const InputChoice& choice) {
+        return choice.ground_truth.empty() ? readGroundTruth(RawlogWriter::groundTruthFile(path))
+                                           : readNamedGroundTruth(choice.ground_truth);
+    }
+
     void advance() {
         scan_ = std::move(following_);
         following_ = scan_ ? reader_.next() : nullptr;
@@ -152,9 +155,9 @@ class RawlogSource : public FrameSource {
         }
     }
 
-    std::string path_;
     RawlogReader reader_;
     std::shared_ptr<mrpt::obs::CObservation3DRangeScan> scan_, following_;
+    GroundTruth truth_;
     PinholeCamera camera_;
     std::vector<std::string> notes_;
 };
@@ -174,7 +177,7 @@ std::unique_ptr<FrameSource> openUnmasked(const std::string& input, const InputC
     if (const auto given = choice.folder.options(); !given.empty())
         throw UsageError(given[0].first + " is for folders, and " + input + " is none");
     try {
-        return std::make_unique<RawlogSource>(input, choice.sensor_label);
+        return std::make_unique<RawlogSource>(input, choice);
     } catch (const std::runtime_error& e) {
         if (fs::path(input).extension() == ".rawlog") throw;
         throw std::runtime_error(std::string(e.what()) +
@@ -194,11 +197,6 @@ void skipFrames(FrameSource& source, std::size_t count, const std::string& input
         if (!source.skip())
             throw std::runtime_error("--skip " + std::to_string(count) + ": " + input + " has only " +
                                      counted(i, "frame"));
-}
-
-GroundTruth groundTruthFor(const std::string& path, const FrameSource& source) {
-    if (path.empty()) return source.groundTruth();
-    return {readTrajectory(path), path, {}, true};
 }
 
 std::string DepthScaleCheck::faultOf(const SourceFrame& frame) {

@@ -36,9 +36,11 @@ class FrameSource {
     virtual bool skip() = 0;
 
     virtual const PinholeCamera& camera() const = 0;
-    virtual std::string kind() const = 0;                ///< "rawlog", "tum", …
-    virtual std::string cameraSource() const = 0;        ///< where the intrinsics come from, in words
-    virtual GroundTruth groundTruth() const = 0;         ///< found beside the input, or empty
+    virtual std::string kind() const = 0;          ///< "rawlog", "tum", …
+    virtual std::string cameraSource() const = 0;  ///< where the intrinsics come from, in words
+    /// The one that was chosen, which must be good, or found beside the input, where GroundTruth::note tells
+    /// what is wrong with it; or empty.
+    virtual GroundTruth groundTruth() const = 0;
     virtual std::vector<std::string> notes() const = 0;  ///< what was assumed or converted, a line each
     virtual std::size_t size() const = 0;                ///< number of frames, 0 when unknown
     virtual std::string warning() const = 0;  ///< once read: damage, things left out; one line or empty
@@ -54,11 +56,6 @@ std::unique_ptr<FrameSource> prefetch(std::unique_ptr<FrameSource> source);
 /// Leaves out the first frames. @throws std::runtime_error when there are fewer
 /// @param input  name of the source for the message
 void skipFrames(FrameSource& source, std::size_t count, const std::string& input);
-
-/// The ground truth in `path`, or what is found beside the source when `path` is empty: one that was asked
-/// for must be good; of one that was only found, GroundTruth::note tells what is wrong.
-/// @throws std::runtime_error in one line
-GroundTruth groundTruthFor(const std::string& path, const FrameSource& source);
 
 /// Looks at the depth of the first frame that could be decoded, and of no other.
 class DepthScaleCheck {

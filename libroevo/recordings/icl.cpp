@@ -102,12 +102,16 @@ void findGroundTruth(DatasetDescription& out) {
     if (files.size() > 1) {
         out.notes.push_back("ground truth: " + std::to_string(files.size()) + " trajectories (" +
                             files[0].filename().string() + ", " + files[1].filename().string() +
-                            " …), none taken: leave only this sequence's in the folder");
+                            " …), none taken: name this sequence's by --ground-truth");
         return;
     }
     out.ground_truth = readGroundTruth(files[0].string());
+}
+
+}  // namespace
+
+void convertIclTruth(DatasetDescription& out) {
     GroundTruth& truth = out.ground_truth;
-    if (truth.poses.empty()) return;
     truth.copyable = false;
     const double first = truth.poses.front().timestamp, last = truth.poses.back().timestamp;
     numbersToSeconds(truth.poses);
@@ -125,8 +129,6 @@ void findGroundTruth(DatasetDescription& out) {
         100 * told.error_as_is, 100 * told.error_mirrored);
     truth.note = text;
 }
-
-}  // namespace
 
 bool isIclFolder(const std::string& folder_name) {
     const fs::path folder(folder_name);
@@ -166,7 +168,7 @@ DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions&
     finishFrames(out);
     out.notes.push_back("times are frame numbers at 30 Hz");
     setCamera(findCamera(folder_name, options), out);
-    findGroundTruth(out);
+    if (options.ground_truth.empty()) findGroundTruth(out);
     return out;
 }
 

@@ -5,7 +5,7 @@
 namespace roevo {
 namespace {
 
-constexpr char kSensorLabel[] = "--sensor-label", kMask[] = "--mask";
+constexpr char kSensorLabel[] = "--sensor-label", kMask[] = "--mask", kGroundTruth[] = "--ground-truth";
 
 struct TopicOption {
     const char* name;
@@ -27,6 +27,10 @@ constexpr TopicOption kOptions[] = {
 }  // namespace
 
 void addInputOptions(CLI::App& app, InputChoice& choice) {
+    app.add_option(
+        kGroundTruth, choice.ground_truth,
+        "Trajectory to compare with, TUM or EuRoC (default: <stem>_groundtruth.txt beside a rawlog or a bag, "
+        "groundtruth.txt or what the layout has in a folder)");
     app.add_option(kSensorLabel, choice.sensor_label, "Rawlogs with several cameras: which one");
     addTopicOptions(app, choice.topics);
     addFolderOptions(app, choice.folder);
@@ -44,6 +48,7 @@ void addTopicOptions(CLI::App& app, BagTopicNames& topics) {
 
 std::vector<std::pair<std::string, std::string>> chosenOptions(const InputChoice& choice) {
     std::vector<std::pair<std::string, std::string>> out;
+    if (!choice.ground_truth.empty()) out.emplace_back(kGroundTruth, choice.ground_truth);
     if (!choice.sensor_label.empty()) out.emplace_back(kSensorLabel, choice.sensor_label);
     for (const TopicOption& option : kOptions)
         if (!(choice.topics.*option.topic).empty())

@@ -18,10 +18,11 @@ struct InputChoice {
     std::string sensor_label;  ///< rawlogs: only this sensor; empty: the first with range images
     BagTopicNames topics;      ///< bags: those that are not to be found by themselves
     FolderChoice folder;       ///< folders: what is not in them, or wrong there
+    std::string ground_truth;  ///< trajectory file in place of what lies beside the input; empty: that
     std::string mask;          ///< image file: where it is black, nothing is used (recordings/masked.h)
 };
 
-/// The options --sensor-label, --mask and those of addTopicOptions() and addFolderOptions().
+/// The options --ground-truth, --sensor-label, --mask and those of addTopicOptions() and addFolderOptions().
 void addInputOptions(CLI::App& app, InputChoice& choice);
 
 /// The options by which the topics of bags are chosen: --colour-topic, --depth-topic, --info-topic,

@@ -93,6 +93,10 @@ GroundTruth readGroundTruth(const std::string& file) {
     return truth;
 }
 
+GroundTruth readNamedGroundTruth(const std::string& file) {
+    return {readTrajectory(file), file, {}, false};
+}
+
 void readAccelerometer(const std::string& file, DatasetDescription& out) {
     if (!fs::exists(file)) return;
     const Columns columns = readColumns(file, 4);

@@ -12,6 +12,9 @@ namespace roevo {
 /// it cannot be used.
 GroundTruth readGroundTruth(const std::string& file);
 
+/// One that was asked for: a trajectory of any format. @throws std::runtime_error where it is no good
+GroundTruth readNamedGroundTruth(const std::string& file);
+
 /// TUM's accelerometer.txt ("timestamp ax ay az", m/s^2) into `out.imu` and `out.imu_source`; nothing when
 /// there is no such file. Lines that cannot be used are left out, counted and the first one named.
 void readAccelerometer(const std::string& file, DatasetDescription& out);

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
+#include "evaluation/evaluate.h"
 #include "evaluation/trajectory_io.h"
 #include "odometry_fixture.h"
 #include "support/data_folder.h"
@@ -25,9 +26,9 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
     ASSERT_EQ(result.exit_code, 0) << result.all();
     for (const char* name :
          {"trajectory.txt", "trajectory_live.txt", "keyframes.txt", "frames.csv", "map.3Dscene", "map.ply",
-          "map_semi_dense.ply", "summary.json", "config_used.ini"})
+          "map_semi_dense.ply", "summary.json", "config_used.ini", "ground_truth.txt"})
         EXPECT_GT(fs::file_size(output() + "/" + name), 0u) << name;
-    EXPECT_EQ(std::distance(fs::directory_iterator(output()), fs::directory_iterator()), 9)
+    EXPECT_EQ(std::distance(fs::directory_iterator(output()), fs::directory_iterator()), 10)
         << "and nothing else";
 
     const std::string csv = readFile(output() + "/frames.csv");
@@ -53,6 +54,10 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
     // groundtruth.txt in the folder is found without being named.
     EXPECT_LT(json["ground_truth"]["ate_m"]["rmse"].get<double>(), 0.005);
     EXPECT_LT(json["ground_truth"]["rpe_per_second"]["translation_m"]["rmse"].get<double>(), 0.01);
+    // As it was used, for programs that do not know the recording
+    const Evaluation again = evaluate(readTumTrajectory(output() + "/ground_truth.txt"),
+                                      readTumTrajectory(output() + "/trajectory.txt"));
+    EXPECT_NEAR(again.ate.translation.rmse, json["ground_truth"]["ate_m"]["rmse"], 1e-8);
     for (const char* words : {"39 ok", "1 initialised", "ATE", "RPE", "ms per frame"})
         EXPECT_NE(result.out.find(words), std::string::npos) << words << " in\n" << result.out;
 }
@@ -70,6 +75,33 @@ TEST_F(OdometryProgram, GroundTruthMayBeOfEuroc) {
               std::string::npos)
         << result.out;
     EXPECT_EQ(result.out.find("groundtruth.txt"), std::string::npos) << "it is not used:\n" << result.out;
+}
+
+TEST_F(OdometryProgram, GroundTruthMayHaveNanoseconds) {
+    auto frames = slidingRecording(10);
+    for (test::TumFrame& frame : frames) frame.timestamp += 1.7e9;  // of this century
+    ASSERT_EQ(runFrames(frames).exit_code, 0);
+    const auto expected = summary()["ground_truth"]["ate_m"];
+    auto truth = readTumTrajectory(folder_ / "recording/groundtruth.txt");
+    for (StampedPose& pose : truth) pose.timestamp *= 1e9;
+    writeTumTrajectory(folder_ / "truth.txt", truth);
+    ASSERT_EQ(run(folder_ / "recording", {"--ground-truth", folder_ / "truth.txt"}).exit_code, 0);
+    EXPECT_NEAR(summary()["ground_truth"]["ate_m"]["rmse"], expected["rmse"], 1e-7);
+    EXPECT_EQ(summary()["ground_truth"]["pairs"], 10);
+}
+
+TEST_F(OdometryProgram, ErrorsOfAFewPosesAreSaidToBeSuch) {
+    test::writeTumFolder(folder_ / "recording", slidingRecording(10));
+    auto truth = readTumTrajectory(folder_ / "recording/groundtruth.txt");
+    const auto warnings = [&](std::size_t poses) {
+        truth.resize(poses);
+        writeTumTrajectory(folder_ / "truth.txt", truth);
+        const auto result = run(folder_ / "recording", {"--ground-truth", folder_ / "truth.txt"});
+        EXPECT_EQ(result.exit_code, 0) << result.all();
+        return result.err;
+    };
+    EXPECT_EQ(warnings(5).find("only"), std::string::npos);
+    EXPECT_NE(warnings(4).find("only 4 of the 10 poses"), std::string::npos);
 }
 
 TEST_F(OdometryProgram, TheSummaryNamesTheGroundTruthForReadersInAnyFolder) {

@@ -78,6 +78,19 @@ class TrajectoryFormats : public ::testing::Test {
     TemporaryFolder folder_;
 };
 
+TEST_F(TrajectoryFormats, StampsOfThisCenturyTellTheirUnit) {
+    for (const double unit : {1e3, 1e6, 1e9}) {
+        auto poses = helix();
+        for (StampedPose& pose : poses) pose.timestamp *= unit;
+        writeTumTrajectory(folder_ / "other.txt", poses);
+        expectSame(readTrajectory(folder_ / "other.txt"), helix());
+        EXPECT_EQ(readTumTrajectory(folder_ / "other.txt").front().timestamp, kStart * unit)
+            << "who asks for TUM's format gets what the file has";
+    }
+    writeTumTrajectory(folder_ / "other.txt", {{1e6, Pose::Identity()}});
+    EXPECT_EQ(readTrajectory(folder_ / "other.txt").front().timestamp, 1e6) << "s, or ms since the start";
+}
+
 TEST_F(TrajectoryFormats, AreRecognisedByTheirContent) {
     expectSame(readTrajectory(truth()), helix());
     expectSame(readTrajectory(file("e", test::eurocText(helix()))), helix());

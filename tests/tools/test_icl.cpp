@@ -88,6 +88,21 @@ TEST(Icl, HandednessIsToldByTheDepthImages) {
     }
 }
 
+TEST(Icl, AGroundTruthThatIsNamedIsConvertedAsOneThatIsFound) {
+    const IclFolder folder(true, 1);
+    const test::TemporaryFolder elsewhere;
+    fs::rename(folder.folder_ / "livingRoom2.gt.freiburg", elsewhere / "truth.txt");
+    DatasetOptions options;
+    options.ground_truth = elsewhere / "truth.txt";
+    const GroundTruth truth = openDataset(folder.folder_.path().string(), options).groundTruth();
+    EXPECT_EQ(truth.file, elsewhere / "truth.txt");
+    ASSERT_EQ(truth.poses.size(), folder.poses_.size());
+    for (std::size_t i = 0; i < truth.poses.size(); i++) {
+        EXPECT_TRUE(truth.poses[i].T_world_camera.isApprox(folder.poses_[i], 1e-7));
+        EXPECT_NEAR(truth.poses[i].timestamp, 2 * static_cast<double>(i) / 30, 1e-6);
+    }
+}
+
 TEST(Icl, WithoutMotionThePublishedHandednessIsAssumedAndThatIsSaid) {
     const SmallDataset folder("icl");  // moves along x only: both versions agree
     const GroundTruth truth = openDataset(folder.path()).groundTruth();
