@@ -22,7 +22,7 @@ constexpr double kComparable = 0.9;  // share of the poses: what is judged by fe
 
 void printRow(const char* label, const ErrorStatistics& s, double scale) {
     if (s.count == 0) {
-        std::printf("%-22s %10s   (the common time is too short)\n", label, "n/a");
+        std::printf("%-22s %10s   (no two poses are that far apart)\n", label, "n/a");
         return;
     }
     std::printf("%-22s %10.4f %10.4f %10.4f %10.4f %10.4f\n", label, s.rmse * scale, s.mean * scale,

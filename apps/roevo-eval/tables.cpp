@@ -142,7 +142,7 @@ Table pageTable(const std::vector<JudgedEstimate>& estimates) {
         for (const Column& column : kColumns) {
             const std::string shown = shownFigure(column, e.evaluation);
             cells.push_back({shown.empty() ? kDash : shown, isBest(column, e, estimates), false,
-                             shown.empty() ? "the common time is too short" : ""});
+                             shown.empty() ? "no two poses are that far apart" : ""});
         }
     }
     return table;

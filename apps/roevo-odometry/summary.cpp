@@ -214,7 +214,7 @@ void printErrors(const Evaluation& e) {
         std::printf("RPE         %.3f cm/s, %.3f deg/s over 1 s; ", 100 * e.rpe_second.translation.rmse,
                     e.rpe_second.rotation.rmse);
     else
-        std::printf("RPE         too short for 1 s; ");
+        std::printf("RPE         no two poses are 1 s apart; ");
     std::printf("%.3f cm, %.3f deg per frame (rmse)\n", 100 * e.rpe_frame.translation.rmse,
                 e.rpe_frame.rotation.rmse);
 }

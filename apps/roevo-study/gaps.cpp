@@ -146,7 +146,10 @@ StudyReport studyGaps(const std::vector<StudyInput>& inputs, const std::string& 
                 runs.back().known = views.knownShare(gap.first + gap.frames, gap.first);
                 progress.update(++done);
             }
-            if (runs.empty()) continue;
+            if (runs.empty()) {
+                report.notes.push_back(input.name + ": too short for gaps of " + counted(length, "frame"));
+                continue;
+            }
             any = true;
             for (const GapRun& run : runs) {
                 table.add({input.name, toString(options.mode), std::to_string(run.gap.frames),

@@ -166,6 +166,16 @@ TEST(Baseline, FailuresThatCameAndWentAreNamed) {
     EXPECT_TRUE(changesSince({}, evaluateAll(now)).empty());
 }
 
+TEST(Baseline, PartsOfARecordingAreNotItsWhole) {
+    const auto before = many(one);
+    auto now = many(one);
+    now[3].part = "frames 0 to 59";
+    const MethodChange change = changesSince(evaluateAll(before), evaluateAll(now)).at(0);
+    EXPECT_EQ(change.pairs.size(), kCount - 1);
+    EXPECT_TRUE(change.lost.empty() && change.gained.empty());
+    EXPECT_EQ(changesSince(evaluateAll(now), evaluateAll(now)).at(0).pairs.size(), kCount);
+}
+
 TEST(Baseline, FewRecordingsProveNothing) {
     const std::vector<SequenceComparison> before{makeSequence("a", {makeRun("roevo-ba", 0.01)})},
         now{makeSequence("a", {makeRun("roevo-ba", 0.02)})};

@@ -51,6 +51,7 @@ TEST_F(StudyGaps, FramesAreCutOutAndTheCameraIsFoundAgain) {
         EXPECT_NEAR(std::stod(rows[row][9]), std::stod(rows[row][7]) / std::stod(rows[row][8]), 1e-2);
     }
     EXPECT_EQ(before, 32u) << "the last gap leaves ten frames";
+    EXPECT_EQ(report.notes.at(0), "slides: too short for gaps of 200 frames");
     EXPECT_NE(report.table.find("| slides | 3 | 10 | 10 | 10 of 10 | "), std::string::npos) << report.table;
 }
 

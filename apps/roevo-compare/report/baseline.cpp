@@ -16,13 +16,16 @@ constexpr double kSigmas = 3, kMinChange = 1.05;
 constexpr double kMadToSigma = 1.4826;  // of a normal distribution
 constexpr double kQuantile95 = 1.96;
 
-using Errors = std::map<std::string, std::optional<double>>;  // by recording, cm
+using Errors = std::map<std::string, std::optional<double>>;  // by recording and its part, cm
 
 Errors errorsOf(const std::vector<SequenceResults>& results, const std::string& method) {
     Errors errors;
     for (const SequenceResults& result : results)
-        if (const auto run = findRun(*result.sequence, method))
-            errors[result.sequence->name] = metricOf(shownMetrics().front(), result, *run);
+        if (const auto run = findRun(*result.sequence, method)) {
+            const std::string& part = result.sequence->part;
+            errors[result.sequence->name + (part.empty() ? "" : ", " + part)] =
+                metricOf(shownMetrics().front(), result, *run);
+        }
     return errors;
 }
 

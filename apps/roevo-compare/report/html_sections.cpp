@@ -56,7 +56,9 @@ std::string changesSection(const std::vector<SequenceResults>& results,
     const auto changes = changesSince(baseline, results);
     std::string html = "<section id=\"Changes\">\n<h2>Against the earlier comparison</h2>\n";
     if (changes.empty())
-        return html + "<p>No method was run on the same recording in both of them.</p>\n</section>\n";
+        return html +
+               "<p>No method was run on the same recording, or the same part of one, in both of "
+               "them.</p>\n</section>\n";
     html += setTable(changeTable(changes), "changes", false);
     for (std::size_t i = 0; i < changes.size(); ++i) {
         const Table table = changedRecordings(changes[i], kMostChanged);

@@ -16,7 +16,7 @@ std::string reasonOf(const Metric& metric, const SequenceResults& results, std::
     const MethodRun& run = results.sequence->runs[index];
     if (metric.is_error || !run.ok()) {
         const std::string reason = whyNoErrors(*results.sequence, run, results.evaluated[index]);
-        return reason.empty() ? "the sequence is too short for it" : reason;
+        return reason.empty() ? "no two poses are that far apart" : reason;
     }
     return run.trajectory_file.empty() ? "not measured" : "made by another program, not run here";
 }
