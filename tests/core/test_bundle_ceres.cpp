@@ -217,7 +217,7 @@ TEST_F(BundleOracle, InverseOfTheEquationsIsTheCovarianceThatCeresComputes) {
     equations.evaluate(window_, edges_.points, 0.5);  // far above the residuals: all weights are alike
     equations.build(window_, edges_.points);
     const Eigen::MatrixXd inverse =
-        Eigen::MatrixXd(equations.hessian.selfadjointView<Eigen::Upper>()).inverse();
+        Eigen::MatrixXd(equations.hessian().selfadjointView<Eigen::Upper>()).inverse();
     // From turns about the window's origin to the camera's own axes
     const Pose& newest = window_.back().T_world_camera;
     Matrix6d to_camera = Matrix6d::Identity();

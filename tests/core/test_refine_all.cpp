@@ -31,8 +31,8 @@ class RefineAll : public ::testing::Test {
         return keyframe;
     }
     /// With windows so small that each is refined with the next one only.
-    void map(int keyframes) {
-        options_.mapping.window = 2;
+    void map(int keyframes, int window = 2) {
+        options_.mapping.window = window;
         options_.mapping.reuse_keyframes = false;
         mapper_.emplace(mappingCamera(), options_);
         std::mt19937 random(4);
@@ -40,8 +40,8 @@ class RefineAll : public ::testing::Test {
             mapper_->insert(keyframeAt(id, randomPose(random, 0.003, 0.2 * kDegree)));
     }
     /// A second track of five keyframes, moved by `off` to where its last one was recognised.
-    /// @return T_4_9, which was recognised
-    Pose joinTracks(const Pose& off, double sigma) {
+    /// @return T_4_9, which was recognised, or that of another place
+    Pose joinTracks(const Pose& off, double sigma, int place = 4, const Pose& error = Pose()) {
         for (int id = 5; id < 10; ++id) {
             MapKeyframe keyframe = keyframeAt(id, Pose::Identity());
             if (id == 5) keyframe.parent = -1, keyframe.track = 5;
@@ -50,10 +50,10 @@ class RefineAll : public ::testing::Test {
         Correction join;
         for (int id = 5; id < 10; ++id) join.motions.emplace(id, off);
         const auto poseOf = [&](int id) { return mapper_->keyframes().at(id).T_world_camera; };
-        const Pose T_4_9 = poseOf(4).inverse() * off * poseOf(9);
-        join.places.push_back({4, 9, T_4_9, sigma * sigma * Matrix6d::Identity()});
+        const Pose recognised = poseOf(place).inverse() * off * poseOf(9) * error;
+        join.places.push_back({place, 9, recognised, sigma * sigma * Matrix6d::Identity()});
         mapper_->correct(join);
-        return T_4_9;
+        return recognised;
     }
     double worstError() const {
         double worst = 0;
@@ -82,6 +82,16 @@ TEST_F(RefineAll, BringsPerfectObservationsToTheTruth) {
     for (const auto& [id, pose] : update.poses)
         EXPECT_EQ(pose.matrix(), mapper_->keyframes().at(id).T_world_camera.matrix());
     EXPECT_EQ(mapper_->keyframes().at(0).T_world_camera.matrix(), placeOnPath(0).matrix());
+}
+
+TEST_F(RefineAll, LargeEquationsAreSolvedAsWellSparseOrNot) {
+    for (const int window : {2, 30}) {
+        map(55, window);
+        const double before = worstError();
+        EXPECT_TRUE(mapper_->refineAll().refusals.empty());
+        EXPECT_LT(worstError(), before);
+        EXPECT_LT(worstError(), 1.5e-4) << window;
+    }
 }
 
 TEST_F(RefineAll, KeyframesMayFollow) {
@@ -118,6 +128,16 @@ TEST_F(RefineAll, WhatWasRecognisedHoldsAJoinedTrack) {
     EXPECT_LT((now.translation() - T_4_9.translation()).norm(), 0.001);
 }
 
+TEST_F(RefineAll, WhatWasRecognisedHoldsAcrossTheParts) {
+    map(5);
+    const Pose so_far(Eigen::Quaterniond::Identity(), {0.3, 0, 0});
+    const Pose T_2_9 = joinTracks(so_far, 1e-4, 2, Pose(Eigen::Quaterniond::Identity(), {0.01, 0, 0}));
+    mapper_->refineAll(5);  // the last part is of 5 to 9
+    const Pose now =
+        mapper_->keyframes().at(2).T_world_camera.inverse() * mapper_->keyframes().at(9).T_world_camera;
+    EXPECT_LT((now.translation() - T_2_9.translation()).norm(), 0.001);
+}
+
 TEST_F(RefineAll, EdgesOfAJoinedTrackAreRelatedToTheOldOnes) {
     mapper_.emplace(mappingCamera(), options_);
     for (int id = 0; id < 5; ++id) mapper_->insert(keyframeAt(id, Pose::Identity()));
@@ -146,7 +166,7 @@ TEST_F(RefineAll, LongTracksAreRefinedInPartsThatOverlap) {
     options_.mapping.final_rounds = 1;
     map(230);
     const double before = worstError();
-    const MapUpdate update = mapper_->refineAll();
+    const MapUpdate update = mapper_->refineAll(100);
     RecordProperty("before_mm", std::to_string(1000 * before));
     RecordProperty("after_mm", std::to_string(1000 * worstError()));
     std::map<int, int> times;

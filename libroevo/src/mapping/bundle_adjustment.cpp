@@ -1,6 +1,5 @@
 #include "mapping/bundle_adjustment.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "tracking/relative_pose.h"
@@ -24,15 +23,11 @@ void addPrior(const RelativePrior& prior, const std::vector<WindowKeyframe>& win
     const Matrix6d own = to_centre.transpose() * prior.information * to_centre;
     const Vector6d own_gradient = to_centre.transpose() * prior.information * error;
     const int row = equations.row(prior.from), col = equations.row(prior.to);
-    if (col >= 0) {
-        equations.hessian.block<6, 6>(col, col) += own;
-        equations.gradient.segment<6>(col) += own_gradient;
-    }
-    if (row >= 0) {
-        equations.hessian.block<6, 6>(row, row) += own;
-        equations.gradient.segment<6>(row) -= own_gradient;
-    }
-    if (row >= 0 && col >= 0) equations.hessian.block<6, 6>(std::min(row, col), std::max(row, col)) -= own;
+    if (col >= 0) equations.gradient.segment<6>(col) += own_gradient;
+    if (row >= 0) equations.gradient.segment<6>(row) -= own_gradient;
+    equations.add(prior.to, prior.to, own);
+    equations.add(prior.from, prior.from, own);
+    equations.add(std::min(prior.from, prior.to), std::max(prior.from, prior.to), -own);
 }
 
 }  // namespace
@@ -65,9 +60,8 @@ int BundleAdjuster::refine(std::vector<WindowKeyframe>& window, FusedEdges& edge
         equations_.build(window, edges.points);
         if (equations_.numRows() == 0) continue;  // all poses are fixed: only the points are fitted
         for (const RelativePrior& prior : priors) addPrior(prior, window, equations_);
-        equations_.hessian.diagonal().array() += 5e-6;
-        const Eigen::VectorXd step =
-            -equations_.hessian.selfadjointView<Eigen::Upper>().ldlt().solve(equations_.gradient);
+        equations_.addDamping(5e-6);
+        const Eigen::VectorXd step = equations_.step();
         if (!step.allFinite()) break;
         ++moved;
         if (move(window, step) < kLeastStep) break;

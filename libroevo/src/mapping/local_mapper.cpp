@@ -116,12 +116,14 @@ void LocalMapper::relate(const Neighbourhood& neighbourhood, double radius) {
     graph_.insert(*neighbourhood.of, neighbourhood.nearby, radius);
 }
 
-/// @param fixed  members, the first ones; those that were loaded are fixed, too
-void LocalMapper::setWindow(const std::vector<const MapKeyframe*>& members, std::size_t fixed) {
+/// @param begin, end  of those that may move; those that were loaded stay, too
+void LocalMapper::setWindow(const std::vector<const MapKeyframe*>& members, std::size_t begin,
+                            std::size_t end) {
     window_.clear();
-    for (const MapKeyframe* keyframe : members)
-        window_.push_back(
-            {keyframe, keyframe->T_world_camera, window_.size() < fixed || keyframe->id < loaded_});
+    for (const MapKeyframe* keyframe : members) {
+        const bool is_free = window_.size() >= begin && window_.size() < end && keyframe->id >= loaded_;
+        window_.push_back({keyframe, keyframe->T_world_camera, !is_free});
+    }
 }
 
 /// Of a keyframe in the window; -1: it is not in it.
@@ -222,7 +224,7 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
               [](const MapKeyframe* a, const MapKeyframe* b) { return a->id < b->id; });
     members.insert(members.end(), neighbourhood.recent.rbegin(), neighbourhood.recent.rend());
     members.push_back(&keyframe);
-    setWindow(members, reused.size() + 1);  // and the oldest of the recent ones
+    setWindow(members, reused.size() + 1, members.size());  // and the oldest of the recent ones
     addPriors();
     if (window_.size() < 2) {
         leaveWindow(keyframe);

@@ -9,9 +9,6 @@
 namespace roevo {
 namespace {
 
-/// Keyframes of a long track that are refined together, because the equations are dense; and how many of them
-/// are those that were before.
-constexpr int kMostTogether = 200, kMostFixed = 100;
 /// Of recognised places, against all points: as that of tracked motions, because edges mostly relate them,
 /// too.
 constexpr double kPlaceWeight = 0.15;
@@ -33,30 +30,38 @@ void LocalMapper::addRecognisedPlaces() {
 }
 
 /// Relates and fuses edges anew at the poses of each round: where a loop was closed or a track was joined,
-/// they were not related yet. @param fixed  members, the first ones
-void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, std::size_t fixed,
-                                 BundleAdjuster& adjuster, MapUpdate& update) {
-    if (part.back()->id < loaded_) return;  // and so are all before it
+/// they were not related yet. What moves is held where it is related to others, before it and after it.
+/// @param begin, end  of the keyframes that move, the first of the track is none of them
+void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& track, std::size_t begin,
+                                 std::size_t end, BundleAdjuster& adjuster, MapUpdate& update) {
+    const int first_id = track[begin]->id, last_id = track[end - 1]->id;
+    if (last_id < loaded_) return;
+    const auto follow = std::min(track.size(), end + static_cast<std::size_t>(options_.mapping.window));
+    std::map<int, const MapKeyframe*> related{{track[begin - 1]->id, track[begin - 1]}};
     std::vector<Neighbourhood> neighbourhoods;
-    std::map<int, const MapKeyframe*> before;
-    for (std::size_t k = fixed; k < part.size(); ++k) {
-        if (part[k]->id < loaded_) continue;
-        neighbourhoods.push_back(neighbourhoodOf(*part[k]));
+    for (std::size_t k = begin; k < follow; ++k) {
+        related.emplace(track[k]->id, track[k]);
+        if (track[k]->id < loaded_) continue;
+        neighbourhoods.push_back(neighbourhoodOf(*track[k]));
+        if (k >= end) continue;
         for (const auto* others : {&neighbourhoods.back().recent, &neighbourhoods.back().nearby})
-            for (const MapKeyframe* other : *others)
-                if (other->id < part.front()->id) before[other->id] = other;
+            for (const MapKeyframe* other : *others) related.emplace(other->id, other);
     }
+    for (const PoseConstraint& place : places_)
+        for (const auto& [id, other] : {std::pair(place.from, place.to), {place.to, place.from}})
+            if (const auto found = keyframes_.find(other);
+                id >= first_id && id <= last_id && found != keyframes_.end())
+                related.emplace(other, &found->second);
     std::vector<const MapKeyframe*> members;
-    for (const auto& [id, keyframe] : before) members.push_back(keyframe);
-    fixed += members.size();
-    members.insert(members.end(), part.begin(), part.end());
+    for (const auto& [id, keyframe] : related) members.push_back(keyframe);
+    const auto slots = static_cast<std::size_t>(std::distance(related.begin(), related.find(first_id)));
     prepare(members);
     MapUpdate last;
     for (int round = 0; round < options_.mapping.final_rounds; ++round) {
         // Wide at first, as tracking is
         const double radius = round == 0 ? options_.fine.search_radius : options_.fine.final_radius;
         for (const Neighbourhood& neighbourhood : neighbourhoods) relate(neighbourhood, radius);
-        setWindow(members, fixed);
+        setWindow(members, slots, slots + end - begin);
         const std::vector<WindowKeyframe> before_round = window_;
         addPriors();
         addRecognisedPlaces();
@@ -79,7 +84,7 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& part, st
         if (!view.fixed) update.poses.emplace_back(view.keyframe->id, view.keyframe->T_world_camera);
 }
 
-MapUpdate LocalMapper::refineAll() {
+MapUpdate LocalMapper::refineAll(std::size_t most_together) {
     MapUpdate update;
     if (keyframes_.empty()) return update;
     update.keyframe = keyframes_.rbegin()->first + 1;  // it knows of all that there are
@@ -89,14 +94,12 @@ MapUpdate LocalMapper::refineAll() {
     // Here the step must be right in directions that few points hold
     BundleAdjuster adjuster(options_.mapping, options_.sensor, camera_,
                             std::numeric_limits<std::size_t>::max());
-    for (const auto& [track, members] : tracks) {
-        std::size_t fixed = 1;
-        for (auto begin = members.begin(); members.end() - begin > static_cast<int>(fixed);
-             begin += kMostTogether - kMostFixed, fixed = kMostFixed) {
-            const auto end = begin + std::min<std::ptrdiff_t>(members.end() - begin, kMostTogether);
-            refineTogether({begin, end}, fixed, adjuster, update);
+    for (const auto& [id, track] : tracks) {
+        std::size_t end = 1;
+        for (std::size_t begin = 1; end < track.size(); begin += most_together / 2) {
+            end = std::min(track.size(), begin + most_together);
+            refineTogether(track, begin, end, adjuster, update);
             leaveWindow(keyframes_.rbegin()->second);
-            if (end == members.end()) break;
         }
     }
     return update;

@@ -1,8 +1,11 @@
 #include "window_equations.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernels/kernels.h"
 #include "tracking/motion_blur.h"
@@ -15,6 +18,9 @@ namespace {
 constexpr double kNoScale = 2.0;       ///< px of spread where nothing is seen
 constexpr std::size_t kScaleStep = 3;  ///< every third point is enough for a median
 constexpr std::int32_t kAnySlot = -1;
+/// More are mostly empty along a way, but not in a room that keyframes see again and again.
+constexpr int kDenseRows = 300;
+constexpr double kMostlyFilled = 0.25;  ///< of the blocks: sparse equations take longer
 /// Damping of a point's step along its edge, relative to the information across it: normals and slopes differ
 /// by noise, and points that follow them slide. 1 and 0.001 are about as good.
 constexpr double kDampingAlong = 0.1;
@@ -70,14 +76,13 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     anchor_ = -1;
     for (std::size_t s = 0; s < slots; ++s) {
         if (window[s].fixed) {
-            anchor_ = static_cast<int>(s);
+            if (num_rows_ == 0) anchor_ = static_cast<int>(s);
             continue;
         }
         rows_[s] = num_rows_;
         num_rows_ += 6;
     }
     if (num_rows_ == 0) anchor_ = -1;  // nothing is held against it
-    hessian.resize(num_rows_, num_rows_);
     gradient.resize(num_rows_);
     point_blocks_.resize(slots);
     couplings_.resize(slots);
@@ -151,15 +156,49 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
         const bool last_of_edge = p + 1 == points_.size() || edge_of_[p + 1] != edge_of_[p];
         if (anchor_ >= 1 && last_of_edge) addPulls(edge_of_[p]);
     }
-    hessian_factor_ = static_cast<double>(stride);
-    for (std::size_t a = 0; a < rows_.size(); ++a) {
-        if (rows_[a] < 0) continue;
-        gradient.segment<6>(rows_[a]) = gradients_[a];
-        for (std::size_t c = a; c < rows_.size(); ++c) {
-            if (rows_[c] < 0) continue;
-            hessian.block<6, 6>(rows_[a], rows_[c]) = hessian_factor_ * blocks_[blockOf(a, c)];
-        }
-    }
+    if (stride > 1)  // as if all points had made it
+        for (Matrix6d& block : blocks_) block *= static_cast<double>(stride);
+    for (std::size_t a = 0; a < rows_.size(); ++a)
+        if (rows_[a] >= 0) gradient.segment<6>(rows_[a]) = gradients_[a];
+}
+
+void WindowEquations::add(int slot, int other_slot, const Matrix6d& block) {
+    if (row(slot) >= 0 && row(other_slot) >= 0) blocks_[blockOf(slot, other_slot)] += block;
+}
+
+void WindowEquations::addDamping(double damping) {
+    for (std::size_t a = 0; a < rows_.size(); ++a) blocks_[blockOf(a, a)].diagonal().array() += damping;
+}
+
+template <class Take>
+void WindowEquations::eachBlock(const Take& take) const {
+    for (std::size_t a = 0; a < rows_.size(); ++a)
+        for (std::size_t c = a; c < rows_.size(); ++c)
+            if (rows_[a] >= 0 && rows_[c] >= 0) take(rows_[a], rows_[c], blocks_[blockOf(a, c)]);
+}
+
+Eigen::MatrixXd WindowEquations::hessian() const {
+    Eigen::MatrixXd dense(num_rows_, num_rows_);
+    eachBlock([&](int row, int column, const Matrix6d& block) { dense.block<6, 6>(row, column) = block; });
+    return dense;
+}
+
+Eigen::VectorXd WindowEquations::step() const {
+    if (num_rows_ <= kDenseRows) return -hessian().selfadjointView<Eigen::Upper>().ldlt().solve(gradient);
+    std::vector<Eigen::Triplet<double>> filled;
+    const auto all = static_cast<double>(num_rows_) * (num_rows_ + 6) / 2;
+    eachBlock([&](int row, int column, const Matrix6d& block) {
+        if (block.isZero(0)) return;
+        for (int i = 0; i < 6; ++i)
+            for (int j = 0; j < 6; ++j) filled.emplace_back(row + i, column + j, block(i, j));
+    });
+    if (static_cast<double>(filled.size()) > kMostlyFilled * all)
+        return -hessian().selfadjointView<Eigen::Upper>().llt().solve(gradient);
+    Eigen::SparseMatrix<double> sparse(num_rows_, num_rows_);
+    sparse.setFromTriplets(filled.begin(), filled.end());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper> solver(sparse);
+    if (solver.info() == Eigen::Success) return -solver.solve(gradient);
+    return Eigen::VectorXd::Constant(num_rows_, std::numeric_limits<double>::quiet_NaN());
 }
 
 bool WindowEquations::addObservation(const LineObservation& seen, const Residual& residual,

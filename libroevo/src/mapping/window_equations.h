@@ -49,7 +49,16 @@ class WindowEquations {
     /// known.
     int anchor() const { return anchor_; }
     /// What the residuals relate the anchor's pose to a keyframe's by: that block of the Hessian.
-    Matrix6d anchorBlock(int slot) const { return hessian_factor_ * blocks_[blockOf(anchor_, slot)]; }
+    const Matrix6d& anchorBlock(int slot) const { return blocks_[blockOf(anchor_, slot)]; }
+
+    /// Adds to the Hessian, where neither keyframe is fixed. @param slot  not after `other_slot`
+    void add(int slot, int other_slot, const Matrix6d& block);
+    /// Adds to all of its diagonal.
+    void addDamping(double damping);
+    /// Dense. Upper triangle, the rest is not set.
+    Eigen::MatrixXd hessian() const;
+    /// -H^-1 g, of rows(); not finite where there is none.
+    Eigen::VectorXd step() const;
 
     /// The part of the gradient that one edge makes of one keyframe.
     struct EdgePull {
@@ -58,7 +67,6 @@ class WindowEquations {
     };
     const std::vector<EdgePull>& pulls() const { return pulls_; }
 
-    Eigen::MatrixXd hessian;  ///< upper triangle
     Eigen::VectorXd gradient;
     std::vector<int> inliers;  ///< of each keyframe, as build() found them
     double scale = 0;          ///< robust spread of the point-to-tangent residuals of all keyframes, px
@@ -90,6 +98,8 @@ class WindowEquations {
     void addPoint(Eigen::Vector3d& point, bool to_hessian);
     void addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse);
     void addPulls(std::int32_t edge);
+    template <class Take>
+    void eachBlock(const Take& take) const;
     bool isInHessian(std::int32_t slot) const {
         return at(rows_, slot) >= 0 || (slot == anchor_ && slot > 0);
     }
@@ -111,9 +121,8 @@ class WindowEquations {
     std::vector<float> scratch_;
     std::vector<int> rows_;
     int num_rows_ = 0, anchor_ = -1;
-    double hessian_factor_ = 1;  ///< all points over those that make the Hessian
     std::vector<EdgePull> pulls_;
-    std::vector<Matrix6d> blocks_;
+    std::vector<Matrix6d> blocks_;  ///< of the Hessian: upper triangle, keyframe by keyframe
     std::vector<Vector6d> gradients_, edge_gradients_;
     // Of the point that is being added
     std::vector<InformationBlock> point_blocks_;  ///< of each keyframe

@@ -39,7 +39,7 @@ std::optional<WindowPosterior> posteriorOf(const std::vector<WindowKeyframe>& wi
     if (pulls - unknowns < kLeastLeft * pulls) return std::nullopt;
 
     // Rows of the inverse that tell what moves the newest keyframe, along its axes
-    const Eigen::LLT<Eigen::MatrixXd> factor(equations.hessian.selfadjointView<Eigen::Upper>());
+    const Eigen::LLT<Eigen::MatrixXd> factor(equations.hessian().selfadjointView<Eigen::Upper>());
     if (factor.info() != Eigen::Success) return std::nullopt;
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(equations.numRows(), 6);
     columns.middleRows<6>(own_row).setIdentity();
