@@ -9,12 +9,12 @@ roevo_test(test_core_edges
 roevo_test(test_core_tracking
   SOURCES core/test_kernels.cpp core/test_residual_kernels.cpp core/test_photometric.cpp core/test_fine_jacobians.cpp core/test_gauss_newton.cpp
           core/test_se3.cpp core/test_motion_model.cpp core/test_row_motion.cpp core/test_edge_association.cpp core/test_rolling_shutter.cpp core/test_motion_blur.cpp core/test_edge_points.cpp core/test_options.cpp
-          core/test_relative_pose.cpp core/test_edge_clusters.cpp core/test_fault.cpp core/test_robust.cpp
+          core/test_relative_pose.cpp core/test_edge_clusters.cpp core/test_map_refusal.cpp core/test_robust.cpp
   LIBS roevo_internal)
 # Ceres solves the bundle adjustment once more, as an independent oracle.
 find_package(Ceres REQUIRED)
 roevo_test(test_core_mapping
-  SOURCES core/test_disjoint_set.cpp core/test_covisibility.cpp core/test_semi_dense.cpp
+  SOURCES core/test_covisibility.cpp core/test_semi_dense.cpp
           core/test_edge_smoothing.cpp core/test_edge_fusion.cpp core/test_bundle_adjustment.cpp core/test_bundle_ceres.cpp core/test_pseudo_edges.cpp
           core/test_local_mapper.cpp core/test_packed_keyframe.cpp core/test_pose_graph.cpp
           core/test_window_posterior.cpp core/test_refine_all.cpp

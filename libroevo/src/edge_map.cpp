@@ -5,27 +5,14 @@
 namespace roevo {
 
 const char* toString(EdgeVerdict verdict) {
-    switch (verdict) {
-        case EdgeVerdict::kUnconfirmed:
-            return "unconfirmed";
-        case EdgeVerdict::kTrue:
-            return "true";
-        case EdgeVerdict::kSpread:
-            return "pseudo: observations disagree";
-        case EdgeVerdict::kVanishing:
-            return "pseudo: seen too rarely";
-    }
-    return "unknown";
+    constexpr const char* kNames[] = {"unconfirmed", "true", "pseudo: observations disagree",
+                                      "pseudo: seen too rarely"};
+    return kNames[static_cast<std::size_t>(verdict)];
 }
 
 const char* toString(MapRefusal::Kind kind) {
-    switch (kind) {
-        case MapRefusal::Kind::kFewObservations:
-            return "left as it was, too few observations fit the map";
-        case MapRefusal::Kind::kMovedTooFar:
-            return "left as it was, bundle adjustment moved it too far";
-    }
-    return "unknown";
+    return kind == MapRefusal::Kind::kFewObservations ? "left as it was, too few observations fit the map"
+                                                      : "left as it was, bundle adjustment moved it too far";
 }
 
 std::string describe(const MapRefusal& refusal) {

@@ -6,7 +6,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "input/edit_distance.h"
 #include "input/excerpt.h"
@@ -118,14 +117,10 @@ std::string OptionField::fromText(const std::string& text) const {
 }
 
 std::string OptionField::check() const {
-    double number = 0;
-    if (const auto* real = std::get_if<double*>(&value)) {
-        number = **real;
-    } else if (const auto* whole = std::get_if<int*>(&value)) {
-        number = **whole;
-    } else {
-        return {};
-    }
+    const auto* real = std::get_if<double*>(&value);
+    const auto* whole = std::get_if<int*>(&value);
+    if (real == nullptr && whole == nullptr) return {};
+    const double number = real != nullptr ? **real : **whole;
     if (std::isfinite(number) && number >= min && number <= max) return {};
     return "option " + name() + " = " + toText() + " is outside " + numberToText(min) + " to " +
            numberToText(max) + (unit.empty() ? "" : " " + unit);

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "core/support/simulated.h"
-#include "odometry/front_end.h"
+#include "odometry/frame_preparer.h"
 #include "tracking/fine_tracker.h"
 #include "tracking/se3.h"
 #include "tracking/tracker.h"
@@ -25,12 +25,12 @@ class FineTracking : public ::testing::Test {
         const PinholeCamera& camera = sequence_->camera;
         Frame first;
         first.images = sequence_->frames[0];
-        FrontEnd(camera, options_).process(first);
+        FramePreparer(camera, options_).findEdges(first);
         keyframe_.edges =
             liftEdges(first.edges, first.images.depth, camera, RowMotion(), options_.edges, options_.sensor);
         keyframe_.median_depth = static_cast<double>(keyframe_.edges.medianDepth());
         frame_.images = sequence_->frames[4];
-        FrontEnd(camera, options_).process(frame_);
+        FramePreparer(camera, options_).findEdges(frame_);
         truth_ = sequence_->truth[4].T_world_camera.inverse() * sequence_->truth[0].T_world_camera;
     }
     /// Tracked, and assessed at the pose that was found.

@@ -6,7 +6,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "core/support/simulated.h"
-#include "odometry/front_end.h"
+#include "odometry/frame_preparer.h"
 #include "tracking/edge_points.h"
 #include "tracking/se3.h"
 
@@ -119,7 +119,7 @@ double shareInPlace(const EdgeMap& map) {
     const OdometryOptions options;
     Frame last;
     last.images = sequence.frames.back();
-    FrontEnd(sequence.camera, options).process(last);
+    FramePreparer(sequence.camera, options).findEdges(last);
     const Points3 edges =
         liftEdges(last.edges, last.images.depth, sequence.camera, RowMotion(), options.edges, options.sensor)
             .points;

@@ -22,7 +22,7 @@ RegistrationMethod::RegistrationMethod(const PinholeCamera& camera, const Odomet
 MethodFrame RegistrationMethod::processFrame(const RgbdFrame& frame) {
     MethodFrame out;
     out.stage_ms.assign(stages().size(), 0.0);
-    out.reason = describe(inputFault(frame, camera_, last_timestamp_));
+    out.reason = inputFault(frame, camera_, last_timestamp_).words;
     if (out.reason.empty() && frame.depth.empty()) out.reason = "no depth image";
     if (!out.reason.empty()) return out;
     const double gap = frame.timestamp - last_timestamp_;

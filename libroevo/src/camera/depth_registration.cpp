@@ -8,9 +8,14 @@
 namespace roevo {
 namespace {
 
-/// Ideal normalised coordinates of every pixel of a (possibly distorted) camera, as CV_32FC2.
-cv::Mat normalisedRays(const PinholeCamera& camera) {
-    cv::Mat rays(camera.height, camera.width, CV_32FC2);
+/// Ideal normalised coordinates of every pixel of a (possibly distorted) camera, as CV_32FC2. Those of the
+/// last camera are kept: a recording asks for the same ones frame after frame.
+const cv::Mat& raysOf(const PinholeCamera& camera) {
+    thread_local PinholeCamera known;
+    thread_local cv::Mat rays;
+    if (!rays.empty() && known == camera) return rays;
+    known = camera;
+    rays.create(camera.height, camera.width, CV_32FC2);
     for (int v = 0; v < camera.height; ++v) {
         auto* row = rays.ptr<cv::Vec2f>(v);
         for (int u = 0; u < camera.width; ++u) {
@@ -22,28 +27,11 @@ cv::Mat normalisedRays(const PinholeCamera& camera) {
     return rays;
 }
 
-/// The rays of the last camera are kept: a recording asks for the same ones frame after frame.
-const cv::Mat& raysOf(const PinholeCamera& camera) {
-    thread_local PinholeCamera known;
-    thread_local cv::Mat rays;
-    if (rays.empty() || known != camera) {
-        rays = normalisedRays(camera);
-        known = camera;
-    }
-    return rays;
-}
-
 void requireDepth(const cv::Mat& depth, const PinholeCamera& camera) {
     if (depth.type() != CV_32FC1 || depth.cols != camera.width || depth.rows != camera.height) {
         throw std::invalid_argument("depth image must be 32-bit float of the depth camera's size " +
                                     std::to_string(camera.width) + "x" + std::to_string(camera.height));
     }
-}
-
-/// Half the width, in colour pixels, of what a depth pixel covers there: at least half a pixel, so that no
-/// hole opens, at most a few.
-double halfFootprint(double depth_focal, double colour_focal, double depth_z, double colour_z) {
-    return std::clamp(0.55 * colour_focal / depth_focal * depth_z / colour_z, 0.5, 4.5);
 }
 
 }  // namespace
@@ -69,8 +57,11 @@ cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
                 continue;
             Eigen::Vector2d pixel = colour_camera.project(point);
             if (distorted) pixel = colour_camera.distortPixel(pixel);
-            const double half_x = halfFootprint(depth_camera.fx, colour_camera.fx, z, point.z());
-            const double half_y = halfFootprint(depth_camera.fy, colour_camera.fy, z, point.z());
+            // Of what the depth pixel covers: at least half a pixel, so that no hole opens, at most a few
+            const double half_x =
+                std::clamp(0.55 * colour_camera.fx / depth_camera.fx * z / point.z(), 0.5, 4.5);
+            const double half_y =
+                std::clamp(0.55 * colour_camera.fy / depth_camera.fy * z / point.z(), 0.5, 4.5);
             if (!(pixel.x() > -half_x && pixel.x() < registered.cols - 1 + half_x && pixel.y() > -half_y &&
                   pixel.y() < registered.rows - 1 + half_y)) {
                 continue;

@@ -30,8 +30,7 @@ struct Cubic {
 }  // namespace
 
 bool PinholeCamera::isDistorted() const {
-    return std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0; }) ||
-           lens == LensModel::kKannalaBrandt || isRational();
+    return distortion != std::array<double, 5>{} || lens == LensModel::kKannalaBrandt || isRational();
 }
 
 PinholeCamera PinholeCamera::undistorted() const {

@@ -44,7 +44,6 @@ void markRidges(const Gradient& gradient, float low, float high, const BitRows& 
 }
 
 /// Hysteresis: weak pixels that strong ones reach become strong, too.
-/// @param queue  buffer of pixels, as word * 64 + bit
 void followWeak(const BitRows& bits, EdgeMask& out) {
     auto& queue = out.pixels;
     queue.clear();

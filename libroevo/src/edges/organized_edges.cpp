@@ -38,11 +38,6 @@ void OrganizedEdges::resize(std::size_t count) {
     for (const auto array : kArrays) (this->*array).resize(count);
 }
 
-void OrganizedEdges::reserve(std::size_t count) {
-    for (const auto array : kArrays) (this->*array).reserve(count);
-    edge_of.reserve(count);
-}
-
 void OrganizedEdges::addEdge(const OrganizedEdges& from, std::size_t first,
                              const std::vector<std::size_t>& further) {
     const std::size_t before = size(), count = before + further.size();

@@ -32,7 +32,6 @@ struct OrganizedEdges {
     void finishEdge();
     /// Fills edge_of, as begin has it.
     void numberPoints();
-    void reserve(std::size_t count);
     /// Adds an edge of points of another image: number `first` and so many further on.
     void addEdge(const OrganizedEdges& from, std::size_t first, const std::vector<std::size_t>& further);
 };

@@ -13,7 +13,9 @@
 
 namespace roevo {
 
-/// Values as bytes, little-endian on every machine. What writes them and what reads them have the same calls,
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
+
+/// Values as bytes, little-endian. What writes them and what reads them have the same calls,
 /// so that one function says what a format has. Values are numbers, enumerations, and pairs, arrays, vectors
 /// and Eigen matrices of values; a structure's fields(), a tuple of references; or whatever a function
 /// transfer(bytes, value) next to its type is for.
@@ -61,13 +63,6 @@ class ByteStream {
     }
 };
 
-/// The unsigned number with the bits of another value.
-template <class T>
-using BitsOf =
-    std::conditional_t<sizeof(T) == 1, std::uint8_t,
-                       std::conditional_t<sizeof(T) == 2, std::uint16_t,
-                                          std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
-
 class ByteWriter : public ByteStream<ByteWriter> {
   public:
     const std::string& bytes() const { return bytes_; }
@@ -77,10 +72,7 @@ class ByteWriter : public ByteStream<ByteWriter> {
 
     template <class T>
     void number(const T& value) {
-        BitsOf<T> bits = 0;
-        std::memcpy(&bits, &value, sizeof value);
-        for (std::size_t i = 0; i < sizeof value; ++i)
-            bytes_ += static_cast<char>(static_cast<std::uint64_t>(bits) >> (8 * i) & 0xFF);
+        bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
     }
     template <class T>
     void list(std::vector<T>& values) {
@@ -104,11 +96,7 @@ class ByteReader : public ByteStream<ByteReader> {
     template <class T>
     void number(T& value) {
         if (left_.size() < sizeof value) throw std::runtime_error("it ends too early");
-        std::uint64_t bits = 0;
-        for (std::size_t i = 0; i < sizeof value; ++i)
-            bits |= std::uint64_t{static_cast<unsigned char>(left_[i])} << (8 * i);
-        const auto own = static_cast<BitsOf<T>>(bits);
-        std::memcpy(&value, &own, sizeof value);
+        std::memcpy(&value, left_.data(), sizeof value);
         left_.remove_prefix(sizeof value);
     }
     /// Grows with what is read: a count that is wrong ends with the bytes, and not with the memory.

@@ -1,6 +1,7 @@
 #include "mapping/covisibility.h"
 
 #include <limits>
+#include <numeric>
 
 namespace roevo {
 namespace {
@@ -62,7 +63,12 @@ std::vector<std::vector<int>> CovisibilityGraph::clusters(
         first_edge[keyframe->id] = count;
         count += static_cast<std::size_t>(keyframe->image.numEdges());
     }
-    DisjointSet sets(count);
+    std::vector<std::size_t> parent(count);  // disjoint sets
+    std::iota(parent.begin(), parent.end(), std::size_t{0});
+    const auto find = [&](std::size_t edge) {
+        while (parent[edge] != edge) edge = parent[edge] = parent[parent[edge]];
+        return edge;
+    };
     for (const auto& [id, first] : first_edge) {
         const auto found = links_.find(id);
         if (found == links_.end()) continue;
@@ -70,7 +76,7 @@ std::vector<std::vector<int>> CovisibilityGraph::clusters(
             const auto other = first_edge.find(group.other);
             if (other == first_edge.end()) continue;
             for (const Link& link : group.links)
-                sets.unite(first + link.edge, other->second + link.other_edge);
+                parent[find(first + link.edge)] = find(other->second + link.other_edge);
         }
     }
     std::vector<int> number(count, -1);
@@ -80,7 +86,7 @@ std::vector<std::vector<int>> CovisibilityGraph::clusters(
         const std::size_t first = first_edge[keyframe->id];
         auto& of_edges = result.emplace_back();
         for (int e = 0; e < keyframe->image.numEdges(); ++e) {
-            int& cluster = number[sets.find(first + static_cast<std::size_t>(e))];
+            int& cluster = number[find(first + static_cast<std::size_t>(e))];
             if (cluster < 0) cluster = next++;
             of_edges.push_back(cluster);
         }

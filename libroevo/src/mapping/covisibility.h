@@ -3,7 +3,6 @@
 #include <map>
 #include <vector>
 
-#include "mapping/disjoint_set.h"
 #include "mapping/map_keyframe.h"
 #include "tracking/edge_association.h"
 

@@ -75,7 +75,11 @@ void LocalMapper::leaveWindow(MapKeyframe& newest) {
         if (keyframe.size() == 0 || std::find(held.begin(), held.end(), &keyframe) != held.end()) continue;
         // What was unpacked has not changed since
         if (packed_.find(id) == packed_.end()) packed_.emplace(id, PackedKeyframe(keyframe));
-        dropPoints(keyframe);
+        keyframe.image = OrganizedEdges();
+        keyframe.points = Points3();
+        keyframe.weight = std::vector<float>();
+        keyframe.slope = std::vector<float>();
+        keyframe.colours = std::vector<Rgb>();
     }
 }
 

@@ -47,12 +47,6 @@ MapKeyframe toMapKeyframe(const Keyframe& keyframe, const std::vector<Rgb>& colo
     out.clusters = keyframe.clusters;
     const EdgePoints3D& edges = keyframe.edges;
     const std::size_t stride = strideFor(edges.size(), max_points);
-    // Arrays that grow by doubling would waste half of their memory
-    const std::size_t most = edges.size() / stride + static_cast<std::size_t>(edges.image.numEdges());
-    for (auto* array : {&out.image.x, &out.image.y, &out.image.normal_x, &out.image.normal_y, &out.weight})
-        array->reserve(most);
-    out.points.reserve(most);
-    out.colours.reserve(most);
     for (int e = 0; e < edges.image.numEdges(); ++e) {
         const auto [first, end] = edges.image.pointsOf(e);
         for (std::size_t i = first + (end - first - 1) % stride / 2; i < end; i += stride) {

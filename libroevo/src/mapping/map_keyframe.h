@@ -4,7 +4,6 @@
 
 #include "roevo/camera/pinhole_camera.h"
 #include "roevo/edge_map.h"
-#include "roevo/options.h"
 #include "tracking/keyframe.h"
 
 namespace roevo {

@@ -30,8 +30,6 @@ PackedKeyframe::PackedKeyframe(const MapKeyframe& keyframe)
     for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = std::atan2(keyframe.image.normal_y[i], keyframe.image.normal_x[i]);
     normal_angle_ = QuantizedArray(values);
-    colours_.shrink_to_fit();
-    begin_.shrink_to_fit();
 }
 
 void PackedKeyframe::unpackInto(MapKeyframe& keyframe, const PinholeCamera& camera,
@@ -41,7 +39,6 @@ void PackedKeyframe::unpackInto(MapKeyframe& keyframe, const PinholeCamera& came
     for (auto* array : {&image.x, &image.y, &image.normal_x, &image.normal_y, &keyframe.weight})
         array->resize(size);
     keyframe.points = Points3();
-    keyframe.points.reserve(size);
     for (std::size_t i = 0; i < size; ++i) {
         image.x[i] = u_.at(i);
         image.y[i] = v_.at(i);
@@ -81,13 +78,6 @@ bool PackedKeyframe::isSound(const PinholeCamera& camera) const {
            u_.isWithin(-width, 2 * width, size) && v_.isWithin(-height, 2 * height, size) &&
            inverse_depth_.isWithin(1 / kFarthest, 1 / kNearest, size) &&
            normal_angle_.isWithin(-kMostAngle, kMostAngle, size);
-}
-
-void dropPoints(MapKeyframe& keyframe) {
-    keyframe.image = OrganizedEdges();
-    keyframe.points = Points3();
-    for (auto* array : {&keyframe.weight, &keyframe.slope}) std::vector<float>().swap(*array);
-    std::vector<Rgb>().swap(keyframe.colours);
 }
 
 }  // namespace roevo

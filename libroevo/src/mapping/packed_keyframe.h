@@ -50,7 +50,4 @@ class PackedKeyframe {
     std::vector<std::int32_t> begin_;
 };
 
-/// Drops the points of a keyframe, which is to be unpacked before it is used again.
-void dropPoints(MapKeyframe& keyframe);
-
 }  // namespace roevo

@@ -34,17 +34,6 @@ Matrix6d informationOf(const PoseConstraint& c) {
     return (c.covariance + kVarianceFloor * Matrix6d::Identity()).inverse();
 }
 
-struct Equations {
-    std::vector<Eigen::Triplet<double>> hessian;
-    Eigen::VectorXd gradient;
-
-    void add(int row, int column, const Matrix6d& block) {
-        if (row < 0 || column < 0) return;
-        for (int i = 0; i < 6; ++i)
-            for (int j = 0; j < 6; ++j) hessian.emplace_back(6 * row + i, 6 * column + j, block(i, j));
-    }
-};
-
 }  // namespace
 
 double contradiction(const std::vector<Pose>& poses, const PoseConstraint& c) {
@@ -63,8 +52,12 @@ bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstrain
     for (const PoseConstraint& c : constraints) information.push_back(informationOf(c));
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
     for (int iteration = 0; iteration < kMostGraphIterations; ++iteration) {
-        Equations sum;
-        sum.gradient = Eigen::VectorXd::Zero(6 * count);
+        std::vector<Eigen::Triplet<double>> blocks;
+        Eigen::VectorXd gradient = Eigen::VectorXd::Zero(6 * count);
+        const auto add = [&](int row, int column, const Matrix6d& block) {
+            for (int p = 0; row >= 0 && column >= 0 && p < 36; ++p)
+                blocks.emplace_back(6 * row + p / 6, 6 * column + p % 6, block(p / 6, p % 6));
+        };
         for (std::size_t k = 0; k < constraints.size(); ++k) {
             const PoseConstraint& c = constraints[k];
             const Vector6d e = residual(poses, c);
@@ -72,19 +65,19 @@ bool optimisePoseGraph(std::vector<Pose>& poses, const std::vector<PoseConstrain
             const Matrix6d from = -carriedTo(T);  // how a step of `from` changes the residual
             const int i = at(rows, c.from), j = at(rows, c.to);
             const Matrix6d& W = information[k];
-            sum.add(i, i, from.transpose() * W * from);
-            sum.add(i, j, from.transpose() * W);
-            sum.add(j, i, W * from);
-            sum.add(j, j, W);
-            if (i >= 0) sum.gradient.segment<6>(6 * i) += from.transpose() * W * e;
-            if (j >= 0) sum.gradient.segment<6>(6 * j) += W * e;
+            add(i, i, from.transpose() * W * from);
+            add(i, j, from.transpose() * W);
+            add(j, i, W * from);
+            add(j, j, W);
+            if (i >= 0) gradient.segment<6>(6 * i) += from.transpose() * W * e;
+            if (j >= 0) gradient.segment<6>(6 * j) += W * e;
         }
         Eigen::SparseMatrix<double> hessian(6 * count, 6 * count);
-        hessian.setFromTriplets(sum.hessian.begin(), sum.hessian.end());
+        hessian.setFromTriplets(blocks.begin(), blocks.end());
         if (iteration == 0) solver.analyzePattern(hessian);
         solver.factorize(hessian);
         const Eigen::VectorXd step =
-            solver.info() == Eigen::Success ? Eigen::VectorXd(solver.solve(-sum.gradient)) : sum.gradient;
+            solver.info() == Eigen::Success ? Eigen::VectorXd(solver.solve(-gradient)) : gradient;
         if (solver.info() != Eigen::Success || !step.allFinite()) {
             poses = before;
             return false;

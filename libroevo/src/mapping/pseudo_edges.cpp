@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "tracking/robust.h"
-#include "tracking/se3.h"
 
 namespace roevo {
 namespace {

@@ -126,10 +126,7 @@ void SemiDenseStore::add(const OrganizedEdges& edges, const RgbdFrame& frame, co
 
 std::vector<ColouredPoint> SemiDenseStore::inWorld(const std::vector<KeyframeInfo>& keyframes,
                                                    std::size_t first) const {
-    std::size_t count = 0;
-    for (const PackedPoints& points : keyframes_) count += points.size();
     std::vector<ColouredPoint> world;
-    world.reserve(count);
     for (std::size_t k = first; k < keyframes_.size(); ++k) {
         const Pose& T_world_camera = keyframes.at(k).T_world_camera;
         for (std::size_t i = 0; i < keyframes_[k].size(); ++i) {

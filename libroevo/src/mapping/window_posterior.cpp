@@ -7,7 +7,6 @@
 
 #include "mapping/window_equations.h"
 #include "tracking/relative_pose.h"
-#include "tracking/se3.h"
 
 namespace roevo {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <opencv2/imgproc.hpp>
 
 #include "stopwatch.h"
 
@@ -37,29 +38,45 @@ void keepLongest(OrganizedEdges& edges, std::size_t most_points) {
     edges = std::move(out);
 }
 
+cv::Mat FramePreparer::sceneOf(RgbdFrame& images) const {
+    if (images.mask.empty()) return {};
+    // The outline of what is masked is an edge, too, and takes its depth from some pixels beside it.
+    const int margin = static_cast<int>(std::lround(0.01 * images.mask.cols));
+    const cv::Size around(2 * margin + 1, 2 * margin + 1);
+    cv::Mat scene, ideal;
+    cv::erode(images.mask, scene, cv::getStructuringElement(cv::MORPH_RECT, around));
+    if (!images.depth.empty()) {
+        cv::Mat depth;  // the images may be somebody else's, too
+        images.depth.copyTo(depth, scene);
+        images.depth = depth;
+    }
+    return undistorter_.apply(scene, ideal);
+}
+
+void FramePreparer::findEdges(Frame& frame) {
+    const cv::Mat& grey = undistorter_.apply(frame.images.grey, frame.ideal_grey);
+    extractor_.extract(grey, frame.edges, frame.mask, sceneOf(frame.images));
+    frame.grid.build(frame.edges, grey.cols, grey.rows);
+    frame.pyramid.build(grey, levels_);
+}
+
 Fault FramePreparer::faultOf(const RgbdFrame& images) {
     if (const Fault fault = inputFault(images, camera_, last_timestamp_)) return fault;
-    return std::isfinite(last_timestamp_) ? leaps_.check(images.timestamp, last_timestamp_) : Fault();
+    if (!std::isfinite(last_timestamp_)) return {};
+    // One damaged stamp far ahead would have all frames after it rejected, as going backward: a leap is not
+    // believed until the next frame comes soon after it. Frames may be minutes apart, all of them
+    constexpr double kLeap = 60, kFarApart = 3600;  // s
+    const double ahead = images.timestamp - last_timestamp_;
+    const auto leap = std::exchange(leap_, std::nullopt);
+    const bool goes_on = leap && images.timestamp > *leap &&
+                         images.timestamp - *leap <= std::min(*leap - last_timestamp_, kFarApart);
+    if (ahead <= kLeap || goes_on) return {};
+    leap_ = images.timestamp;
+    return {"time stamp leaps ahead by " + std::to_string(static_cast<int>(std::min(ahead, 1e9))) +
+            " s; the next frame tells whether it is damaged"};
 }
 
-PreparedFrame::Content FramePreparer::prepare(const RgbdFrame& images) {
-    return prepare(images, [&](RgbdFrame& own) {
-        if (keeps_) own = RgbdFrame();  // these buffers may be somebody else's, too
-        own.timestamp = images.timestamp;
-        images.grey.copyTo(own.grey);
-        images.depth.copyTo(own.depth);
-        images.colour.copyTo(own.colour);
-        images.mask.copyTo(own.mask);
-    });
-}
-
-PreparedFrame::Content FramePreparer::prepare(RgbdFrame&& images) {
-    keeps_ = true;
-    return prepare(images, [&](RgbdFrame& own) { own = std::move(images); });
-}
-
-template <typename Take>
-PreparedFrame::Content FramePreparer::prepare(const RgbdFrame& images, const Take& take) {
+PreparedFrame::Content FramePreparer::prepare(RgbdFrame images) {
     const Stopwatch watch;
     PreparedFrame::Content out;
     out.by = this;
@@ -69,8 +86,8 @@ PreparedFrame::Content FramePreparer::prepare(const RgbdFrame& images, const Tak
     last_timestamp_ = images.timestamp;
     out.frame = spare();
     Frame& frame = *out.frame;
-    take(frame.images);
-    front_end_.process(frame);
+    frame.images = std::move(images);
+    findEdges(frame);
     const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
     if (frame.edges.size() * kPixelsPerPoint > pixels) {
         keepLongest(frame.edges, pixels / kPixelsPerPoint);

@@ -3,12 +3,14 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
-#include "edges/organized_edges.h"
-#include "front_end.h"
+#include "camera/undistorter.h"
+#include "edges/edge_extractor.h"
 #include "input_check.h"
 #include "roevo/odometry.h"
+#include "tracking/frame.h"
 
 namespace roevo {
 
@@ -34,26 +36,30 @@ class FramePreparer {
     /// @param camera   with its lens
     /// @param options  scaled to the camera
     FramePreparer(const PinholeCamera& camera, const OdometryOptions& options)
-        : camera_(camera), front_end_(camera, options) {}
+        : camera_(camera), undistorter_(camera), extractor_(options.edges), levels_(options.coarse.levels) {}
 
-    PreparedFrame::Content prepare(const RgbdFrame& images);  ///< copies them
-    PreparedFrame::Content prepare(RgbdFrame&& images);       ///< keeps them
+    /// @param images  are kept: nobody may write to them any more
+    PreparedFrame::Content prepare(RgbdFrame images);
+
+    /// From an image pair to organized edges (Sec. IV).
+    /// @param frame  with its images; its other buffers are used again
+    void findEdges(Frame& frame);
 
     /// A frame that is no longer used: its buffers are. From any thread.
     void giveBack(std::unique_ptr<Frame> frame);
 
   private:
-    /// @param take  puts the images into a frame
-    template <typename Take>
-    PreparedFrame::Content prepare(const RgbdFrame& images, const Take& take);
+    /// Forgets the depth of what is no scene. @return the scene in the ideal image; empty: all of it
+    cv::Mat sceneOf(RgbdFrame& images) const;
     Fault faultOf(const RgbdFrame& images);
     std::unique_ptr<Frame> spare();
 
     PinholeCamera camera_;
-    FrontEnd front_end_;
+    Undistorter undistorter_;
+    EdgeExtractor extractor_;
+    int levels_;
     double last_timestamp_ = -std::numeric_limits<double>::infinity();  ///< of those without a fault
-    LeapCheck leaps_;
-    bool keeps_ = false;  ///< images that others brought are in the frames
+    std::optional<double> leap_;  ///< s, stamp of the frame before, if it was not believed
     std::mutex mutex_;
     std::vector<std::unique_ptr<Frame>> spare_;
 };

@@ -6,19 +6,8 @@
 namespace roevo {
 
 const char* toString(FrameStatus status) {
-    switch (status) {
-        case FrameStatus::kOk:
-            return "ok";
-        case FrameStatus::kInitialised:
-            return "initialised";
-        case FrameStatus::kPredicted:
-            return "predicted";
-        case FrameStatus::kLost:
-            return "lost";
-        case FrameStatus::kRejected:
-            return "rejected";
-    }
-    return "unknown";
+    constexpr const char* kNames[] = {"ok", "initialised", "predicted", "lost", "rejected"};
+    return kNames[static_cast<std::size_t>(status)];
 }
 
 double FrameResult::sigmaTranslation() const {

@@ -1,7 +1,6 @@
 #include "keyframe_maker.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "mapping/semi_dense.h"
@@ -19,10 +18,12 @@ bool keyframeIsDue(const Keyframe& reference, const Tracking& tracking, const Ke
 
 Fault makeKeyframe(const Frame& frame, const RowMotion& rows, int needed, const PinholeCamera& camera,
                    const OdometryOptions& options, const Tracker& tracker, Keyframe& keyframe) {
-    if (frame.images.depth.empty()) return {Fault::Kind::kNoDepth, {}};
+    if (frame.images.depth.empty()) return {"no depth image"};
     keyframe.edges = liftEdges(frame.edges, frame.images.depth, camera, rows, options.edges, options.sensor);
     const int found = static_cast<int>(keyframe.edges.size());
-    if (found < needed) return {Fault::Kind::kFewPointsWithDepth, {found, needed}};
+    if (found < needed)
+        return {"only " + std::to_string(found) + " edge points with depth, " + std::to_string(needed) +
+                " needed"};
     keyframe.timestamp = frame.timestamp();
     keyframe.row_motion = rows;
     keyframe.photometric = tracker.choosePoints(keyframe.edges, frame, rows);
@@ -56,7 +57,6 @@ void numberEdges(Keyframe& keyframe, const Keyframe* before, const EdgeMatches& 
 
 std::vector<Rgb> coloursOf(const OrganizedEdges& edges, const RgbdFrame& frame, const PinholeCamera& camera) {
     std::vector<Rgb> colours;
-    colours.reserve(edges.size());
     const auto nearest = [](double coordinate, int size) {
         return std::clamp(nearestInteger(coordinate), 0, size - 1);
     };

@@ -47,9 +47,8 @@ FrameResult Odometry::processFrame(const RgbdFrame& images) {
     return processFrame(prepareFrame(images));
 }
 PreparedFrame Odometry::prepareFrame(const RgbdFrame& images) {
-    PreparedFrame prepared;
-    prepared.content_ = std::make_unique<PreparedFrame::Content>(impl_->preparer.prepare(images));
-    return prepared;
+    return prepareFrame(RgbdFrame{images.timestamp, images.grey.clone(), images.depth.clone(),
+                                  images.colour.clone(), images.mask.clone()});
 }
 PreparedFrame Odometry::prepareFrame(RgbdFrame&& images) {
     PreparedFrame prepared;

@@ -17,8 +17,7 @@ constexpr double kFewMatched = 0.5, kClearlyMore = 1.2;
 /// The paper's pipeline figure.
 FrameResult Odometry::Impl::processFrame(PreparedFrame::Content prepared) {  // Sec. IV
     if (prepared.fault) return rejected(prepared.timestamp, prepared.fault);
-    if (prepared.timestamp <= last_timestamp)
-        return rejected(prepared.timestamp, {Fault::Kind::kTimeBackward, {}});
+    if (prepared.timestamp <= last_timestamp) return rejected(prepared.timestamp, {kTimeBackward});
     edges_ms = prepared.milliseconds;
     if (isFrozen(*prepared.frame)) return report(frozen(std::move(prepared.frame)));
     take(std::move(prepared.frame));
@@ -91,8 +90,9 @@ void Odometry::Impl::trackFromNearer(Outcome& outcome, Prediction& prediction) {
 /// Another pose that matches clearly more edges, if there is one.
 Tracking Odometry::Impl::searchBetter(const Tracking& tracking, const Prediction& prediction) {
     Tracking found = tracker->search(world.reference(), *frame, prediction, tracking);
-    const Fault few{Fault::Kind::kFewMatched,
-                    {static_cast<int>(100 * tracking.matchedRatio()), static_cast<int>(100 * kFewMatched)}};
+    const Fault few{"only " + std::to_string(static_cast<int>(100 * tracking.matchedRatio())) +
+                    " % of the edges associated, " + std::to_string(static_cast<int>(100 * kFewMatched)) +
+                    " % needed"};
     if (found.matchedRatio() <= kClearlyMore * tracking.matchedRatio()) found.reject(few);
     if (found.lost()) return found;
     found.fault = few;
@@ -119,7 +119,8 @@ Outcome Odometry::Impl::frozen(std::unique_ptr<Frame> fresh) {
     const Prediction prediction = motion.predict(timestamp);
     Outcome outcome;
     outcome.status = FrameStatus::kPredicted;
-    outcome.tracking.fault.kind = Fault::Kind::kFrozen;
+    outcome.tracking.fault = {
+        "the image is the same as the one before it: a frozen camera, or one at rest without noise"};
     outcome.tracking.pose = {world.reference().id, prediction.T_reference_camera, prediction.prior.errors};
     return outcome;
 }
@@ -148,15 +149,17 @@ Outcome Odometry::Impl::start() {
 /// wrong: the edges must agree without what is likely.
 Tracking Odometry::Impl::confirmed(const Keyframe& keyframe, Tracking tracking,
                                    const Prediction& prediction) {
-    const int gap_ms = static_cast<int>(std::min(1e3 * prediction.since_measured, 2e9));
+    const std::string gap =
+        std::to_string(static_cast<int>(std::min(1e3 * prediction.since_measured, 2e9))) + " ms";
     // The mean velocity of a gap is not that of its end, and where the keyframe's rows are taken for still so
     // are the frame's
     const bool moved = keyframe.row_motion.known() && !prediction.blind;
     const auto pose = world.confirm(keyframe, *frame, tracking.pose.T_keyframe_camera,
                                     moved ? tracking.rows : motion.stillRows());
     if (!pose) {
-        tracking.reject(tracking.doubtful ? tracking.depth_fault
-                                          : Fault{Fault::Kind::kUnconfirmed, {gap_ms}});
+        tracking.reject(tracking.doubtful
+                            ? tracking.depth_fault
+                            : Fault{"the edges do not confirm a pose " + gap + " after the last"});
         return tracking;
     }
     Prediction onwards = prediction;
@@ -166,7 +169,7 @@ Tracking Odometry::Impl::confirmed(const Keyframe& keyframe, Tracking tracking,
     again.ms_coarse += tracking.ms_coarse;
     again.ms_fine += tracking.ms_fine;
     if (again.tracked && again.searched)
-        again.fault = tracking.fault ? tracking.fault : Fault{Fault::Kind::kGap, {gap_ms}};
+        again.fault = tracking.fault ? tracking.fault : Fault{"a gap of " + gap};
     return again;
 }
 
@@ -369,12 +372,12 @@ FrameResult Odometry::Impl::report(const Outcome& outcome) {
     result.num_points = static_cast<int>(frame->edges.size());
     result.ms.edges = edges_ms;
     if (outcome.status == FrameStatus::kRejected) {
-        result.reason = "cannot start here: " + describe(tracking.fault);
+        result.reason = "cannot start here: " + tracking.fault.words;
         return result;
     }
     const bool is_measured = outcome.hasMeasuredPose();
     // A frozen frame leaves the one before it as the last that was looked at
-    if (outcome.tracking.fault.kind != Fault::Kind::kFrozen) measured = is_measured;
+    if (!is_frozen) measured = is_measured;
     world.addFrame(result.timestamp, tracking.pose, is_measured);
     result.T_world_camera = world.trajectory().worldPose(tracking.pose);
     result.covariance = world.covariance(tracking.pose);

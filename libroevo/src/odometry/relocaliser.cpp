@@ -89,7 +89,6 @@ Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<
     KnownPlace& place = out.place;
     const cv::Mat& grey = frame->pyramid.level(0);
     place.points = describer_.describe(keyframe.edges, grey);
-    place.points.shrink_to_fit();
     place.edges = PackedKeyframe(toMapKeyframe(keyframe, colours, ideal_, options_.mapping.max_points));
     place.median_depth = keyframe.median_depth;
     place.row_motion = keyframe.row_motion;

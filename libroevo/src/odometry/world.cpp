@@ -158,8 +158,8 @@ Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker
     Reach misplaced;
     if (reference_) {
         const Reach before = misplacementOf(reference_->id), drift = driftOf(reference_->id);
-        misplaced.distance = before.distance + drift.distance + kTopSpeed * lost_for;
-        misplaced.turn = before.turn + kTopTurn * lost_for;
+        misplaced = {before.distance + drift.distance + kTopSpeed * lost_for,
+                     before.turn + kTopTurn * lost_for};
     }
     fresh->id = trajectory_.beginTrack(frame.timestamp(), T_world_camera, covariance);
     misplacements_[fresh->id] = misplaced;

@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 
 #include "tracking/camera_scale.h"
 #include "tracking/fine_tracker.h"

@@ -1,5 +1,4 @@
 #pragma once
-#include <vector>
 
 #include "place/place_verifier.h"
 #include "tracking/edge_term.h"

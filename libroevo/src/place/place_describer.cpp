@@ -54,17 +54,11 @@ PlacePoints PlaceDescriber::describe(const EdgePoints3D& edges, const cv::Mat& g
     out.reserve(corners_.size());
     for (const Corner& corner : corners_) {
         const auto i = static_cast<std::size_t>(corner.point);
-        PlacePoint point;
-        point.x = edges.points.x[i];
-        point.y = edges.points.y[i];
-        point.z = edges.points.z[i];
-        point.u = edges.image.x[i];
-        point.v = edges.image.y[i];
+        const auto& [x, y, z] = edges.points;
+        const float u = edges.image.x[i], v = edges.image.y[i];
         const Eigen::Vector2d normal(edges.image.normal_x[i], edges.image.normal_y[i]);
-        point.normal_angle = static_cast<float>(std::atan2(normal.y(), normal.x()));
-        point.descriptor =
-            describePatch({point.u, point.v}, normal, patchRadius(static_cast<double>(point.z)));
-        out.push_back(point);
+        out.push_back({x[i], y[i], z[i], u, v, static_cast<float>(std::atan2(normal.y(), normal.x())),
+                       describePatch({u, v}, normal, patchRadius(static_cast<double>(z[i])))});
     }
     return out;
 }

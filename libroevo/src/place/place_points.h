@@ -11,8 +11,6 @@ namespace roevo {
 struct Descriptor {
     static constexpr int kBits = 256, kWords = 4;
     std::array<std::uint64_t, kWords> words{};
-
-    bool operator==(const Descriptor& other) const { return words == other.words; }
 };
 
 /// Number of bits that differ.

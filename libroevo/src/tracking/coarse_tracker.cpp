@@ -1,7 +1,6 @@
 #include "tracking/coarse_tracker.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "tracking/se3.h"
@@ -58,9 +57,7 @@ std::vector<std::size_t> CoarseTracker::mostSimilar(const Keyframe& keyframe, co
 CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& pyramid,
                                   const PinholeCamera& camera, const RollingShutter& shutter,
                                   const std::vector<Pose>& guesses, const Brightness& start, int finest) {
-    CoarseResult best;
-    best.T_current_keyframe = guesses.front();
-    best.brightness = start;
+    CoarseResult best{false, guesses.front(), start};
     if (static_cast<int>(keyframe.photometric.size()) < options_.min_points) return best;
     const int levels = std::min(pyramid.numLevels(), static_cast<int>(keyframe.photometric.patches.size()));
     // The coarsest level on which any guess sees enough points decides between the guesses; finer ones refine
@@ -78,9 +75,7 @@ CoarseResult CoarseTracker::track(const Keyframe& keyframe, const ImagePyramid& 
             if (best_cost >= 0 &&
                 imageMotion(guesses[best_guess], guesses[i], scaled.fx, keyframe.typicalDepth()) < kSameGuess)
                 continue;
-            CoarseResult state;
-            state.T_current_keyframe = guesses[i];
-            state.brightness = start;
+            CoarseResult state{false, guesses[i], start};
             const double cost = alignLevel(keyframe, image, level, scaled, shutter, state);
             if (best_cost < 0) best.num_visible = std::max(best.num_visible, state.num_visible);
             if (cost >= 0 && (best_cost < 0 || cost < 0.95 * best_cost)) {

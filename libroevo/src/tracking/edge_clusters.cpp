@@ -33,7 +33,6 @@ PoseUncertainty sum(const PoseUncertainty& first, const Matrix6d& carried, const
     PoseUncertainty out;
     out.independent = second.independent + carried * first.independent * carried.transpose();
     out.common = second.common + carried * first.common * carried.transpose();
-    out.influences.reserve(first.influences.size() + second.influences.size());
     auto a = first.influences.begin();
     auto b = second.influences.begin();
     while (a != first.influences.end() || b != second.influences.end()) {
@@ -89,7 +88,6 @@ PoseUncertainty EdgeClusters::uncertainty(const PoseSystem& system, double slope
     for (const Sum& edge : sums_) of_edges += wholeOf(edge.hessian);
     const Matrix6d by_slopes = system.hessian - (1 - slope) * of_edges;
     PoseUncertainty out;
-    out.influences.reserve(sums_.size());
     for (std::size_t k = 0; k < sums_.size(); ++k) {
         const Sum& edge = sums_[k];
         if (!edge.used) continue;

@@ -2,54 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "edges/edge_depth.h"
 #include "edges/edge_sides.h"
 #include "tracking/robust.h"
 
 namespace roevo {
-namespace {
-
-/// Points of one image edge: where the lens put them, the depth of the patches there, and that corrected by
-/// the sides.
-struct DepthsOfEdge {
-    std::vector<Eigen::Vector2d> pixels;
-    std::vector<float> patches;
-    std::vector<float> z;
-
-    void clear() {
-        pixels.clear();
-        patches.clear();
-        z.clear();
-    }
-};
-
-/// Adds those points of the edge that begins at `first` as an edge.
-void addPiece(const OrganizedEdges& edges, std::size_t first, const std::vector<std::size_t>& piece,
-              const DepthsOfEdge& depths, const PinholeCamera& camera, const RowMotion& rows,
-              const SensorOptions& sensor, EdgePoints3D& out) {
-    out.image.addEdge(edges, first, piece);
-    for (const std::size_t k : piece) {
-        const std::size_t i = first + k;
-        const float z = depths.z[k];
-        const Eigen::Vector3d p = rows.toReference(camera.backProject(edges.x[i], edges.y[i], z), edges.y[i]);
-        out.points.add(p);
-        out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
-        out.correction.push_back(z - depths.patches[k]);
-        out.source.push_back(static_cast<std::int32_t>(i));
-    }
-}
-
-}  // namespace
-
-void EdgePoints3D::reserve(std::size_t count) {
-    image.reserve(count);
-    points.reserve(count);
-    correction.reserve(count);
-    weight.reserve(count);
-    source.reserve(count);
-}
-
 float EdgePoints3D::medianDepth() const {
     if (size() == 0) return 0;
     std::vector<float> depths(points.z.begin(), points.z.begin() + static_cast<std::ptrdiff_t>(size()));
@@ -74,26 +33,34 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
     const auto most_gap = static_cast<std::size_t>(std::lround(3 * scale));  // points without depth
     const auto least_piece = static_cast<std::size_t>(std::lround(5 * scale));
     EdgePoints3D out;
-    out.reserve(edges.size());
-    DepthsOfEdge depths;
-    const auto& [pixels, patches, z] = depths;
+    // Of the points of one edge: where the lens put them, the depth of the patches there, and that corrected
+    std::vector<Eigen::Vector2d> pixels;
+    std::vector<float> patches, z;
     std::vector<std::size_t> piece;  // points of the piece being built
     for (int e = 0; e < edges.numEdges(); ++e) {
         const IndexRange own = edges.pointsOf(e);
-        depths.clear();
+        pixels.clear();
+        patches.clear();
         for (std::size_t i = own.first; i < own.end; ++i) {
             const Eigen::Vector2d pixel = camera.distortPixel({edges.x[i], edges.y[i]});
-            depths.pixels.push_back(pixel);
-            depths.patches.push_back(
-                foreground.at(static_cast<float>(pixel.x()), static_cast<float>(pixel.y())));
+            pixels.push_back(pixel);
+            patches.push_back(foreground.at(static_cast<float>(pixel.x()), static_cast<float>(pixel.y())));
         }
-        depths.z = depths.patches;
-        if (edge_options.two_sided_depth)
-            correctBySides(edges, own.first, pixels, depth, jump, scale, depths.z);
+        z = patches;
+        if (edge_options.two_sided_depth) correctBySides(edges, own.first, pixels, depth, jump, scale, z);
         const auto endPiece = [&] {
-            if (piece.size() >= least_piece)
-                addPiece(edges, own.first, piece, depths, camera, rows, sensor, out);
-            piece.clear();
+            const auto points = std::exchange(piece, {});
+            if (points.size() < least_piece) return;
+            out.image.addEdge(edges, own.first, points);
+            for (const std::size_t k : points) {
+                const std::size_t i = own.first + k;
+                const Eigen::Vector3d p =
+                    rows.toReference(camera.backProject(edges.x[i], edges.y[i], z[k]), edges.y[i]);
+                out.points.add(p);
+                out.weight.push_back(static_cast<float>(depthWeight(p.z(), sensor)));
+                out.correction.push_back(z[k] - patches[k]);
+                out.source.push_back(static_cast<std::int32_t>(i));
+            }
         };
         for (std::size_t k = 0; k < z.size(); ++k) {
             if (z[k] == 0) continue;

@@ -20,7 +20,6 @@ struct EdgePoints3D {
     std::vector<std::int32_t> source;  ///< index of the point among those of the image
 
     std::size_t size() const { return image.size(); }
-    void reserve(std::size_t count);
     float medianDepth() const;  ///< m; 0 when empty
 };
 

@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 
 #include "tracking/motion_blur.h"
 #include "tracking/robust.h"

@@ -6,9 +6,9 @@ void Keyframe::setRowMotion(const RowMotion& rows) {
     if (rows == row_motion) return;
     exchangeMotion(row_motion, rows, edges.image.y, edges.size(), edges.points);
     row_motion = rows;
-    for (std::size_t k = 0; k < photometric.source.size(); ++k) {
-        photometric.points.set(k, edges.points.at(static_cast<std::size_t>(photometric.source[k])));
-    }
+    for (std::size_t k = 0; k < photometric.source.size(); ++k)
+        for (const auto axis : {&Points3::x, &Points3::y, &Points3::z})
+            (photometric.points.*axis)[k] = at(edges.points.*axis, photometric.source[k]);
 }
 
 void Keyframe::count(const std::vector<std::int32_t>& looked_for, const std::vector<std::int32_t>& found) {

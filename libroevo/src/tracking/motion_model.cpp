@@ -1,9 +1,7 @@
 #include "tracking/motion_model.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 #include "tracking/relative_pose.h"
 #include "tracking/se3.h"

@@ -15,14 +15,6 @@ struct Points3 {
     Eigen::Vector3d at(std::size_t i) const {
         return {static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
     }
-    void set(std::size_t i, float px, float py, float pz) {
-        x[i] = px;
-        y[i] = py;
-        z[i] = pz;
-    }
-    void set(std::size_t i, const Eigen::Vector3d& point) {
-        set(i, static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()));
-    }
     void add(float px, float py, float pz) {
         x.push_back(px);
         y.push_back(py);
@@ -30,10 +22,6 @@ struct Points3 {
     }
     void add(const Eigen::Vector3d& point) {
         add(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()));
-    }
-    /// Room for this many points and their padding.
-    void reserve(std::size_t count) {
-        for (auto* array : {&x, &y, &z}) array->reserve(kernels::paddedSize(count));
     }
     /// Appends points at (0, 0, 1), which any camera can project, up to a multiple of the kernels' lanes.
     void pad() {

@@ -2,7 +2,6 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "roevo/camera/pinhole_camera.h"

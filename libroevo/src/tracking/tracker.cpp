@@ -19,18 +19,19 @@ constexpr double kMatchedWithoutDepth = 0.6;  ///< share of the edges
 constexpr double kDoubtfulPosition = 0.15;  ///< m
 constexpr double kDoubtfulTurn = 5 * kDegree;
 
-int percent(double share) {
-    return static_cast<int>(std::lround(100 * share));
+std::string percent(double share) {
+    return std::to_string(std::lround(100 * share)) + " %";
 }
 
 /// Why fine tracking failed.
 Fault describeFailure(const FineResult& refined, const FineOptions& options) {
     if (refined.inliers < options.min_inliers)
-        return {Fault::Kind::kFewInliers, {refined.inliers, options.min_inliers}};
+        return {"only " + std::to_string(refined.inliers) + " associated edge points, " +
+                std::to_string(options.min_inliers) + " needed"};
     if (refined.matched_ratio < options.min_matched_ratio)
-        return {Fault::Kind::kFewMatched,
-                {percent(refined.matched_ratio), percent(options.min_matched_ratio)}};
-    return {Fault::Kind::kDiverged, {}};
+        return {"only " + percent(refined.matched_ratio) + " of the edges associated, " +
+                percent(options.min_matched_ratio) + " needed"};
+    return {"the pose diverged"};
 }
 
 /// Of a coarse pose, from its residuals on the finest level. What they do not see is not known at all.
@@ -152,18 +153,19 @@ Tracking Tracker::run(const Keyframe& reference, const Frame& frame, const Predi
 Fault Tracker::runCoarse(const Keyframe& reference, const Frame& frame, const CoarseResult& aligned,
                          const RollingShutter& shutter, Tracking& out) {
     if (!aligned.converged)
-        return {Fault::Kind::kFewPointsInView,
-                {aligned.num_visible, static_cast<int>(reference.photometric.size())}};
+        return {"coarse tracking saw too few points in the image: " + std::to_string(aligned.num_visible) +
+                " of " + std::to_string(reference.photometric.size())};
     // Edges are associated only to know when the next keyframe is due
     const Pose& T = aligned.T_current_keyframe;
     fine_.associate(reference, frame, T, shutter.motion(T), options_.fine.final_radius);
     out.matches = fine_.matches();
     out.inliers = static_cast<int>(out.matches.size());
-    if (out.matchedRatio() < options_.fine.min_matched_ratio / 2) return {Fault::Kind::kCoarseAstray, {}};
+    if (out.matchedRatio() < options_.fine.min_matched_ratio / 2)
+        return {"coarse tracking went astray: hardly any edge is where it should be"};
     out.pose.T_keyframe_camera = T.inverse();
     out.pose.uncertainty = photometricUncertainty(reference, frame, ideal_, shutter.motion(T), aligned);
     out.measured = out.pose.uncertainty;
-    return out.pose.covariance().allFinite() ? Fault() : Fault{Fault::Kind::kDiverged, {}};
+    return out.pose.covariance().allFinite() ? Fault() : Fault{"the pose diverged"};
 }
 
 Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const CoarseResult& aligned,
@@ -183,7 +185,8 @@ Fault Tracker::runFine(const Keyframe& reference, const Frame& frame, const Coar
     Fault contradiction;
     if (found.converged && found.depth_agreement < kLeastDepthAgreement) {
         // Either the pose is wrong or the depth image. It is the depth where edges agree well all the same
-        contradiction = {Fault::Kind::kDepthContradicts, {percent(found.depth_agreement)}};
+        contradiction = {"the depth image contradicts the keyframe's: " + percent(found.depth_agreement) +
+                         " of the points agree"};
         out.doubtful = found.matched_ratio < kMatchedWithoutDepth;
         if (!out.doubtful) {
             fine_.useDepth(false);

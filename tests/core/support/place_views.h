@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "odometry/front_end.h"
+#include "odometry/frame_preparer.h"
 #include "place/place_describer.h"
 #include "tracking/keyframe.h"
 #include "tracking/se3.h"
@@ -23,7 +23,7 @@ inline std::unique_ptr<PlaceView> makePlaceView(const PinholeCamera& camera, con
     const OdometryOptions options;
     auto view = std::make_unique<PlaceView>();
     view->frame.images = images;
-    FrontEnd(camera, options).process(view->frame);
+    FramePreparer(camera, options).findEdges(view->frame);
     view->keyframe.id = id;
     view->keyframe.edges = liftEdges(view->frame.edges, view->frame.images.depth, camera, RowMotion(),
                                      options.edges, options.sensor);
