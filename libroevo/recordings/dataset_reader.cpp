@@ -200,10 +200,17 @@ void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,
                               const std::string& file) const {
     if (image.cols == camera.width && image.rows == camera.height) return;
     const bool is_depth = image.depth() != CV_8U && !description_.registration && !description_.images;
+    const auto text = [](int width, int height) {
+        return std::to_string(width) + "x" + std::to_string(height);
+    };
+    // The file last, so that reasons alike are counted together
     throw std::runtime_error(
-        file + " is " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
-        ", but the camera is " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
-        (is_depth ? ": a depth camera of its own belongs into camera.txt (depth_width, …)" : ""));
+        "an image of " + text(image.cols, image.rows) + ", but the camera is " +
+        text(camera.width, camera.height) +
+        (is_depth ? " (if colour images have that size, too, camera.txt has the wrong one; a depth camera of "
+                    "its own belongs into camera.txt: depth_width, …): "
+                  : " (are the intrinsics those of another image size?): ") +
+        file);
 }
 
 cv::Mat DatasetReader::readStoredDepth(std::size_t i) const {
