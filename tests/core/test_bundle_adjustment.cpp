@@ -33,6 +33,46 @@ TEST_F(BundleAdjustment, DriftedPosesConvergeToTheTruth) {
     }
 }
 
+TEST_F(BundleAdjustment, StepsOfManyKeyframesSolveTheEquationsSparseOrNot) {
+    constexpr int kKeyframes = 56, kRoomsAlongAWay = 18;
+    for (const int rooms : {1, kRoomsAlongAWay}) {
+        std::vector<Curve> curves;
+        for (int r = 0; r < rooms; ++r)
+            for (const Curve& curve : room())
+                curves.push_back({[=](double s) {
+                                      return Eigen::Vector3d(curve.at(s).x() + r, curve.at(s).y(),
+                                                             curve.at(s).z());
+                                  },
+                                  curve.length, curve.spacing});
+        std::vector<TestKeyframe> made;
+        for (int k = 0; k < kKeyframes; ++k) {
+            const int at = k * rooms / kKeyframes;
+            std::vector<Sighting> seen;
+            for (Sighting sighting : seeAll(curves))
+                if (const int r = sighting.curve / static_cast<int>(room().size()); r == at || r == at + 1)
+                    seen.push_back(sighting);
+            made.push_back(makeKeyframe(
+                k, Pose(Eigen::Quaterniond::Identity(), {static_cast<double>(at), 0, 0}) * placeOnPath(k % 4),
+                curves, seen));
+        }
+        std::vector<WindowKeyframe> window = windowOf(made);
+        std::mt19937 random(3);
+        disturb(window, random, 0.002, 0.1 * kDegree);
+        FusedEdges edges = fuse(window, clustersByCurve(made));
+        WindowEquations equations(mapping_, sensor_, mappingCamera());
+        equations.gather(window, edges);
+        equations.evaluate(window, edges.points, 0.5);
+        equations.build(window, edges.points);
+        equations.addDamping(5e-6);
+        Eigen::MatrixXd hessian = equations.hessian().selfadjointView<Eigen::Upper>();
+        ASSERT_GT(hessian.rows(), 300) << "fewer are dense";
+        const double filled = (hessian.array() != 0).cast<double>().mean();
+        EXPECT_TRUE(rooms == 1 ? filled > 0.9 : filled < 0.2) << filled;
+        const Eigen::VectorXd expected = -hessian.fullPivLu().solve(equations.gradient);
+        EXPECT_LT((equations.step() - expected).norm(), 1e-6 * expected.norm()) << rooms;
+    }
+}
+
 // Far points of a sensor that is trusted nearby only: weights underflow.
 TEST_F(BundleAdjustment, PointsWithoutAnyWeightTellNothing) {
     std::vector<TestKeyframe> made = made_;

@@ -31,8 +31,8 @@ class RefineAll : public ::testing::Test {
         return keyframe;
     }
     /// With windows so small that each is refined with the next one only.
-    void map(int keyframes, int window = 2) {
-        options_.mapping.window = window;
+    void map(int keyframes) {
+        options_.mapping.window = 2;
         options_.mapping.reuse_keyframes = false;
         mapper_.emplace(mappingCamera(), options_);
         std::mt19937 random(4);
@@ -84,14 +84,30 @@ TEST_F(RefineAll, BringsPerfectObservationsToTheTruth) {
     EXPECT_EQ(mapper_->keyframes().at(0).T_world_camera.matrix(), placeOnPath(0).matrix());
 }
 
-TEST_F(RefineAll, LargeEquationsAreSolvedAsWellSparseOrNot) {
-    for (const int window : {2, 30}) {
-        map(55, window);
-        const double before = worstError();
-        EXPECT_TRUE(mapper_->refineAll().refusals.empty());
-        EXPECT_LT(worstError(), before);
-        EXPECT_LT(worstError(), 1.5e-4) << window;
+TEST_F(RefineAll, TracksThatTookTurnsAreRefinedEachByItself) {
+    options_.mapping.window = 2;
+    mapper_.emplace(mappingCamera(), options_);
+    for (int id = 0; id < 14; ++id) {
+        MapKeyframe keyframe = keyframeAt(id, Pose::Identity());
+        keyframe.track = id >= 5 && id < 9 ? 5 : 0;  // lost, begun anew, and found in the old one
+        if (id == 5) keyframe.parent = -1;
+        if (id == 9) {
+            keyframe.parent = 4;
+            keyframe.T_parent_camera = placeOnPath(placeOf(4)).inverse() * placeOnPath(placeOf(9));
+        }
+        mapper_->insert(std::move(keyframe));
     }
+    Correction loop;  // within the younger track
+    const auto poseOf = [&](int id) { return mapper_->keyframes().at(id).T_world_camera; };
+    loop.places.push_back({5, 8, poseOf(5).inverse() * poseOf(8), 1e-4 * Matrix6d::Identity()});
+    for (const int id : {5, 6, 7, 8}) loop.motions.emplace(id, Pose::Identity());
+    mapper_->correct(loop);
+    const MapUpdate update = mapper_->refineAll();
+    EXPECT_TRUE(update.refusals.empty());
+    std::map<int, int> times;
+    for (const auto& [id, pose] : update.poses) ++times[id];
+    EXPECT_EQ(times.size(), 12U);
+    for (const auto& [id, count] : times) EXPECT_EQ(count, 1) << id;
 }
 
 TEST_F(RefineAll, KeyframesMayFollow) {
@@ -175,7 +191,31 @@ TEST_F(RefineAll, LongTracksAreRefinedInPartsThatOverlap) {
         ++times[id];
     }
     EXPECT_EQ(times.size(), 229U);
+    for (const auto& [id, count] : times) EXPECT_EQ(count, id > 50 && id <= 200 ? 2 : 1) << id;
     EXPECT_LE(worstError(), before);
+}
+
+// Else the first part goes back to where it was before a loop was closed, and the last one takes all of the
+// gap.
+TEST_F(RefineAll, APartIsHeldByWhatFollowsIt) {
+    options_.mapping.final_rounds = 1;
+    map(12);
+    const auto offset = [](int id, const Pose& pose) {
+        return (pose.translation() - placeOnPath(placeOf(id)).translation()).x();
+    };
+    Correction loop;
+    for (int id = 1; id < 12; ++id)
+        loop.motions.emplace(id, Pose(Eigen::Quaterniond::Identity(), {0.0005 * id, 0, 0}));
+    const auto poseOf = [&](int id) { return mapper_->keyframes().at(id).T_world_camera; };
+    loop.places.push_back(
+        {0, 11, poseOf(0).inverse() * loop.motions.at(11) * poseOf(11), 1e-4 * Matrix6d::Identity()});
+    mapper_->correct(loop);
+    ASSERT_GT(offset(6, mapper_->keyframes().at(6).T_world_camera), 0.0025);
+    const MapUpdate update = mapper_->refineAll(6);
+    const auto of_sixth = std::find_if(update.poses.begin(), update.poses.end(),
+                                       [](const auto& pose) { return pose.first == 6; });
+    ASSERT_NE(of_sixth, update.poses.end());
+    EXPECT_GT(offset(6, of_sixth->second), 0.0015) << "in the first part, which it is the last one of";
 }
 
 TEST_F(RefineAll, NothingMovesWithoutRounds) {

@@ -68,7 +68,8 @@ class LocalMapper {
 
     /// Refines all keyframes of each track together, but for the first one and those that were loaded. Edges,
     /// which are related anew, and places that were recognised hold them. Which edges are pseudo-edges stays
-    /// as it was judged. Longer tracks than `most_together` are refined in parts that overlap by half.
+    /// as it was judged. Longer tracks than `most_together`, two at least, are refined in parts that overlap
+    /// by half.
     MapUpdate refineAll(std::size_t most_together = kMostTogether);
 
     /// What the frames after a keyframe told of it; before the next insert(). Of one that there is not:

@@ -31,17 +31,15 @@ void LocalMapper::addRecognisedPlaces() {
 
 /// Relates and fuses edges anew at the poses of each round: where a loop was closed or a track was joined,
 /// they were not related yet. What moves is held where it is related to others, before it and after it.
-/// @param begin, end  of the keyframes that move, the first of the track is none of them
+/// @param begin, end  of the keyframes that move: neither the first of the track nor any that was loaded
 void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& track, std::size_t begin,
                                  std::size_t end, BundleAdjuster& adjuster, MapUpdate& update) {
     const int first_id = track[begin]->id, last_id = track[end - 1]->id;
-    if (last_id < loaded_) return;
     const auto follow = std::min(track.size(), end + static_cast<std::size_t>(options_.mapping.window));
     std::map<int, const MapKeyframe*> related{{track[begin - 1]->id, track[begin - 1]}};
     std::vector<Neighbourhood> neighbourhoods;
     for (std::size_t k = begin; k < follow; ++k) {
         related.emplace(track[k]->id, track[k]);
-        if (track[k]->id < loaded_) continue;
         neighbourhoods.push_back(neighbourhoodOf(*track[k]));
         if (k >= end) continue;
         for (const auto* others : {&neighbourhoods.back().recent, &neighbourhoods.back().nearby})
@@ -49,8 +47,9 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& track, s
     }
     for (const PoseConstraint& place : places_)
         for (const auto& [id, other] : {std::pair(place.from, place.to), {place.to, place.from}})
-            if (const auto found = keyframes_.find(other);
-                id >= first_id && id <= last_id && found != keyframes_.end())
+            if (const auto found = keyframes_.find(other); found != keyframes_.end() &&
+                                                           found->second.track == track[begin]->track &&
+                                                           id >= first_id && id <= last_id)
                 related.emplace(other, &found->second);
     std::vector<const MapKeyframe*> members;
     for (const auto& [id, keyframe] : related) members.push_back(keyframe);
@@ -76,8 +75,13 @@ void LocalMapper::refineTogether(const std::vector<const MapKeyframe*>& track, s
             moved += imageMotion(members[slot]->T_world_camera.inverse(),
                                  before_round[slot].T_world_camera.inverse(), camera_.fx,
                                  members[slot]->typicalDepth());
-        if (round > 0 && moved < kHardlyMoved * static_cast<double>(members.size())) break;
+        if (round > 0 && moved < kHardlyMoved * static_cast<double>(end - begin)) break;
     }
+    // The part before had them, too
+    eraseIf(update.refusals, [&](const MapRefusal& refusal) {
+        const int slot = slotOf(refusal.keyframe);
+        return slot >= 0 && !at(window_, slot).fixed;
+    });
     update.refusals.insert(update.refusals.end(), last.refusals.begin(), last.refusals.end());
     // Where they are now: what a round left as it was may have moved in the one before
     for (const WindowKeyframe& view : window_)
@@ -95,8 +99,12 @@ MapUpdate LocalMapper::refineAll(std::size_t most_together) {
     BundleAdjuster adjuster(options_.mapping, options_.sensor, camera_,
                             std::numeric_limits<std::size_t>::max());
     for (const auto& [id, track] : tracks) {
-        std::size_t end = 1;
-        for (std::size_t begin = 1; end < track.size(); begin += most_together / 2) {
+        const auto isOwn = [&](const MapKeyframe* keyframe) { return keyframe->id >= loaded_; };
+        const auto loaded =
+            static_cast<std::size_t>(std::find_if(track.begin(), track.end(), isOwn) - track.begin());
+        std::size_t end = 0;
+        for (std::size_t begin = std::max<std::size_t>(1, loaded); begin < track.size() && end < track.size();
+             begin += most_together / 2) {
             end = std::min(track.size(), begin + most_together);
             refineTogether(track, begin, end, adjuster, update);
             leaveWindow(keyframes_.rbegin()->second);

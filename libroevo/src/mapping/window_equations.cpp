@@ -132,7 +132,8 @@ double WindowEquations::spread(std::int32_t slot, double least_scale) {
 }
 
 void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vector<Eigen::Vector3d>& points) {
-    blocks_.assign(num_rows_ == 0 ? 0 : rows_.size() * rows_.size(), Matrix6d::Zero());
+    const auto block_rows = static_cast<std::size_t>(numBlockRows());
+    blocks_.assign(num_rows_ == 0 ? 0 : block_rows * block_rows, Matrix6d::Zero());
     gradients_.assign(rows_.size(), Vector6d::Zero());
     edge_gradients_.assign(rows_.size(), Vector6d::Zero());
     pulls_.clear();
@@ -167,7 +168,8 @@ void WindowEquations::add(int slot, int other_slot, const Matrix6d& block) {
 }
 
 void WindowEquations::addDamping(double damping) {
-    for (std::size_t a = 0; a < rows_.size(); ++a) blocks_[blockOf(a, a)].diagonal().array() += damping;
+    for (std::size_t a = 0; a < rows_.size(); ++a)
+        if (rows_[a] >= 0) blocks_[blockOf(a, a)].diagonal().array() += damping;
 }
 
 template <class Take>
@@ -185,20 +187,25 @@ Eigen::MatrixXd WindowEquations::hessian() const {
 
 Eigen::VectorXd WindowEquations::step() const {
     if (num_rows_ <= kDenseRows) return -hessian().selfadjointView<Eigen::Upper>().ldlt().solve(gradient);
-    std::vector<Eigen::Triplet<double>> filled;
-    const auto all = static_cast<double>(num_rows_) * (num_rows_ + 6) / 2;
+    const auto filled =
+        std::count_if(blocks_.begin(), blocks_.end(), [](const Matrix6d& b) { return !b.isZero(0); });
+    const Eigen::VectorXd none =
+        Eigen::VectorXd::Constant(num_rows_, std::numeric_limits<double>::quiet_NaN());
+    if (static_cast<double>(filled) > kMostlyFilled * static_cast<double>(blocks_.size()) / 2) {
+        Eigen::MatrixXd dense = hessian();
+        const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> solver(dense);
+        return solver.info() == Eigen::Success ? Eigen::VectorXd(-solver.solve(gradient)) : none;
+    }
+    std::vector<Eigen::Triplet<double>> entries;
     eachBlock([&](int row, int column, const Matrix6d& block) {
         if (block.isZero(0)) return;
         for (int i = 0; i < 6; ++i)
-            for (int j = 0; j < 6; ++j) filled.emplace_back(row + i, column + j, block(i, j));
+            for (int j = 0; j < 6; ++j) entries.emplace_back(row + i, column + j, block(i, j));
     });
-    if (static_cast<double>(filled.size()) > kMostlyFilled * all)
-        return -hessian().selfadjointView<Eigen::Upper>().llt().solve(gradient);
     Eigen::SparseMatrix<double> sparse(num_rows_, num_rows_);
-    sparse.setFromTriplets(filled.begin(), filled.end());
+    sparse.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper> solver(sparse);
-    if (solver.info() == Eigen::Success) return -solver.solve(gradient);
-    return Eigen::VectorXd::Constant(num_rows_, std::numeric_limits<double>::quiet_NaN());
+    return solver.info() == Eigen::Success ? Eigen::VectorXd(-solver.solve(gradient)) : none;
 }
 
 bool WindowEquations::addObservation(const LineObservation& seen, const Residual& residual,
@@ -272,23 +279,22 @@ void WindowEquations::addPulls(std::int32_t edge) {
 void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse) {
     std::sort(touched_.begin(), touched_.end());
     const Eigen::Matrix3d P = skew(point - origin_);
-    hessian_slots_.clear();
+    hessian_rows_.clear();
     for (const std::int32_t slot : touched_) {
         if (!isInHessian(slot)) continue;
         const Eigen::Matrix3d& information = at(point_blocks_, slot).information;
-        Coupling& coupling = couplings_[hessian_slots_.size()];
+        Coupling& coupling = couplings_[hessian_rows_.size()];
         coupling.topRows<3>() = information;
         coupling.bottomRows<3>().noalias() = P * information;
-        throughs_[hessian_slots_.size()].noalias() = coupling * inverse;
-        hessian_slots_.push_back(slot);
+        throughs_[hessian_rows_.size()].noalias() = coupling * inverse;
+        hessian_rows_.push_back(blockRow(slot));
         Matrix6d& diagonal = blocks_[blockOf(slot, slot)];
         diagonal.leftCols<3>() += coupling;
         diagonal.rightCols<3>().noalias() -= coupling * P;
     }
-    if (!options_.joint_refinement || hessian_slots_.empty()) return;
-    kernels::best().eliminatePoint(couplings_[0].data(), throughs_[0].data(), hessian_slots_.data(),
-                                   static_cast<int>(hessian_slots_.size()), static_cast<int>(rows_.size()),
-                                   blocks_[0].data());
+    if (!options_.joint_refinement || hessian_rows_.empty()) return;
+    kernels::best().eliminatePoint(couplings_[0].data(), throughs_[0].data(), hessian_rows_.data(),
+                                   static_cast<int>(hessian_rows_.size()), numBlockRows(), blocks_[0].data());
 }
 
 }  // namespace roevo

@@ -45,8 +45,8 @@ class WindowEquations {
         return at(rows_, slot);
     }
     int numRows() const { return num_rows_; }
-    /// The newest of the fixed keyframes; -1: none is fixed. Where it is not the only one, what follows is
-    /// known.
+    /// The newest of the fixed keyframes before the first that is not; -1: none is fixed. Where it is not the
+    /// only one, what follows is known.
     int anchor() const { return anchor_; }
     /// What the residuals relate the anchor's pose to a keyframe's by: that block of the Hessian.
     const Matrix6d& anchorBlock(int slot) const { return blocks_[blockOf(anchor_, slot)]; }
@@ -103,9 +103,15 @@ class WindowEquations {
     bool isInHessian(std::int32_t slot) const {
         return at(rows_, slot) >= 0 || (slot == anchor_ && slot > 0);
     }
+    /// Blocks are of the anchor, which comes first, and of the keyframes that are not fixed.
     template <class Index>
-    std::size_t blockOf(Index row_slot, Index column_slot) const {
-        return static_cast<std::size_t>(row_slot) * rows_.size() + static_cast<std::size_t>(column_slot);
+    int blockRow(Index slot) const {
+        return at(rows_, slot) < 0 ? 0 : 1 + at(rows_, slot) / 6;
+    }
+    int numBlockRows() const { return 1 + num_rows_ / 6; }
+    template <class Index>
+    std::size_t blockOf(Index slot, Index column_slot) const {
+        return static_cast<std::size_t>(blockRow(slot) * numBlockRows() + blockRow(column_slot));
     }
 
     MappingOptions options_;
@@ -128,7 +134,8 @@ class WindowEquations {
     std::vector<InformationBlock> point_blocks_;  ///< of each keyframe
     std::vector<std::int32_t> touched_;           ///< slots of keyframes that observe it
     std::vector<Coupling> couplings_, throughs_;
-    std::vector<std::int32_t> hessian_slots_;  ///< of those whose poses are looked for, and of the anchor
+    std::vector<std::int32_t>
+        hessian_rows_;  ///< block rows of those whose poses are looked for, and the anchor
     Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();  ///< of the edge, not normalised
 };
 

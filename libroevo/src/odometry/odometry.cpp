@@ -47,8 +47,13 @@ FrameResult Odometry::processFrame(const RgbdFrame& images) {
     return processFrame(prepareFrame(images));
 }
 PreparedFrame Odometry::prepareFrame(const RgbdFrame& images) {
-    return prepareFrame(RgbdFrame{images.timestamp, images.grey.clone(), images.depth.clone(),
-                                  images.colour.clone(), images.mask.clone()});
+    const Stopwatch watch;
+    RgbdFrame own{images.timestamp, images.grey.clone(), images.depth.clone(), images.colour.clone(),
+                  images.mask.clone()};
+    const double copied = watch.milliseconds();
+    PreparedFrame prepared = prepareFrame(std::move(own));
+    prepared.content_->milliseconds += copied;
+    return prepared;
 }
 PreparedFrame Odometry::prepareFrame(RgbdFrame&& images) {
     PreparedFrame prepared;

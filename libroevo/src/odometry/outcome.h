@@ -4,7 +4,7 @@
 
 namespace roevo {
 
-/// What became of a frame, in values.
+/// What became of a frame.
 struct Outcome {
     FrameStatus status = FrameStatus::kOk;
     Tracking tracking;          ///< its pose is relative to the present reference
@@ -18,8 +18,7 @@ struct Outcome {
     bool hasMeasuredPose() const { return status != FrameStatus::kPredicted && status != FrameStatus::kLost; }
 };
 
-/// The reason of a frame's status, and what became of the world, in words: the one place where they are
-/// made.
+/// The reason of a frame's status, and what became of the world, in words.
 /// @param change  see World::changes()
 std::string describe(const Outcome& outcome, const FrameResult& change);
 
