@@ -21,7 +21,7 @@ constexpr char kFooter[] =
     "  roevo-odometry --input rgbd_dataset_freiburg1_xyz --output out --set keyframe.max_rotation_deg=10\n"
     "Written into the output folder: trajectory.txt, trajectory_live.txt, keyframes.txt (TUM format), "
     "frames.csv,\n"
-    "map.3Dscene, map.ply, map_semi_dense.ply, summary.json, config_used.ini; ground_truth.txt when "
+    "map.3Dscene, map.ply, map_semi_dense.ply, summary.json, config_used.ini; trajectory_truth.txt when "
     "there is one;\n"
     "trajectory_robot.txt when a rawlog says where the camera is mounted on the robot.";
 

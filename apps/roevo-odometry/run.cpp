@@ -45,9 +45,10 @@ std::size_t expectedFrames(const FrameSource& source, const RunSettings& setting
 }
 
 const std::vector<std::string> kResults = {
-    "trajectory.txt",  "trajectory_live.txt", "trajectory_robot.txt", "keyframes.txt", "map.3Dscene",
-    "map.ply",         "map_semi_dense.ply",  "config_used.ini",      "frames.csv",    "summary.json",
-    "ground_truth.txt"};
+    "trajectory.txt",     "trajectory_live.txt", "trajectory_robot.txt",
+    "keyframes.txt",      "map.3Dscene",         "map.ply",
+    "map_semi_dense.ply", "config_used.ini",     "frames.csv",
+    "summary.json",       "trajectory_truth.txt"};
 
 // What is written besides the results must not take the place of what is read, or of a result.
 void checkNames(const RunSettings& settings, const std::string& ground_truth) {
@@ -64,6 +65,10 @@ void checkNames(const RunSettings& settings, const std::string& ground_truth) {
             if (isSameFile(file, (fs::path(settings.output_dir) / name).string()))
                 refuse("what the run writes itself");
     };
+    for (const std::string& name : kResults)
+        if (isSameFile(ground_truth, (fs::path(settings.output_dir) / name).string()))
+            throw UsageError("the ground truth " + ground_truth +
+                             " is what the run writes itself; give another --output");
     check("--covariances", settings.covariances);
     check("--map-out", settings.map_out);
     check("--simplemap", settings.simple_map);
@@ -318,7 +323,7 @@ RunReport runOdometry(const RunSettings& settings) {
             writeTumTrajectory(files.path("trajectory_robot.txt"),
                                robotTrajectory(report.trajectory, report.camera_on_robot));
         std::vector<StampedPose> reference = coveredPart(ground_truth.poses, report);
-        if (!reference.empty()) writeTumTrajectory(files.path("ground_truth.txt"), reference);
+        if (!reference.empty()) writeTumTrajectory(files.path("trajectory_truth.txt"), reference);
         writeMap(files, report, odometry, std::move(content), aligned(std::move(reference), report));
         if (map_file) no_map = saveMap(odometry, settings.map_out, map_file, report);
         for_mrpt.write(report, odometry);

@@ -109,9 +109,11 @@ int writeView(const Settings& settings) {
     if (!settings.title.empty()) result.name = settings.title;
     WebViewSettings view_settings;
     if (!settings.name.empty()) view_settings.name = settings.name;
-    view_settings.truth = {"ground truth", settings.ground_truth.empty()
-                                               ? result.ground_truth
-                                               : readTrajectory(settings.ground_truth)};
+    view_settings.truth.name = "ground truth";
+    if (!settings.ground_truth.empty())
+        view_settings.truth.poses = readTrajectory(settings.ground_truth);
+    else if (!result.ground_truth.empty())
+        view_settings.truth.poses = readTumTrajectory(result.ground_truth);
     view_settings.max_size_mb = settings.max_size_mb;
     for (const std::string& argument : settings.trajectories)
         view_settings.others.push_back(

@@ -31,6 +31,9 @@ void readSummary(const std::string& path, ResultFolder& result) {
         pinhole.fx = camera.at("fx").get<double>(), pinhole.fy = camera.at("fy").get<double>();
         pinhole.cx = camera.at("cx").get<double>(), pinhole.cy = camera.at("cy").get<double>();
         if (pinhole.check().empty()) result.camera = pinhole;
+        const auto truth = json.value("ground_truth", nlohmann::json());
+        if (truth.is_object() && truth.contains("ate_m") && result.ground_truth.empty())
+            result.missing.emplace_back("trajectory_truth.txt");
     } catch (const nlohmann::json::exception&) {
         throw std::runtime_error(path + " is no summary of roevo-odometry; is it cut off?");
     }
@@ -59,8 +62,8 @@ ResultFolder readResultFolder(const std::string& folder) {
     };
     take("trajectory_live.txt", [&](const std::string& path) { result.live = readTumTrajectory(path); });
     take("keyframes.txt", [&](const std::string& path) { result.keyframes = readTumTrajectory(path); });
-    if (fs::exists(file("ground_truth.txt")))
-        result.ground_truth = readTumTrajectory(file("ground_truth.txt"));
+    for (const char* name : {"trajectory_truth.txt", "groundtruth.txt"})  // the other is of roevo-compare
+        if (result.ground_truth.empty() && fs::exists(file(name))) result.ground_truth = file(name);
     take("summary.json", [&](const std::string& path) { readSummary(path, result); });
     take("map.ply", [&](const std::string& path) { result.edges = readEdgesPly(path); });
     take("map_semi_dense.ply", [&](const std::string& path) { result.surface = readPointsPly(path); });

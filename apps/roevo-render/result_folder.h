@@ -16,7 +16,7 @@ struct ResultFolder {
     std::vector<StampedPose> trajectory;
     std::vector<StampedPose> live, keyframes;  ///< may be empty
     std::optional<PinholeCamera> camera;
-    std::vector<StampedPose> ground_truth;  ///< that the run was compared with; may be empty
+    std::string ground_truth;  ///< file that the run was compared with; may be empty
     EdgeMap edges;
     std::vector<ColouredPoint> surface;
     std::vector<std::string> missing;  ///< names of files that are not there

@@ -24,16 +24,19 @@ struct RowTimes {
     std::string source;          ///< where they are from, for messages
 };
 
+/// Of `count` ascending stamps that can only be ms, us or ns of this century: 1e3, 1e6 or 1e9; else 1.
+double unitOfThisCentury(double first, double last, std::size_t count);
+
 /// Reads a trajectory, sorted by time on return; of poses with one stamp the last counts.
-/// @param format  none: as its first row looks; stamps of TUM's that can only be ms, us or ns of this century
-/// become s then. @param times  for KITTI
+/// @param format  none: as its first row looks. @param times  for KITTI. Stamps that can only be ms, us or ns
+/// of this century become s.
 /// @throws std::runtime_error with file and line: not the numbers that the format has, a value that is not
 /// finite, a quaternion whose length is not one, a matrix that is no rotation, another number of rows than
 /// times; or a file with no pose at all
 std::vector<StampedPose> readTrajectory(const std::string& path, std::optional<TrajectoryFormat> format = {},
                                         const RowTimes& times = {});
 
-/// The same, and nothing but TUM's format.
+/// The same, nothing but TUM's format, with the stamps that the file has.
 std::vector<StampedPose> readTumTrajectory(const std::string& path);
 
 /// Times of a file's rows, in their order: a trajectory's (none: KITTI), or a list whose lines begin with

@@ -180,15 +180,6 @@ void setTimes(std::vector<StampedPose>& poses, const RowTimes& times, const Rows
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i].timestamp = times.stamps[i];
 }
 
-// Some programs write TUM's format with the nanoseconds that their images have for names.
-void toSeconds(std::vector<StampedPose>& poses) {
-    constexpr double kYear2000 = 9.5e8, kYear2100 = 4.1e9;  // s; times from some other zero tell no unit
-    const double last = poses.back().timestamp;
-    for (const double unit : {1e3, 1e6, 1e9})
-        if (last / unit > kYear2000 && last / unit < kYear2100)
-            for (StampedPose& pose : poses) pose.timestamp /= unit;
-}
-
 // Published ground truth does repeat stamps (TUM fr2/desk); as in the benchmark's own script the last one
 // counts.
 void sortByTime(std::vector<StampedPose>& poses) {
@@ -197,6 +188,23 @@ void sortByTime(std::vector<StampedPose>& poses) {
     const auto last = std::unique(poses.rbegin(), poses.rend(),
                                   [](const auto& a, const auto& b) { return a.timestamp == b.timestamp; });
     poses.erase(poses.begin(), last.base());
+}
+
+// With the stamps that the file has.
+std::vector<StampedPose> readAsWritten(const std::string& path, std::optional<TrajectoryFormat> format,
+                                       const RowTimes& times) {
+    Rows rows(path, format);
+    std::vector<StampedPose> poses;
+    const std::string expected = format ? rowOf(*format) : anyRow();
+    while (rows.next()) {
+        if (!format) format = recognise(rows);
+        if (!format) rows.failAsRow(expected);
+        poses.push_back(poseOf(rows, *format));
+    }
+    if (poses.empty()) throw std::runtime_error(path + ": no pose in it; expected lines of " + expected);
+    if (*format == TrajectoryFormat::kKitti) setTimes(poses, times, rows, path);
+    sortByTime(poses);
+    return poses;
 }
 
 }  // namespace
@@ -216,26 +224,25 @@ std::optional<TrajectoryFormat> trajectoryFormat(const std::string& name) {
     return std::nullopt;
 }
 
+double unitOfThisCentury(double first, double last, std::size_t count) {
+    constexpr double kYear2000 = 9.5e8, kYear2100 = 4.1e9;  // s; times from some other zero tell no unit
+    constexpr double kLongestStep = 10;                     // s
+    const double step = count > 1 ? (last - first) / static_cast<double>(count - 1) : 0;
+    for (const double unit : {1e3, 1e6, 1e9})
+        if (last / unit > kYear2000 && last / unit < kYear2100 && step / unit < kLongestStep) return unit;
+    return 1;
+}
+
 std::vector<StampedPose> readTrajectory(const std::string& path, std::optional<TrajectoryFormat> format,
                                         const RowTimes& times) {
-    Rows rows(path, format);
-    std::vector<StampedPose> poses;
-    const bool chosen = format.has_value();
-    const std::string expected = chosen ? rowOf(*format) : anyRow();
-    while (rows.next()) {
-        if (!format) format = recognise(rows);
-        if (!format) rows.failAsRow(expected);
-        poses.push_back(poseOf(rows, *format));
-    }
-    if (poses.empty()) throw std::runtime_error(path + ": no pose in it; expected lines of " + expected);
-    if (*format == TrajectoryFormat::kKitti) setTimes(poses, times, rows, path);
-    sortByTime(poses);
-    if (!chosen && *format == TrajectoryFormat::kTum) toSeconds(poses);
+    std::vector<StampedPose> poses = readAsWritten(path, format, times);
+    const double unit = unitOfThisCentury(poses.front().timestamp, poses.back().timestamp, poses.size());
+    for (StampedPose& pose : poses) pose.timestamp /= unit;
     return poses;
 }
 
 std::vector<StampedPose> readTumTrajectory(const std::string& path) {
-    return readTrajectory(path, TrajectoryFormat::kTum);
+    return readAsWritten(path, TrajectoryFormat::kTum, {});
 }
 
 RowTimes readRowTimes(const std::string& path) {
@@ -246,6 +253,8 @@ RowTimes readRowTimes(const std::string& path) {
         times.stamps.push_back(rows.hasCommas() ? eurocStamp(rows) : rows.number<double>(0));
     }
     if (times.stamps.empty()) throw std::runtime_error(path + ": no time in it; expected one per line");
+    const double unit = unitOfThisCentury(times.stamps.front(), times.stamps.back(), times.stamps.size());
+    for (double& stamp : times.stamps) stamp /= unit;
     return times;
 }
 

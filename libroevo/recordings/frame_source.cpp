@@ -84,8 +84,8 @@ class DatasetSource : public FrameSource {
 
 class RawlogSource : public FrameSource {
   public:
-    RawlogSource(const std::string& path, const InputChoice& choice)
-        : reader_(path, choice.sensor_label), scan_(reader_.next()), truth_(truthOf(path, choice)) {
+    RawlogSource(const std::string& path, const std::string& sensor_label, GroundTruth truth)
+        : reader_(path, sensor_label), scan_(reader_.next()), truth_(std::move(truth)) {
         // next() throws by itself when there is no scan at all.
         if (!scan_) return;
         camera_ = colourCameraOf(*scan_);
@@ -131,11 +131,6 @@ class RawlogSource : public FrameSource {
     std::string warning() const override { return reader_.report().warning(); }
 
   private:
-    static GroundTruth truthOf(const std::string& path, const InputChoice& choice) {
-        return choice.ground_truth.empty() ? readGroundTruth(RawlogWriter::groundTruthFile(path))
-                                           : readNamedGroundTruth(choice.ground_truth);
-    }
-
     void advance() {
         scan_ = std::move(following_);
         following_ = scan_ ? reader_.next() : nullptr;
@@ -176,8 +171,11 @@ std::unique_ptr<FrameSource> openUnmasked(const std::string& input, const InputC
     if (choice.topics.any()) throw UsageError("topics are for bags, and " + input + " is none");
     if (const auto given = choice.folder.options(); !given.empty())
         throw UsageError(given[0].first + " is for folders, and " + input + " is none");
+    GroundTruth truth = choice.ground_truth.empty() ? readGroundTruth(RawlogWriter::groundTruthFile(input))
+                                                    : readNamedGroundTruth(choice.ground_truth);
+    toSeconds(truth);
     try {
-        return std::make_unique<RawlogSource>(input, choice);
+        return std::make_unique<RawlogSource>(input, choice.sensor_label, std::move(truth));
     } catch (const std::runtime_error& e) {
         if (fs::path(input).extension() == ".rawlog") throw;
         throw std::runtime_error(std::string(e.what()) +

@@ -13,6 +13,7 @@
 #include "recordings/numbered_files.h"
 #include "recordings/sensor_files.h"
 #include "recordings/text_list.h"
+#include "recordings/time_units.h"
 #include "roevo_mrpt/time_conversions.h"
 
 namespace fs = std::filesystem;
@@ -86,12 +87,13 @@ std::size_t framesWithPose(const DatasetDescription& dataset) {
     return count;
 }
 
-/// Whole numbers are those of frames: they become seconds.
-void numbersToSeconds(std::vector<StampedPose>& poses) {
+/// Whole numbers are those of frames: they become seconds. @return whether they are
+bool numbersToSeconds(std::vector<StampedPose>& poses) {
     const bool whole = std::all_of(poses.begin(), poses.end(),
                                    [](const StampedPose& pose) { return isWhole(pose.timestamp); });
     for (StampedPose& pose : poses)
         if (whole) pose.timestamp = roundToMicroseconds(pose.timestamp / kRenderedRate);
+    return whole;
 }
 
 void findGroundTruth(DatasetDescription& out) {
@@ -100,9 +102,10 @@ void findGroundTruth(DatasetDescription& out) {
     if (files.empty() && fs::exists(folder / "groundtruth.txt")) files.push_back(folder / "groundtruth.txt");
     if (files.empty()) return;
     if (files.size() > 1) {
-        out.notes.push_back("ground truth: " + std::to_string(files.size()) + " trajectories (" +
-                            files[0].filename().string() + ", " + files[1].filename().string() +
-                            " …), none taken: name this sequence's by --ground-truth");
+        out.notes.push_back(
+            "ground truth: " + std::to_string(files.size()) + " trajectories (" +
+            files[0].filename().string() + ", " + files[1].filename().string() +
+            " …), none taken: leave only this sequence's in the folder, or name it by --ground-truth");
         return;
     }
     out.ground_truth = readGroundTruth(files[0].string());
@@ -114,9 +117,11 @@ void convertIclTruth(DatasetDescription& out) {
     GroundTruth& truth = out.ground_truth;
     truth.copyable = false;
     const double first = truth.poses.front().timestamp, last = truth.poses.back().timestamp;
-    numbersToSeconds(truth.poses);
+    const bool as_published = numbersToSeconds(truth.poses);
+    settleClock(out);
 
-    const HandednessResult told = compareHandedness(out);
+    HandednessResult told = compareHandedness(out);
+    if (!told.decided) told.mirrored = as_published;
     char text[300];
     if (told.mirrored) mirrorY(truth.poses);
     std::snprintf(
@@ -125,7 +130,9 @@ void convertIclTruth(DatasetDescription& out) {
         "mirrored)",
         first, last, framesWithPose(out), out.frames.size(),
         told.mirrored ? "left-handed, mirrored in y to fit the positive fy" : "right-handed, taken as it is",
-        told.decided ? "told by the depth images" : "assumed as published, the depth images do not tell",
+        told.decided   ? "told by the depth images"
+        : as_published ? "assumed as published, the depth images do not tell"
+                       : "the depth images do not tell, and its times are not the published numbers",
         100 * told.error_as_is, 100 * told.error_mirrored);
     truth.note = text;
 }

@@ -27,10 +27,10 @@ constexpr TopicOption kOptions[] = {
 }  // namespace
 
 void addInputOptions(CLI::App& app, InputChoice& choice) {
-    app.add_option(
-        kGroundTruth, choice.ground_truth,
-        "Trajectory to compare with, TUM or EuRoC (default: <stem>_groundtruth.txt beside a rawlog or a bag, "
-        "groundtruth.txt or what the layout has in a folder)");
+    app.add_option(kGroundTruth, choice.ground_truth,
+                   "Trajectory to compare with, TUM or EuRoC, of a single input (default: "
+                   "<stem>_groundtruth.txt beside a rawlog or a bag, "
+                   "groundtruth.txt or what the layout has in a folder)");
     app.add_option(kSensorLabel, choice.sensor_label, "Rawlogs with several cameras: which one");
     addTopicOptions(app, choice.topics);
     addFolderOptions(app, choice.folder);

@@ -6,6 +6,7 @@
 
 #include "evaluation/association.h"
 #include "recordings/image_lists.h"
+#include "recordings/sensor_files.h"
 #include "roevo_mrpt/time_conversions.h"
 
 namespace roevo {
@@ -77,6 +78,10 @@ void settleClock(DatasetDescription& dataset) {
     const Span images(stampsOf(dataset.frames)), truth(stampsOf(poses));
     const double shared = sharedPart(images, truth);
     if (shared > kHardlyShared) return;
+    if (const std::string unit = toSeconds(dataset.ground_truth); !unit.empty()) {
+        dataset.notes.push_back("times of the ground truth are in " + unit);
+        return settleClock(dataset);
+    }
     for (const double divisor : {1e3, 1e6, 1e9}) {
         if (fits(images, truth.dividedBy(divisor))) {
             divideTimes(poses, &StampedPose::timestamp, divisor);

@@ -8,6 +8,7 @@
 #include "output_check.h"
 #include "programs/atomic_file.h"
 #include "programs/memory_peak.h"
+#include "programs/output_folder.h"
 #include "programs/text.h"
 #include "recordings/depth_times.h"
 #include "rgbd2rawlog/verify.h"
@@ -76,6 +77,7 @@ void convertRecording(const char* program, const ConversionSettings& settings) {
     const DatasetReader dataset = openDataset(settings.input, options);
     std::printf("%s\n", dataset.summary().c_str());
     const std::string truth_path = RawlogWriter::groundTruthFile(settings.output);
+    keepInputs("--output", truth_path, {settings.dataset.ground_truth});
     const auto truth = prepareGroundTruth(dataset.groundTruth(), truth_path);
     std::unique_ptr<AtomicFile> depth_times;
     const auto check = [&](const ConvertResult& result, const std::string& rawlog) {

@@ -53,7 +53,7 @@ std::optional<int> parse(int argc, char** argv, ConversionSettings& settings) {
                  "Read the rawlog back before it gets its name and compare every depth value, time stamp, "
                  "image, inertial sample and the intrinsics");
     app.add_option("--ground-truth", settings.dataset.ground_truth,
-                   "Trajectory to go with the rawlog, in place of what lies beside the images")
+                   "Trajectory to go with the rawlog, TUM or EuRoC, in place of what lies beside the images")
         ->type_name("FILE");
     addTopicOptions(app, settings.dataset.topics);
     addFolderOptions(app, settings.dataset.folder);

@@ -174,6 +174,13 @@ TEST(Baseline, PartsOfARecordingAreNotItsWhole) {
     EXPECT_EQ(change.pairs.size(), kCount - 1);
     EXPECT_TRUE(change.lost.empty() && change.gained.empty());
     EXPECT_EQ(changesSince(evaluateAll(now), evaluateAll(now)).at(0).pairs.size(), kCount);
+
+    auto broken = many(one);  // a run that died does not know which part it was to be of
+    broken[3].runs[0] = failedRun("roevo-ba", "it died");
+    EXPECT_EQ(changesSince(evaluateAll(now), evaluateAll(broken)).at(0).lost,
+              std::vector<std::string>{"r03"});
+    EXPECT_EQ(changesSince(evaluateAll(broken), evaluateAll(now)).at(0).gained,
+              std::vector<std::string>{"r03"});
 }
 
 TEST(Baseline, FewRecordingsProveNothing) {

@@ -26,7 +26,7 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
     ASSERT_EQ(result.exit_code, 0) << result.all();
     for (const char* name :
          {"trajectory.txt", "trajectory_live.txt", "keyframes.txt", "frames.csv", "map.3Dscene", "map.ply",
-          "map_semi_dense.ply", "summary.json", "config_used.ini", "ground_truth.txt"})
+          "map_semi_dense.ply", "summary.json", "config_used.ini", "trajectory_truth.txt"})
         EXPECT_GT(fs::file_size(output() + "/" + name), 0u) << name;
     EXPECT_EQ(std::distance(fs::directory_iterator(output()), fs::directory_iterator()), 10)
         << "and nothing else";
@@ -55,7 +55,7 @@ TEST_F(OdometryProgram, WritesEverythingThatTheContractNames) {
     EXPECT_LT(json["ground_truth"]["ate_m"]["rmse"].get<double>(), 0.005);
     EXPECT_LT(json["ground_truth"]["rpe_per_second"]["translation_m"]["rmse"].get<double>(), 0.01);
     // As it was used, for programs that do not know the recording
-    const Evaluation again = evaluate(readTumTrajectory(output() + "/ground_truth.txt"),
+    const Evaluation again = evaluate(readTumTrajectory(output() + "/trajectory_truth.txt"),
                                       readTumTrajectory(output() + "/trajectory.txt"));
     EXPECT_NEAR(again.ate.translation.rmse, json["ground_truth"]["ate_m"]["rmse"], 1e-8);
     for (const char* words : {"39 ok", "1 initialised", "ATE", "RPE", "ms per frame"})
@@ -83,11 +83,20 @@ TEST_F(OdometryProgram, GroundTruthMayHaveNanoseconds) {
     ASSERT_EQ(runFrames(frames).exit_code, 0);
     const auto expected = summary()["ground_truth"]["ate_m"];
     auto truth = readTumTrajectory(folder_ / "recording/groundtruth.txt");
+    for (int i = 1; i < 60; ++i)  // it lasts much longer than the recording
+        truth.push_back({truth.back().timestamp + 1, truth.back().T_world_camera});
     for (StampedPose& pose : truth) pose.timestamp *= 1e9;
     writeTumTrajectory(folder_ / "truth.txt", truth);
     ASSERT_EQ(run(folder_ / "recording", {"--ground-truth", folder_ / "truth.txt"}).exit_code, 0);
     EXPECT_NEAR(summary()["ground_truth"]["ate_m"]["rmse"], expected["rmse"], 1e-7);
     EXPECT_EQ(summary()["ground_truth"]["pairs"], 10);
+}
+
+TEST_F(OdometryProgram, ResultsDoNotTakeThePlaceOfTheGroundTruth) {
+    ASSERT_EQ(runFrames(slidingRecording(5)).exit_code, 0);
+    const std::string truth = output() + "/trajectory_truth.txt", before = readFile(truth);
+    expectError(run(folder_ / "recording", {"--ground-truth", truth}), 2, kName, {truth, "--output"});
+    EXPECT_EQ(readFile(truth), before);
 }
 
 TEST_F(OdometryProgram, ErrorsOfAFewPosesAreSaidToBeSuch) {

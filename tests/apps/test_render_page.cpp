@@ -150,12 +150,12 @@ TEST_F(RenderPage, TakesTrajectoriesOfOtherFormatsAndNames) {
 }
 
 TEST_F(RenderPage, TakesTheGroundTruthOfTheRunOrGoesWithout) {
-    writeTumTrajectory(result() + "/ground_truth.txt", test::circle(1.1));
+    writeTumTrajectory(result() + "/trajectory_truth.txt", test::circle(1.1));
     ASSERT_EQ(render().exit_code, 0);
     EXPECT_EQ(data()["paths"].size(), 3u);
     EXPECT_NEAR(data()["paths"][0]["ate"].get<double>(), 0.1, 1e-6);
 
-    fs::remove(result() + "/ground_truth.txt");
+    fs::remove(result() + "/trajectory_truth.txt");
     writeTumTrajectory(folder_ / "other.txt", test::moved(test::kElsewhere, test::circle(1.25)));
     const auto run = render({"--trajectory", "other=" + (folder_ / "other.txt")});
     ASSERT_EQ(run.exit_code, 0) << run.all();

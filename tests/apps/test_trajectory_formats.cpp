@@ -81,14 +81,25 @@ class TrajectoryFormats : public ::testing::Test {
 TEST_F(TrajectoryFormats, StampsOfThisCenturyTellTheirUnit) {
     for (const double unit : {1e3, 1e6, 1e9}) {
         auto poses = helix();
+        const std::string rows = file("kitti.txt", kitti(poses));
         for (StampedPose& pose : poses) pose.timestamp *= unit;
         writeTumTrajectory(folder_ / "other.txt", poses);
         expectSame(readTrajectory(folder_ / "other.txt"), helix());
         EXPECT_EQ(readTumTrajectory(folder_ / "other.txt").front().timestamp, kStart * unit)
             << "who asks for TUM's format gets what the file has";
+        for (const std::vector<std::string>& more : {std::vector<std::string>{rows},
+                                                     {rows, "--times", folder_ / "other.txt"},
+                                                     {folder_ / "other.txt", "--format", "tum"}}) {
+            const auto run = eval(folder_ / "other.txt", more);
+            EXPECT_EQ(run.exit_code, 0) << run.all();
+        }
     }
     writeTumTrajectory(folder_ / "other.txt", {{1e6, Pose::Identity()}});
     EXPECT_EQ(readTrajectory(folder_ / "other.txt").front().timestamp, 1e6) << "s, or ms since the start";
+    auto since_boot = helix();  // ns, for 20 minutes: as many as ms since 2008
+    for (StampedPose& pose : since_boot) pose.timestamp = 1e9 * (pose.timestamp - kStart + 1200);
+    writeTumTrajectory(folder_ / "other.txt", since_boot);
+    EXPECT_EQ(readTrajectory(folder_ / "other.txt").front().timestamp, since_boot.front().timestamp);
 }
 
 TEST_F(TrajectoryFormats, AreRecognisedByTheirContent) {

@@ -110,6 +110,27 @@ TEST(Icl, WithoutMotionThePublishedHandednessIsAssumedAndThatIsSaid) {
     EXPECT_CONTAINS(truth.note, "assumed as published");
 }
 
+TEST(Icl, WithoutMotionOnlyThePublishedNumbersAreTakenForLeftHanded) {
+    const SmallDataset folder("icl");
+    const test::TemporaryFolder elsewhere;
+    const std::vector<StampedPose> found = openDataset(folder.path()).groundTruth().poses;
+    std::vector<StampedPose> right = found;
+    right[1].T_world_camera.translation().y() = 0.2;
+    DatasetOptions options;
+    options.ground_truth = elsewhere / "truth.txt";
+    for (const double unit : {1.0, 1e3}) {
+        auto written = right;
+        for (StampedPose& pose : written) pose.timestamp *= unit;
+        writeTumTrajectory(options.ground_truth, written);
+        const GroundTruth truth = openDataset(folder.path(), options).groundTruth();
+        EXPECT_CONTAINS(truth.note, "right-handed, taken as it is");
+        EXPECT_CONTAINS(truth.note, "not the published numbers");
+        ASSERT_EQ(truth.poses.size(), right.size());
+        EXPECT_NEAR(truth.poses[1].T_world_camera.translation().y(), 0.2, 1e-9);
+        EXPECT_NEAR(truth.poses[1].timestamp, right[1].timestamp, 1e-6);
+    }
+}
+
 TEST(Icl, MirroringTwiceIsNothing) {
     StampedPose pose;
     pose.T_world_camera =

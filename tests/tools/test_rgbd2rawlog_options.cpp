@@ -188,6 +188,23 @@ TEST(Rgbd2rawlogOptions, AnOlderGroundTruthOfSomethingElseIsPointedOut) {
     EXPECT_CONTAINS(outcome.err, "o_groundtruth.txt");
 }
 
+TEST(Rgbd2rawlogOptions, AGroundTruthThatIsNamedGoesWithTheRawlogAndIsNotWrittenOver) {
+    const SmallTumFolder input;
+    const test::TemporaryFolder output;
+    const std::string truth = "# of the other camera\n100 1 2 3 0 0 0 1\n101 1 2 3 0 0 0 1\n";
+    test::writeFile(output / "truth.txt", truth);
+    const ProgramResult outcome =
+        convert(input.path(), output / "o.rawlog", {"--ground-truth", output / "truth.txt"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.all();
+    EXPECT_CONTAINS(test::readFile(output / "o_groundtruth.txt"),
+                    " 1.000000000000 2.000000000000 3.000000000000 ");
+
+    test::writeFile(output / "o_groundtruth.txt", truth);
+    expectError(convert(input.path(), output / "o.rawlog", {"--ground-truth", output / "o_groundtruth.txt"}),
+                2, "rgbd2rawlog", {"o_groundtruth.txt"});
+    EXPECT_EQ(test::readFile(output / "o_groundtruth.txt"), truth);
+}
+
 /// Lists the same few images so often that there is much to do.
 void repeatFrames(const SmallTumFolder& folder, int count) {
     std::string rgb, depth;

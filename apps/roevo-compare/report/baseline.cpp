@@ -16,16 +16,18 @@ constexpr double kSigmas = 3, kMinChange = 1.05;
 constexpr double kMadToSigma = 1.4826;  // of a normal distribution
 constexpr double kQuantile95 = 1.96;
 
-using Errors = std::map<std::string, std::optional<double>>;  // by recording and its part, cm
+struct PartError {
+    std::optional<double> error;  // cm
+    std::string part;             // empty where there is no error: it may not be known
+};
+using Errors = std::map<std::string, PartError>;  // by recording
 
 Errors errorsOf(const std::vector<SequenceResults>& results, const std::string& method) {
     Errors errors;
     for (const SequenceResults& result : results)
-        if (const auto run = findRun(*result.sequence, method)) {
-            const std::string& part = result.sequence->part;
-            errors[result.sequence->name + (part.empty() ? "" : ", " + part)] =
-                metricOf(shownMetrics().front(), result, *run);
-        }
+        if (const auto run = findRun(*result.sequence, method))
+            errors[result.sequence->name] = {metricOf(shownMetrics().front(), result, *run),
+                                             result.sequence->part};
     return errors;
 }
 
@@ -83,15 +85,18 @@ std::vector<MethodChange> changesSince(const std::vector<SequenceResults>& befor
         MethodChange change;
         change.method = method;
         std::size_t common = 0;
-        for (const auto& [sequence, error] : errorsOf(now, method.name)) {
-            const auto old_error = old_errors.find(sequence);
-            if (old_error == old_errors.end()) continue;
+        for (const auto& [sequence, of_now] : errorsOf(now, method.name)) {
+            const auto found = old_errors.find(sequence);
+            if (found == old_errors.end()) continue;
+            const auto& [error, part] = of_now;
+            const auto& [old_error, old_part] = found->second;
+            if (error && old_error && part != old_part) continue;
             ++common;
-            if (error && old_error->second && *error > 0 && *old_error->second > 0)
-                change.pairs.push_back({sequence, *old_error->second, *error});
-            else if (old_error->second && !error)
+            if (error && old_error && *error > 0 && *old_error > 0)
+                change.pairs.push_back({sequence, *old_error, *error});
+            else if (old_error && !error)
                 change.lost.push_back(sequence);
-            else if (error && !old_error->second)
+            else if (error && !old_error)
                 change.gained.push_back(sequence);
         }
         judge(change);
