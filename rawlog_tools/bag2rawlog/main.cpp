@@ -38,6 +38,9 @@ int run(int argc, char** argv) {
     app.add_option("--output", settings.output, "Rawlog to write; images go to <stem>_Images beside it");
     app.add_flag("--list", list,
                  "List the topics with number of messages, type, encoding and frame, and end");
+    app.add_option("--ground-truth", settings.dataset.ground_truth,
+                   "Trajectory to go with the rawlog, TUM or EuRoC")
+        ->type_name("FILE");
     addTopicOptions(app, settings.dataset.topics);
     app.add_option("--max-dt", settings.dataset.max_time_difference,
                    "Largest time between a colour and its depth image, s")

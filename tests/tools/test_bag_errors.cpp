@@ -294,5 +294,21 @@ TEST_F(Bag2RawlogErrors, AnOlderGroundTruthOfSomethingElseIsPointedOut) {
         << result_.err;
 }
 
+TEST_F(Bag2RawlogErrors, AGroundTruthGoesWithTheRawlogAndIsNotWrittenOver) {
+    write([](BagWriter& bag) { bag.frames(1); });
+    const std::string text = "# mine\n100 1 2 3 0 0 0 1\n", truth = folder_ / "out_groundtruth.txt";
+    writeFile(folder_ / "mine.txt", text);
+    const std::vector<std::string> both{"--input", bagPath(), "--output", folder_ / "out.rawlog"};
+    auto named = both;
+    named.insert(named.end(), {"--ground-truth", folder_ / "mine.txt"});
+    ASSERT_EQ(runProgram(kName, named).exit_code, 0);
+    EXPECT_NE(test::readFile(truth).find(" 1.000000000000 2.000000000000 3.000000000000 "),
+              std::string::npos);
+    writeFile(truth, text);
+    named.back() = truth;
+    expectError(runProgram(kName, named), 2, kName, {truth});
+    EXPECT_EQ(test::readFile(truth), text);
+}
+
 }  // namespace
 }  // namespace roevo
