@@ -200,13 +200,10 @@ void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,
                               const std::string& file) const {
     if (image.cols == camera.width && image.rows == camera.height) return;
     const bool is_depth = image.depth() != CV_8U && !description_.registration && !description_.images;
-    const auto text = [](int width, int height) {
-        return std::to_string(width) + "x" + std::to_string(height);
-    };
     // The file last, so that reasons alike are counted together
     throw std::runtime_error(
-        "an image of " + text(image.cols, image.rows) + ", but the camera is " +
-        text(camera.width, camera.height) +
+        "an image of " + sizeText(image.size()) + ", but the camera is " +
+        sizeText({camera.width, camera.height}) +
         (is_depth ? " (if colour images have that size, too, camera.txt has the wrong one; a depth camera of "
                     "its own belongs into camera.txt: depth_width, …): "
                   : " (are the intrinsics those of another image size?): ") +

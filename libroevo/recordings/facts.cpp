@@ -7,12 +7,16 @@
 
 namespace roevo {
 
+std::string sizeText(const cv::Size& size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
 std::string factsText(std::size_t pairs, const PinholeCamera& camera, const cv::Size& depth, double step,
                       double median_depth) {
     std::string text = pairs > 0 ? counted(pairs, "pair") + " of " : "pairs of ";
-    text += std::to_string(camera.width) + "x" + std::to_string(camera.height);
-    if (depth != cv::Size(camera.width, camera.height))
-        text += " (depth " + std::to_string(depth.width) + "x" + std::to_string(depth.height) + ")";
+    const cv::Size colour(camera.width, camera.height);
+    text += sizeText(colour);
+    if (depth != colour) text += " (depth " + sizeText(depth) + ")";
     char numbers[120];
     std::snprintf(numbers, sizeof numbers, ", fx %g fy %g cx %g cy %g", camera.fx, camera.fy, camera.cx,
                   camera.cy);

@@ -7,6 +7,9 @@
 
 namespace roevo {
 
+/// "640x480".
+std::string sizeText(const cv::Size& size);
+
 /// What makes a wrong scale, rate or camera seen although all can be read, in one line: "60 pairs of 640x480
 /// (depth 320x288), fx 613 fy 613 cx 320 cy 240, 30.0 Hz, no lens distortion, median depth 1.9 m".
 /// @param pairs  0: not known. @param step  s, from one frame to the next; 0: not known

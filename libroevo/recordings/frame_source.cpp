@@ -16,6 +16,7 @@
 #include "recordings/facts.h"
 #include "recordings/masked.h"
 #include "recordings/sensor_files.h"
+#include "recordings/time_units.h"
 #include "roevo_mrpt/observation_converter.h"
 #include "roevo_mrpt/rawlog_reader.h"
 #include "roevo_mrpt/rawlog_writer.h"

@@ -6,15 +6,12 @@
 #include <vector>
 
 #include "programs/text.h"
+#include "recordings/facts.h"
 #include "recordings/forwarding_source.h"
 #include "roevo_mrpt/image_conversions.h"
 
 namespace roevo {
 namespace {
-
-std::string sizeText(const cv::Size& size) {
-    return std::to_string(size.width) + "x" + std::to_string(size.height);
-}
 
 cv::Mat readMask(const std::string& file, const PinholeCamera& camera) {
     cv::Mat mask = toGrey(readColourFile(file));

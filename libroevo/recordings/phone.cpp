@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "recordings/facts.h"
 #include "recordings/given_camera.h"
 #include "recordings/image_lists.h"
 #include "recordings/image_sizes.h"
@@ -52,9 +53,8 @@ void setPhoneCamera(const CameraDescription& camera, DatasetDescription& out) {
                  y = static_cast<double>(size.height) / out.camera.height;
     if (!(std::abs(x / y - 1) < 0.02))
         throw std::runtime_error(
-            out.frames.front().depth + " is " + std::to_string(size.width) + "x" +
-            std::to_string(size.height) + ", and colour " + std::to_string(out.camera.width) + "x" +
-            std::to_string(out.camera.height) +
+            out.frames.front().depth + " is " + sizeText(size) + ", and colour " +
+            sizeText({out.camera.width, out.camera.height}) +
             ": not the same view; is colour of another size than the camera's file says?");
     DepthRegistration registration;
     const PinholeCamera& c = out.camera;

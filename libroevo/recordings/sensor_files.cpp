@@ -7,7 +7,6 @@
 #include "evaluation/trajectory_io.h"
 #include "programs/text.h"
 #include "recordings/text_list.h"
-#include "roevo_mrpt/time_conversions.h"
 
 namespace fs = std::filesystem;
 
@@ -92,16 +91,6 @@ GroundTruth readGroundTruth(const std::string& file) {
         truth.note = std::string("not usable: ") + error.what();
     }
     return truth;
-}
-
-std::string toSeconds(GroundTruth& truth) {
-    if (truth.poses.empty()) return {};
-    const double unit =
-        unitOfThisCentury(truth.poses.front().timestamp, truth.poses.back().timestamp, truth.poses.size());
-    if (unit == 1) return {};
-    for (StampedPose& pose : truth.poses) pose.timestamp = roundToMicroseconds(pose.timestamp / unit);
-    truth.copyable = false;
-    return unit == 1e3 ? "ms" : unit == 1e6 ? "us" : "ns";
 }
 
 GroundTruth readNamedGroundTruth(const std::string& file) {

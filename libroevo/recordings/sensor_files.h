@@ -12,10 +12,6 @@ namespace roevo {
 /// it cannot be used.
 GroundTruth readGroundTruth(const std::string& file);
 
-/// Stamps that can only be ms, us or ns of this century become s, and `copyable` ends.
-/// @return the unit: "ms", "us" or "ns"; empty: s, or not told
-std::string toSeconds(GroundTruth& truth);
-
 /// One that was asked for: a trajectory of any format. @throws std::runtime_error where it is no good
 GroundTruth readNamedGroundTruth(const std::string& file);
 

@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "evaluation/association.h"
+#include "evaluation/trajectory_io.h"
 #include "recordings/image_lists.h"
-#include "recordings/sensor_files.h"
 #include "roevo_mrpt/time_conversions.h"
 
 namespace roevo {
@@ -69,6 +69,16 @@ double unitOfStamps(std::vector<double> stamps) {
     double unit = 1;
     while (last / unit > kYear2100 || step / unit > kLongestStep) unit *= 1000;
     return unit;
+}
+
+std::string toSeconds(GroundTruth& truth) {
+    if (truth.poses.empty()) return {};
+    const double unit =
+        unitOfThisCentury(truth.poses.front().timestamp, truth.poses.back().timestamp, truth.poses.size());
+    if (unit == 1) return {};
+    divideTimes(truth.poses, &StampedPose::timestamp, unit);
+    truth.copyable = false;
+    return unitName(unit);
 }
 
 void settleClock(DatasetDescription& dataset) {

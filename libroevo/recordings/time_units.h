@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <vector>
 
 #include "recordings/dataset_reader.h"
@@ -9,6 +10,10 @@ namespace roevo {
 /// year 2100 (since 1970) and frames follow each other within 10 s.
 /// @param stamps  of the images of a recording, in any order
 double unitOfStamps(std::vector<double> stamps);
+
+/// Stamps that can only be ms, us or ns of this century become s, and `copyable` ends.
+/// @return the unit: "ms", "us" or "ns"; empty: s, or not told
+std::string toSeconds(GroundTruth& truth);
 
 /// Where the ground truth's times have nothing in common with the images', and are in another unit of the
 /// same clock: brings both to seconds, and says so. Times that have nothing in common at all are said, too.
