@@ -152,6 +152,7 @@ int run(int argc, char** argv) {
                    "canny, depth-weight, ablation, repeatability, efficiency or all; loop, sigmas, "
                    "distribution, gaps, growth; one or more, see below")
         ->required()
+        ->delimiter(',')
         ->check(faultOfName, "");
     app.add_option("--input", settings.paths, "Recordings: .rawlog files, ROS bags or dataset folders")
         ->required();

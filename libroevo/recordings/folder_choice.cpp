@@ -56,6 +56,7 @@ void addFolderOptions(CLI::App& app, FolderChoice& choice) {
     app.add_option(kDistortion, choice.distortion,
                    "With --intrinsics: lens k1 k2 p1 p2 [k3 [k4 k5 k6]] as OpenCV has it")
         ->expected(4, 8)
+        ->option_text("FLOAT x 4, 5 or 8")
         ->delimiter(',');
     app.add_option(kFisheye, choice.fisheye, "With --intrinsics: fish-eye lens k1 k2 k3 k4 (Kannala-Brandt)")
         ->expected(4)

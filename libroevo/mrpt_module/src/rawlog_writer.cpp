@@ -115,8 +115,7 @@ struct RawlogWriter::Impl {
     }
 
     void append(const mrpt::serialization::CSerializable& object) {
-        if (!stream.write(object))
-            throw std::runtime_error("cannot write " + temporary_path.string() + ": disk full?");
+        if (!stream.write(object)) throw std::runtime_error("cannot write " + path.string() + ": disk full?");
     }
 
     void checkDepth(const cv::Mat& depth_u16) const {
@@ -163,10 +162,10 @@ RawlogWriter::RawlogWriter(const std::string& path, const PinholeCamera& camera,
     fs::remove_all(m.temporary, error);  // of a run that was killed
     fs::create_directory(m.temporary, error);
     if (!error) fs::create_directory(m.temporary_images, error);
-    if (error) throw std::runtime_error("cannot create " + m.temporary.string() + ": " + error.message());
+    if (error) throw std::runtime_error("cannot write " + m.path.string() + ": " + error.message());
     if (!m.stream.open(m.temporary_path, options.gz_level)) {
         fs::remove_all(m.temporary, error);
-        throw std::runtime_error("cannot write " + m.temporary_path.string());
+        throw std::runtime_error("cannot write " + m.path.string());
     }
 }
 
@@ -234,8 +233,7 @@ void RawlogWriter::close() {
     Impl& m = *impl_;
     if (m.closed) return;
     m.closed = true;
-    if (!m.stream.close())
-        throw std::runtime_error("cannot write " + m.temporary_path.string() + ": disk full?");
+    if (!m.stream.close()) throw std::runtime_error("cannot write " + m.path.string() + ": disk full?");
 }
 
 void RawlogWriter::finish() {
