@@ -19,25 +19,33 @@ roevo_test(test_core_mapping
           core/test_local_mapper.cpp core/test_packed_keyframe.cpp core/test_pose_graph.cpp
           core/test_window_posterior.cpp core/test_refine_all.cpp
   LIBS roevo_internal Ceres::ceres)
-add_executable(test_core_odometry core/test_trajectory.cpp core/test_trajectory_joins.cpp core/test_motion_smoother.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp core/test_odometry_accuracy.cpp core/test_odometry_status.cpp core/test_frame_depth.cpp core/test_masks.cpp core/test_prepared_frames.cpp
-               core/test_odometry_covariance.cpp core/test_odometry_semi_dense.cpp core/test_tracker_overrides.cpp)
-target_link_libraries(test_core_odometry PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-roevo_suites(test_core_odometry Trajectory KeyframeChanges FineTracking OdometryAccuracy OdometryStatus FrameDepth Masks PreparedFrames OdometryCovariance OdometrySemiDense TrackerOverrides)
-add_executable(test_core_mapped_runs core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp
-               core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp core/test_relocalisation.cpp core/test_loop_closing.cpp
-               core/test_kidnapping.cpp)
-target_link_libraries(test_core_mapped_runs PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-roevo_suites(test_core_mapped_runs OdometryMapping MappingBadInput MappingGauge MappingReuse LearnedReadout Relocalisation LoopClosing Kidnapping)
-add_executable(test_core_map_file core/test_map_file.cpp)
-target_link_libraries(test_core_map_file PRIVATE roevo_internal roevo_simulator roevo_evaluation GTest::gtest_main roevo_build_flags)
-roevo_suites(test_core_map_file MapFile MapFileErrors)
+roevo_test(test_core_odometry
+  SOURCES core/test_trajectory.cpp core/test_trajectory_joins.cpp core/test_motion_smoother.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp
+          core/test_odometry_accuracy.cpp core/test_odometry_status.cpp core/test_frame_depth.cpp core/test_masks.cpp core/test_prepared_frames.cpp
+          core/test_odometry_covariance.cpp core/test_odometry_semi_dense.cpp core/test_tracker_overrides.cpp
+  LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
+roevo_test(test_core_mapped_runs
+  SOURCES core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp
+          core/test_relocalisation.cpp core/test_loop_closing.cpp core/test_kidnapping.cpp
+  LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
+roevo_test(test_core_map_file SOURCES core/test_map_file.cpp LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
+# In four entries, since they take long
+add_executable(test_option_extremes core/test_option_extremes.cpp support/main.cpp)
+target_link_libraries(test_option_extremes PRIVATE roevo_internal roevo_datasets roevo_evaluation GTest::gtest roevo_build_flags)
+target_compile_definitions(test_option_extremes PRIVATE ROEVO_DATA_DIR="${ROEVO_DATA_DIR}")
+target_include_directories(test_option_extremes PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
+foreach(shard RANGE 3)
+  add_test(NAME OptionExtremes.${shard} COMMAND test_option_extremes)
+  set_tests_properties(OptionExtremes.${shard} PROPERTIES TIMEOUT ${ROEVO_TEST_TIMEOUT} SKIP_RETURN_CODE 77
+                       ENVIRONMENT "GTEST_TOTAL_SHARDS=4;GTEST_SHARD_INDEX=${shard}")
+endforeach()
 roevo_test(test_core_sequences
-  SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp core/test_wide_baseline.cpp core/test_shadow_edges.cpp core/test_option_extremes.cpp
-  LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets)
+  SOURCES core/test_simulated_sequences.cpp core/test_real_clips.cpp core/test_wide_baseline.cpp core/test_shadow_edges.cpp
+  LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets SUITES)
 roevo_test(test_core_place
   SOURCES core/test_place_describer.cpp core/test_place_matches.cpp core/test_place_index.cpp core/test_place_verifier.cpp
           core/test_place_registration.cpp core/test_place_clips.cpp
-  LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets)
+  LIBS roevo_internal roevo_simulator roevo_evaluation roevo_datasets SUITES)
 foreach(program camera edges tracking place mapping odometry mapped_runs map_file sequences)
   target_include_directories(test_core_${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_include_directories(test_core_${program} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})

@@ -7,7 +7,7 @@ target_link_libraries(roevo_fuzz_targets PUBLIC roevo_internal roevo_datasets ro
                       PRIVATE roevo_build_flags)
 target_include_directories(roevo_fuzz_targets PUBLIC ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PUBLIC ${OpenCV_INCLUDE_DIRS})
 target_compile_definitions(roevo_fuzz_targets PRIVATE ROEVO_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
-roevo_test(test_fuzz SOURCES fuzz/test_fuzz.cpp LIBS roevo_fuzz_targets)
+roevo_test(test_fuzz SOURCES fuzz/test_fuzz.cpp LIBS roevo_fuzz_targets SUITES)
 
 if(ROEVO_FUZZ)
   add_executable(fuzz_seeds fuzz/write_seeds.cpp)

@@ -49,7 +49,7 @@ class Batch : public testing::Test {
     }
     std::size_t rows() const {
         std::size_t count = 0;
-        for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"})
+        for (const char* name : {"a", "b", "c", "d", "e"})
             count += fs::exists(runFolder(name, "roevo-tr") + "/run.json");
         return count;
     }
@@ -175,8 +175,8 @@ TEST_F(Batch, AMissingProgramIsAReasonAndMadeLater) {
 }
 
 TEST_F(Batch, KilledItGoesOn) {
-    const std::vector<std::string> names{"a", "b", "c", "d", "e", "f", "g", "h"};
-    for (const std::string& name : names) clip(name, name < "c" ? 30 : 90);
+    const std::vector<std::string> names{"a", "b", "c", "d", "e"};
+    for (const std::string& name : names) clip(name, 30);
     const std::vector<std::string> all{"--input",   data(),     "--output", out(),
                                        "--methods", "roevo-tr", "--jobs",   "1"};
     for (const int signal : {SIGKILL, SIGINT}) {
@@ -213,7 +213,7 @@ TEST_F(Batch, KilledItGoesOn) {
     ASSERT_EQ(result.exit_code, 0) << result.all();
     EXPECT_EQ(rows(), names.size());
     for (const std::string& name : names)
-        EXPECT_EQ(row(name, "roevo-tr").trajectory.size(), name < "c" ? 30u : 90u)
+        EXPECT_EQ(row(name, "roevo-tr").trajectory.size(), 30u)
             << readFile(runFolder(name, "roevo-tr") + "/run.json");
 }
 

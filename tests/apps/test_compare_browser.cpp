@@ -16,7 +16,7 @@ const std::string kLongName = "x<y_with_a_name_that_is_as_long_as_names_may_be_a
 
 class CompareReportFiles : public test::CompareProgram {
   protected:
-    void SetUp() override {
+    void compare() const {
         const std::string input = clip("a clip", 32);
         fs::copy_file(input + "/groundtruth.txt", folder / "given.txt");
         const auto result = run({input}, {"--methods", "roevo-ba,roevo-tr", "--trajectory",
@@ -26,6 +26,7 @@ class CompareReportFiles : public test::CompareProgram {
 };
 
 TEST_F(CompareReportFiles, ViewAndFiguresLieBesideIt) {
+    compare();
     const std::string html = test::readFile(output() + "/report.html");
     EXPECT_NE(html.find("href=\"views/a_clip.html\""), std::string::npos);
     const json view = test::dataOf(test::readFile(output() + "/views/a_clip.html"));
@@ -63,6 +64,7 @@ TEST_F(CompareReportFiles, ViewAndFiguresLieBesideIt) {
 
 TEST_F(CompareReportFiles, FitsEveryScreen) {
     if (findProgram("chromium").empty()) GTEST_SKIP() << "no chromium here (apt-get install chromium)";
+    compare();
     const std::string user = test::readFile(ROEVO_SOURCE_DIR "/tests/apps/report_user.js");
     test::writeFile(
         folder / "screens.html",

@@ -96,7 +96,7 @@ TEST_F(Compare, AModeInTheConfigIsSaidToHaveNoEffect) {
     writeFile(folder / "ba.ini", "[odometry]\nmode = ba\n");
     const auto with = [&](const std::string& config, const std::string& method,
                           const std::vector<std::string>& more = {}) {
-        std::vector<std::string> all{"--methods", method, "--config", folder / config};
+        std::vector<std::string> all{"--methods", method, "--config", folder / config, "--rows-only"};
         all.insert(all.end(), more.begin(), more.end());
         const auto result = run({input}, all);
         EXPECT_EQ(result.exit_code, 0) << result.all();
@@ -144,7 +144,7 @@ TEST_F(Compare, RawlogsAreRecordingsToo) {
     const auto converted =
         test::runProgram("rgbd2rawlog", {"--input", input, "--output", folder / "my.rawlog"});
     ASSERT_EQ(converted.exit_code, 0) << converted.all();
-    const auto result = run({folder / "my.rawlog", input}, {"--methods", "roevo-tr"});
+    const auto result = run({folder / "my.rawlog", input}, {"--methods", "roevo-tr", "--rows-only"});
     ASSERT_EQ(result.exit_code, 0) << result.all();
     EXPECT_EQ(readFile(runFolder("my", "roevo-tr") + "/trajectory.txt"),
               readFile(runFolder("clip", "roevo-tr") + "/trajectory.txt"));
@@ -155,7 +155,7 @@ TEST_F(Compare, RawlogsAreRecordingsToo) {
 TEST_F(Compare, UnreadableFramesAreForNoMethod) {
     const std::string input = clip("clip", 6);
     writeFile(input + "/rgb/0002.png", "no image");
-    ASSERT_EQ(run({input}, {"--methods", "roevo-ct,roevo-tr"}).exit_code, 0);
+    ASSERT_EQ(run({input}, {"--methods", "roevo-ct,roevo-tr", "--rows-only"}).exit_code, 0);
     for (const char* method : {"roevo-ct", "roevo-tr"}) {
         EXPECT_EQ(kept("clip", method).frames, 6u);
         EXPECT_EQ(kept("clip", method).rejected, 1u);

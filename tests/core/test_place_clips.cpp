@@ -40,17 +40,17 @@ class PlaceClips : public ::testing::Test {
   protected:
     static constexpr const char* kNames[] = {"tum_fr3_cabinet_loop_58", "tum_fr1_xyz_150",
                                              "tum_fr3_structure_notexture_far_80", "icl_office_kt0_50"};
-    void SetUp() override {
-        for (const char* name : kNames) {
-            const std::string folder = test::dataFolder() + "/" + name;
-            if (!std::filesystem::exists(folder))
-                GTEST_SKIP() << folder << " is not there; set ROEVO_DATA_DIR to the folder with the clips";
-        }
+    static void SetUpTestSuite() {
         int id = 0;
         for (const char* name : kNames) {
+            if (!std::filesystem::exists(test::dataFolder() + "/" + name)) return;
             clips_.push_back(placesOf(name, clips_.empty() ? 1 : 10, id));
             for (const auto& view : clips_.back().views) index_.insert(id++, view->points);
         }
+    }
+    void SetUp() override {
+        if (clips_.size() < std::size(kNames))
+            GTEST_SKIP() << test::dataFolder() << " has not all clips; set ROEVO_DATA_DIR to their folder";
     }
     struct Found {
         int id = -1;  ///< -1: none is sure
@@ -87,8 +87,8 @@ class PlaceClips : public ::testing::Test {
         return best;
     }
 
-    std::vector<PlaceClip> clips_;
-    PlaceIndex index_;
+    inline static std::vector<PlaceClip> clips_;
+    inline static PlaceIndex index_;
     PlaceVerifier verifier_{SensorOptions()};
 };
 

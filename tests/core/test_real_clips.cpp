@@ -5,17 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/support/real_clip.h"
 #include "core/support/sparse_depth.h"
 #include "evaluation/evaluate.h"
-#include "evaluation/trajectory_io.h"
-#include "recordings/dataset_reader.h"
 #include "roevo/odometry.h"
-#include "support/data_folder.h"
 
 namespace roevo {
 namespace {
@@ -32,26 +29,26 @@ std::ostream& operator<<(std::ostream& out, const Clip& clip) {
 class RealClip : public ::testing::TestWithParam<Clip> {
   protected:
     void SetUp() override {
-        if (!std::filesystem::exists(folder())) {
-            GTEST_SKIP() << folder() << " is not there; set ROEVO_DATA_DIR to the folder with the clips";
-        }
+        if (!clip_)
+            GTEST_SKIP() << "no clip " << GetParam().name
+                         << "; set ROEVO_DATA_DIR to the folder with the clips";
     }
-    static std::string folder() { return test::dataFolder() + "/" + GetParam().name; }
 
     /// ATE RMSE, m; every frame must be tracked.
-    static double ate(Mode mode) {
-        const DatasetReader reader = openDataset(folder());
+    double ate(Mode mode) {
         OdometryOptions options;
         options.mode = mode;
-        Odometry odometry(reader.camera(), options);
-        for (std::size_t i = 0; i < reader.size(); ++i) {
-            const FrameResult result = odometry.processFrame(reader.readFrame(i));
+        Odometry odometry(clip_->camera, options);
+        for (std::size_t i = 0; i < clip_->frames.size(); ++i) {
+            const FrameResult result = odometry.processFrame(clip_->frames[i]);
             EXPECT_EQ(result.status, i == 0 ? FrameStatus::kInitialised : FrameStatus::kOk)
                 << "frame " << i << ": " << result.reason;
         }
-        return evaluate(readTumTrajectory(reader.groundTruthPath()), odometry.trajectory())
-            .ate.translation.rmse;
+        return evaluate(clip_->truth, odometry.trajectory()).ate.translation.rmse;
     }
+
+  private:
+    std::optional<testing::RealFrames> clip_ = testing::realClip(GetParam().name, 150);
 };
 
 TEST_P(RealClip, IsTrackedAsWellAsPromised) {
@@ -171,14 +168,13 @@ TEST_P(TwoRecordings, OfADeskAreOneMap) {
         std::unique_ptr<Odometry> odometry;
         std::vector<StampedPose> truth;
         for (const char* name : {"tum_fr1_xyz_150", "tum_fr1_rpy_100"}) {
-            const std::string folder = test::dataFolder() + "/" + name;
-            if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
-            const DatasetReader reader = openDataset(folder);
-            for (const StampedPose& pose : readTumTrajectory(reader.groundTruthPath())) truth.push_back(pose);
+            const auto clip = testing::realClip(name, 150);
+            if (!clip) GTEST_SKIP() << "no clip " << name;
+            truth.insert(truth.end(), clip->truth.begin(), clip->truth.end());
             const std::size_t from = odometry ? start : 0;
-            if (!odometry) odometry = std::make_unique<Odometry>(reader.camera(), options);
-            for (std::size_t i = from; i < reader.size(); ++i)
-                (void)odometry->processFrame(reader.readFrame(i));
+            if (!odometry) odometry = std::make_unique<Odometry>(clip->camera, options);
+            for (std::size_t i = from; i < clip->frames.size(); ++i)
+                (void)odometry->processFrame(clip->frames[i]);
         }
         ates.push_back(evaluate(truth, odometry->trajectory()).ate.translation.rmse);
     }

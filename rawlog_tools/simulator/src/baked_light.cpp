@@ -14,6 +14,7 @@ namespace {
 constexpr int kMostPoints = 600;  // per row of a grid
 constexpr double kLift = 0.03;    // metres: rays start above thin things such as carpets and picture frames
 constexpr double kSurroundings = 0.9;  // metres: what is farther away does not darken
+constexpr double kSlack = 1 + 1e-6;    // for rounding
 constexpr int kSkySamples = 32, kLampSamples = 12;
 constexpr double kGolden = 2.399963229728653;  // rad, golden angle: points of a spiral spread evenly
 
@@ -83,6 +84,7 @@ BakedLight::BakedLight(const Scene& scene, int threads) {
     const auto bake = [&](const Task& task) {
         const Primitive& primitive = scene.primitives[static_cast<size_t>(task.primitive)];
         const Grid& grid = grids_[static_cast<size_t>(task.primitive)][static_cast<size_t>(task.face)];
+        std::vector<Eigen::Vector3d> ways;
         for (int row = 0; row < grid.rows; ++row) {
             for (int col = 0; col < grid.columns; ++col) {
                 Eigen::Vector3d unit, unit_normal;
@@ -95,18 +97,19 @@ BakedLight::BakedLight(const Scene& scene, int threads) {
                 Shares& shares = values_[grid.first + static_cast<size_t>(row * grid.columns + col)];
                 shares.fill(0);
                 const Eigen::Matrix3d frame = frameAround(normal);
-                int open = 0;
+                ways.clear();
                 for (const Eigen::Vector3d& direction : sky)
-                    open += !occlusion.blocked(point, frame * direction * kSurroundings);
+                    ways.push_back(frame * direction * kSurroundings);
+                const int open = occlusion.open(point, ways, Eigen::Vector3d::Zero(), kSlack * kSurroundings);
                 shares[0] = 0.25f + 0.75f * static_cast<float>(open) / kSkySamples;
                 for (size_t lamp = 0; lamp < lamps.size(); ++lamp) {
-                    if (normal.dot(lamps[lamp]->position - point) < -lamps[lamp]->radius) continue;
-                    int seen = 0;
-                    for (const Eigen::Vector3d& offset : ball) {
-                        const Eigen::Vector3d way =
-                            lamps[lamp]->position + double(lamps[lamp]->radius) * offset - point;
-                        seen += !occlusion.blocked(point, way);
-                    }
+                    const Eigen::Vector3d& position = lamps[lamp]->position;
+                    const double radius = lamps[lamp]->radius;
+                    if (normal.dot(position - point) < -radius) continue;
+                    ways.clear();
+                    for (const Eigen::Vector3d& offset : ball)
+                        ways.push_back(position + radius * offset - point);
+                    const int seen = occlusion.open(point, ways, position - point, kSlack * radius);
                     shares[1 + lamp] = static_cast<float>(seen) / kLampSamples;
                 }
             }

@@ -67,17 +67,18 @@ int Occlusion::build(int first, int count) {
     return index;
 }
 
-bool Occlusion::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& way) const {
-    if (nodes_.empty()) return false;
-    const Eigen::Vector3d inverse_way = way.cwiseInverse();
+std::vector<const Occlusion::Caster*> Occlusion::near(const Eigen::Vector3d& from,
+                                                      const Eigen::Vector3d& middle, double radius) const {
+    std::vector<const Caster*> found;
+    if (nodes_.empty()) return found;
+    const Eigen::Vector3d inverse_way = middle.cwiseInverse(), margin = Eigen::Vector3d::Constant(radius);
     std::array<int, 64> stack;
     size_t height = 0;
     stack[height++] = 0;
-    UnitHit hit;
     while (height > 0) {
         const int index = stack[--height];
         const Node& node = nodes_[static_cast<size_t>(index)];
-        if (!crossesBox(node.low, node.high, from, inverse_way)) continue;
+        if (!crossesBox(node.low - margin, node.high + margin, from, inverse_way)) continue;
         if (node.right >= 0) {
             stack[height++] = node.right;
             stack[height++] = index + 1;
@@ -85,12 +86,33 @@ bool Occlusion::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& way)
         }
         for (int i = node.first; i < node.first + node.count; ++i) {
             const Caster& caster = casters_[static_cast<size_t>(i)];
-            if (intersectUnit(caster.shape, caster.taper, caster.unit_from_world * (from - caster.centre),
-                              caster.unit_from_world * way, 1e-6, 1 - 1e-6, hit))
-                return true;
+            if (crossesBox(caster.low - margin, caster.high + margin, from, inverse_way))
+                found.push_back(&caster);
         }
     }
-    return false;
+    return found;
+}
+
+int Occlusion::open(const Eigen::Vector3d& from, const std::vector<Eigen::Vector3d>& ways,
+                    const Eigen::Vector3d& middle, double radius) const {
+    std::vector<const Caster*> casters = near(from, middle, radius);
+    int open = 0;
+    for (const Eigen::Vector3d& way : ways) {
+        const Eigen::Vector3d inverse_way = way.cwiseInverse();
+        const auto blocks = [&](const Caster* caster) {
+            UnitHit hit;
+            return crossesBox(caster->low, caster->high, from, inverse_way) &&
+                   intersectUnit(caster->shape, caster->taper,
+                                 caster->unit_from_world * (from - caster->centre),
+                                 caster->unit_from_world * way, 1e-6, 1 - 1e-6, hit);
+        };
+        const auto blocker = std::find_if(casters.begin(), casters.end(), blocks);
+        if (blocker == casters.end())
+            ++open;
+        else
+            std::iter_swap(blocker, casters.begin());  // it most likely blocks the next one, too
+    }
+    return open;
 }
 
 }  // namespace roevo::simulator

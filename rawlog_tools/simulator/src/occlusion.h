@@ -5,13 +5,15 @@
 
 namespace roevo::simulator {
 
-/// Tells whether a straight way is blocked by resting primitives that cast shadows: a tree of bounding boxes.
+/// Tells which straight ways are blocked by resting primitives that cast shadows: a tree of bounding boxes.
 class Occlusion {
   public:
     explicit Occlusion(const Scene& scene);
 
-    /// Whether anything lies between `from` and `from + way`, both ends excluded.
-    bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& way) const;
+    /// How many of these ways nothing blocks between `from` and `from + way`, both ends excluded.
+    /// @param ways  each within `radius` of `middle`
+    int open(const Eigen::Vector3d& from, const std::vector<Eigen::Vector3d>& ways,
+             const Eigen::Vector3d& middle, double radius) const;
 
   private:
     struct Caster {
@@ -26,6 +28,9 @@ class Occlusion {
         int right = -1;            ///< the left child follows its parent
     };
     int build(int first, int count);
+    /// What may block ways that end within this radius of the one from `from` to `from + middle`.
+    std::vector<const Caster*> near(const Eigen::Vector3d& from, const Eigen::Vector3d& middle,
+                                    double radius) const;
 
     std::vector<Caster> casters_;
     std::vector<Node> nodes_;

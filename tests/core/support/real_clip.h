@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
@@ -20,17 +21,19 @@ struct RealFrames {
     std::vector<StampedPose> truth;
 };
 
+/// Its images are decoded once and shared by all who ask for them: who changes one copies it.
 /// @param count  frames at most. @return nothing where there is no such clip
 inline std::optional<RealFrames> realClip(const std::string& name, std::size_t count) {
     const std::string folder = test::dataFolder() + "/" + name;
     if (!std::filesystem::exists(folder)) return std::nullopt;
+    static std::map<std::string, RealFrames> known;
     const DatasetReader reader = openDataset(folder);
-    RealFrames clip;
-    clip.camera = reader.camera();
-    clip.truth = readTumTrajectory(reader.groundTruthPath());
-    for (std::size_t i = 0; i < std::min(count, reader.size()); ++i)
-        clip.frames.push_back(reader.readFrame(i));
-    return clip;
+    RealFrames& whole = known[name];
+    while (whole.frames.size() < std::min(count, reader.size()))
+        whole.frames.push_back(reader.readFrame(whole.frames.size()));
+    const auto end = whole.frames.begin() + static_cast<std::ptrdiff_t>(std::min(count, whole.frames.size()));
+    return RealFrames{
+        reader.camera(), {whole.frames.begin(), end}, readTumTrajectory(reader.groundTruthPath())};
 }
 
 /// The same backwards in time.
