@@ -1,7 +1,6 @@
 // What changes a keyframe after it was made: the verdicts of the map, and another motion of its rows.
 #include <gtest/gtest.h>
 
-#include "odometry/pseudo_clusters.h"
 #include "tracking/keyframe.h"
 
 namespace roevo {
@@ -26,10 +25,10 @@ Keyframe keyframeOfTwoEdges() {
     return keyframe;
 }
 
-TEST(KeyframeChanges, OnlyTheNamedEdgesCountForLess) {
+TEST(KeyframeChanges, OnlyPseudoEdgesCountForLess) {
     const Keyframe before = keyframeOfTwoEdges();
     Keyframe keyframe = before;
-    keyframe.weaken({false, true}, 0.3);
+    keyframe.weaken({EdgeVerdict::kTrue, EdgeVerdict::kVanishing}, 0.3);
     for (std::size_t i = 0; i < before.edges.size(); ++i) {
         const float factor = i < 6 ? 1 : 0.3F;
         EXPECT_FLOAT_EQ(keyframe.edges.weight[i], before.edges.weight[i] * factor) << i;
@@ -38,38 +37,11 @@ TEST(KeyframeChanges, OnlyTheNamedEdgesCountForLess) {
     }
 }
 
-TEST(KeyframeChanges, AnEdgeCountsForLessOnceHoweverOftenItIsNamed) {
-    Keyframe once = keyframeOfTwoEdges(), often = once;
-    once.weaken({true, true}, 0.3);
-    often.weaken({false, true}, 0.3);
-    often.weaken({true, true}, 0.3);
-    often.weaken({false, false}, 0.3);
-    often.weaken({true, false}, 0.3);
-    EXPECT_EQ(often.edges.weight, once.edges.weight);
-    EXPECT_EQ(often.photometric.weight, once.photometric.weight);
-}
-
-TEST(PseudoClusters, VerdictsReachTheKeyframesAfterTheOneThatTheyAreOf) {
-    constexpr EdgeVerdict kTrue = EdgeVerdict::kTrue, kSpread = EdgeVerdict::kSpread,
-                          kVanishing = EdgeVerdict::kVanishing;
-    PseudoClusters clusters;
-    clusters.judge({kSpread, kTrue, kVanishing, kSpread, kTrue, kSpread}, {10, 11, 12, 13, 14, 14});
-    // The next keyframe has seen 12 in two pieces, 13 no more, and a new edge
-    EXPECT_EQ(clusters.among({12, 20, 11, 12, 10, 14}),
-              (std::vector<bool>{true, false, false, true, true, false}))
-        << "of a cluster with a true edge none is weakened";
-    EXPECT_EQ(clusters.among({13, 10}), (std::vector<bool>{false, true})) << "13 is forgotten";
-    clusters.judge({kTrue}, {10});
-    EXPECT_EQ(clusters.among({10}), std::vector<bool>{false}) << "the map knows better by now";
-    clusters.judge({}, {});
-    EXPECT_EQ(clusters.among({}), std::vector<bool>{});
-}
-
 TEST(KeyframeChanges, PhotometricPointsThatAreNoEdgePointsCountAsBefore) {
     Keyframe keyframe = keyframeOfTwoEdges();
     const std::vector<float> before = keyframe.photometric.weight;
     keyframe.photometric.source.clear();  // as an experiment chooses them
-    keyframe.weaken({true, true}, 0.3);
+    keyframe.weaken({EdgeVerdict::kSpread, EdgeVerdict::kVanishing}, 0.3);
     EXPECT_EQ(keyframe.photometric.weight, before);
 }
 

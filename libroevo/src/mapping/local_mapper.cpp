@@ -244,7 +244,6 @@ MapUpdate LocalMapper::insert(MapKeyframe inserted) {
         update.posterior = posteriorOf(window_, adjuster_.equations(), trackedClusters(), priors_);
     keepVerdicts();
     update.verdicts = keyframe.verdicts;
-    update.clusters = keyframe.clusters;
     leaveWindow(keyframe);
     return update;
 }

@@ -23,9 +23,8 @@ constexpr std::size_t kMostTogether = 500;
 struct MapUpdate {
     int keyframe = 0;                         ///< the inserted one
     std::vector<std::pair<int, Pose>> poses;  ///< T_world_camera of all keyframes that were refined
-    std::vector<EdgeVerdict> verdicts;   ///< of the inserted keyframe's edges; empty while it is the only one
-    std::vector<std::int32_t> clusters;  ///< of these edges, see Keyframe::clusters
-    int reused = 0;                      ///< old keyframes that took part
+    std::vector<EdgeVerdict> verdicts;  ///< of the inserted keyframe's edges; empty while it is the only one
+    int reused = 0;                     ///< old keyframes that took part
     std::vector<MapRefusal> refusals;
     std::optional<WindowPosterior> posterior;       ///< where older keyframes took part
     double milliseconds = 0, cpu_milliseconds = 0;  ///< of work on it

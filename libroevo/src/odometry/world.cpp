@@ -129,12 +129,8 @@ void World::takeUpdate(const MapUpdate& update) {
     change_.ms.mapping += update.milliseconds;
     change_.ms.mapping_cpu += update.cpu_milliseconds;
     change_.map_refusals.insert(change_.map_refusals.end(), update.refusals.begin(), update.refusals.end());
-    pseudo_clusters_.judge(update.verdicts, update.clusters);
-    weakenPseudoEdges();
-}
-
-void World::weakenPseudoEdges() {
-    reference_->weaken(pseudo_clusters_.among(reference_->clusters), options_.mapping.pseudo_weight);
+    if (update.keyframe == reference_->id && !update.verdicts.empty())
+        reference_->weaken(update.verdicts, options_.mapping.pseudo_weight);
 }
 
 std::unique_ptr<Keyframe> World::outside(const Frame& frame, const RowMotion& rows,
@@ -198,7 +194,6 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
                      reference_.get(), seconds_per_row_},
                     timestamp_);
     previous_ = std::exchange(reference_, std::move(fresh));
-    weakenPseudoEdges();
     noteTrack();
 }
 

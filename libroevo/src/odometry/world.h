@@ -6,7 +6,6 @@
 #include "keyframe_maker.h"
 #include "mapping/mapper.h"
 #include "mapping/semi_dense.h"
-#include "pseudo_clusters.h"
 #include "relocaliser.h"
 #include "stored_map.h"
 #include "trajectory.h"
@@ -111,7 +110,6 @@ class World {
     void closeLoop(const Look& newest);
     bool isWithinReach(const RelativePose& pose) const;
     void takeUpdate(const MapUpdate& update);
-    void weakenPseudoEdges();
     void noteMotion(const Pose& before);
     void noteTrack();
     bool closesLoops() const;
@@ -128,7 +126,6 @@ class World {
     Trajectory trajectory_;
     std::unique_ptr<Keyframe> reference_, previous_;
     std::int32_t next_cluster_ = 0;
-    PseudoClusters pseudo_clusters_;
     int loaded_ = 0;
     bool held_ = false;
     bool localised_ = false;  // in the map that was loaded

@@ -31,19 +31,13 @@ std::vector<float> Keyframe::foundShares() const {
     return shares;
 }
 
-void Keyframe::weaken(const std::vector<bool>& edges_to_weaken, double weight) {
+void Keyframe::weaken(const std::vector<EdgeVerdict>& verdicts, double weight) {
     const auto factor = static_cast<float>(weight);
-    weakened_.resize(edges_to_weaken.size(), false);
-    const auto affected = [&](auto point) {
-        const std::int32_t edge = at(edges.image.edge_of, point);
-        return at(edges_to_weaken, edge) && !at(weakened_, edge);
-    };
+    const auto affected = [&](auto point) { return isPseudo(at(verdicts, at(edges.image.edge_of, point))); };
     for (std::size_t i = 0; i < edges.size(); ++i)
         if (affected(i)) edges.weight[i] *= factor;
     for (std::size_t k = 0; k < photometric.source.size(); ++k)
         if (affected(photometric.source[k])) photometric.weight[k] *= factor;
-    for (std::size_t edge = 0; edge < weakened_.size(); ++edge)
-        weakened_[edge] = weakened_[edge] || edges_to_weaken[edge];
 }
 
 }  // namespace roevo

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "roevo/edge_map.h"
 #include "tracking/edge_points.h"
 #include "tracking/photometric.h"
 
@@ -30,11 +31,9 @@ struct Keyframe {
     void count(const std::vector<std::int32_t>& looked_for, const std::vector<std::int32_t>& found);
     /// Share of the looked-up points of each edge that frames found; negative where too few were looked up.
     std::vector<float> foundShares() const;
-    /// Counts the points of these edges for less, in all residuals; once, however often they are named.
-    void weaken(const std::vector<bool>& edges_to_weaken, double weight);
-
-  private:
-    std::vector<bool> weakened_;  // of each edge; empty: none
+    /// Counts the points of pseudo-edges for less, in all residuals.
+    /// @param verdicts  of each edge
+    void weaken(const std::vector<EdgeVerdict>& verdicts, double weight);
 };
 
 }  // namespace roevo
