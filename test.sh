@@ -18,4 +18,8 @@ say "Testing (preset $preset)"
 # Leaks inside the libraries of others (OpenGL drivers, MRPT's registries) are not ours to count.
 export ASAN_OPTIONS="${ASAN_OPTIONS:-detect_leaks=0}"
 export TSAN_OPTIONS="${TSAN_OPTIONS:-suppressions=$PWD/scripts/tsan.supp}"
-exec ctest --test-dir "build/$preset" -j 2 --output-on-failure "$@"
+status=0
+ctest --test-dir "build/$preset" -j 2 --output-on-failure "$@" || status=$?
+skipped=$(sed -n 's/^\[  SKIPPED \] \([A-Z][^ ,]*\)\(, where.*\)\{0,1\}$/  \1/p' "build/$preset/Testing/Temporary/LastTest.log")
+[ -z "$skipped" ] || printf '\nSkipped:\n%s\n' "$skipped"
+exit $status

@@ -48,6 +48,10 @@ class PlaceClips : public ::testing::Test {
             for (const auto& view : clips_.back().views) index_.insert(id++, view->points);
         }
     }
+    static void TearDownTestSuite() {
+        clips_.clear();
+        index_ = PlaceIndex();
+    }
     void SetUp() override {
         if (clips_.size() < std::size(kNames))
             GTEST_SKIP() << test::dataFolder() << " has not all clips; set ROEVO_DATA_DIR to their folder";

@@ -31,7 +31,7 @@ struct Keyframe {
     void count(const std::vector<std::int32_t>& looked_for, const std::vector<std::int32_t>& found);
     /// Share of the looked-up points of each edge that frames found; negative where too few were looked up.
     std::vector<float> foundShares() const;
-    /// Counts the points of pseudo-edges for less, in all residuals.
+    /// Counts the points of pseudo-edges for less, in all residuals; to be called once.
     /// @param verdicts  of each edge
     void weaken(const std::vector<EdgeVerdict>& verdicts, double weight);
 };

@@ -28,6 +28,8 @@ inline std::optional<RealFrames> realClip(const std::string& name, std::size_t c
     if (!std::filesystem::exists(folder)) return std::nullopt;
     static std::map<std::string, RealFrames> known;
     const DatasetReader reader = openDataset(folder);
+    constexpr std::size_t kMost = 2;  // some 300 MB each
+    if (known.size() == kMost && known.count(name) == 0) known.clear();
     RealFrames& whole = known[name];
     while (whole.frames.size() < std::min(count, reader.size()))
         whole.frames.push_back(reader.readFrame(whole.frames.size()));
