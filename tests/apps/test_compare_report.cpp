@@ -15,6 +15,7 @@
 #include "roevo-compare/report/line_style.h"
 #include "roevo-compare/report/ranking.h"
 #include "roevo-compare/report/scene_picture.h"
+#include "support/environment.h"
 #include "support/tum_folder.h"
 
 namespace roevo {
@@ -29,18 +30,6 @@ using test::makeSequence;
 using test::skippedRun;
 using test::TemporaryFolder;
 using test::WrittenComparison;
-
-/// Programs are looked for there while it is alive.
-class WithPath {
-  public:
-    explicit WithPath(const std::string& path) { setenv("PATH", path.c_str(), 1); }
-    ~WithPath() { setenv("PATH", before_.c_str(), 1); }
-    WithPath(const WithPath&) = delete;
-    WithPath& operator=(const WithPath&) = delete;
-
-  private:
-    const std::string before_ = std::getenv("PATH");
-};
 
 // An XML parser takes the page: tags are closed, text is escaped, ids are there once.
 class WellFormedReport : public testing::Test {
@@ -141,7 +130,7 @@ TEST_F(WellFormedReport, WhateverIsInIt) {
 }
 
 TEST_F(WellFormedReport, WithoutGnuplot) {
-    const WithPath nowhere("/nowhere");
+    const test::WithEnvironment with("PATH", "/nowhere");
     expectWellFormed(WrittenComparison(everyKind()));
 }
 
@@ -248,7 +237,7 @@ TEST(CompareReport, DrawsWhatThereIs) {
 }
 
 TEST(CompareReport, WithoutGnuplotSaysSoOnce) {
-    const WithPath nowhere("/nowhere");
+    const test::WithEnvironment with("PATH", "/nowhere");
     const WrittenComparison out(everyKind());
     EXPECT_EQ(count(out.html, "No plots: gnuplot is not installed"), 1u);
     EXPECT_EQ(count(out.html, "class=\"plot\""), 0u);
@@ -285,7 +274,7 @@ TEST(CompareReport, APlotThatFailsCostsOnlyThatPlot) {
                         "esac\nexec " +
                         gnuplot + " \"$@\"\n");
     std::filesystem::permissions(folder / "gnuplot", std::filesystem::perms::owner_all);
-    const WithPath with(folder.path().string() + ":" + std::getenv("PATH"));
+    const test::WithEnvironment with("PATH", folder.path().string() + ":" + std::getenv("PATH"));
     const WrittenComparison out({makeSequence("s", {makeRun("roevo-tr", 0.01), makeRun("b", 0.02)})});
     EXPECT_EQ(count(out.html, "class=\"plot\""), 5u);
     EXPECT_TRUE(contains(out.html, "No plot (s: trajectories, Top view): gnuplot failed: out of ink"));
@@ -364,16 +353,13 @@ TEST(ScenePicture, IsDrawnByTheRendererOrSaysWhy) {
 
     // Interrupted, it takes its folder of pictures along
     std::filesystem::create_directory(folder / "tmp");
-    const char* before = std::getenv("TMPDIR");
-    const std::string tmp = before ? before : "/tmp";
-    setenv("TMPDIR", (folder / "tmp").c_str(), 1);
+    const test::WithEnvironment with("TMPDIR", folder / "tmp");
     {
         const InterruptGuard guard;
         raise(SIGINT);
         EXPECT_THROW(renderScene(folder / "run/map.3Dscene", "edges"), Interrupted);
     }
     EXPECT_TRUE(std::filesystem::is_empty(folder / "tmp"));
-    setenv("TMPDIR", tmp.c_str(), 1);
 }
 
 TEST(Base64, VectorsOfTheStandard) {

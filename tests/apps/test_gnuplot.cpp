@@ -8,6 +8,7 @@
 
 #include "programs/gnuplot.h"
 #include "programs/interrupt.h"
+#include "support/environment.h"
 #include "support/run_program.h"
 
 namespace roevo {
@@ -80,13 +81,10 @@ TEST(Gnuplot, FaultsAreOneLineAndLeaveNothingBehind) {
 
 TEST(Gnuplot, TheUsersOwnSettingsDoNotCount) {
     const TemporaryFolder folder;
-    const char* before = std::getenv("HOME");
-    const std::string home = before ? before : "/";
     drawSvg(folder / "plain.svg", "plot x");
     test::writeFile(folder / ".gnuplot", "set title 'mine'\nset border 0\n");
-    setenv("HOME", folder.path().c_str(), 1);
+    const test::WithEnvironment with("HOME", folder.path().string());
     drawSvg(folder / "plot.svg", "plot x");
-    setenv("HOME", home.c_str(), 1);
     EXPECT_EQ(readFile(folder / "plot.svg"), readFile(folder / "plain.svg"));
 }
 
@@ -100,10 +98,8 @@ TEST(Gnuplot, IsEndedByAnInterrupt) {
 
 TEST(Gnuplot, IsMissed) {
     const TemporaryFolder folder, empty;
-    const std::string path = std::getenv("PATH");
-    setenv("PATH", empty.path().c_str(), 1);
+    const test::WithEnvironment with("PATH", empty.path().string());
     const std::string text = complaint(folder / "plot.svg", "plot x");
-    setenv("PATH", path.c_str(), 1);
     EXPECT_NE(text.find("plot.svg: gnuplot is not installed"), std::string::npos) << text;
     EXPECT_TRUE(isEmpty(folder));
 }

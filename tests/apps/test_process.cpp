@@ -7,6 +7,7 @@
 #include "processes.h"
 #include "programs/interrupt.h"
 #include "programs/process.h"
+#include "support/environment.h"
 
 namespace roevo {
 namespace {
@@ -128,16 +129,14 @@ TEST(FindProgram, GoesByPath) {
     const TemporaryFolder folder, other;
     test::writeFile(folder / "tool", "");
     test::writeFile(other / "tool", "");
-    const std::string path = std::getenv("PATH");
-    setenv("PATH", (folder.path().string() + ":" + other.path().string()).c_str(), 1);
+    const test::WithEnvironment with("PATH", folder.path().string() + ":" + other.path().string());
     EXPECT_EQ(findProgram("tool"), "") << "it cannot be run";
     std::filesystem::permissions(other / "tool", std::filesystem::perms::owner_all);
     EXPECT_EQ(findProgram("tool"), other / "tool");
     std::filesystem::create_directory(folder / "tools");
     EXPECT_EQ(findProgram("tools"), "") << "a folder";
-    unsetenv("PATH");
+    with.set(std::nullopt);
     EXPECT_EQ(findProgram("tool"), "");
-    setenv("PATH", path.c_str(), 1);
 }
 
 }  // namespace

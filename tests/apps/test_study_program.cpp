@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "support/csv_lines.h"
+#include "support/environment.h"
 #include "support/run_program.h"
 #include "support/tum_folder.h"
 
@@ -245,10 +246,8 @@ TEST_F(StudyProgram, TheReportTellsHowItWasMade) {
 TEST_F(StudyProgram, WithoutGnuplotTheTablesAreWritten) {
     write(4);
     const test::TemporaryFolder empty;
-    const std::string path = std::getenv("PATH");
-    setenv("PATH", empty.path().c_str(), 1);
+    const test::WithEnvironment with("PATH", empty.path().string());
     const ProgramResult result = run("depth-weight");
-    setenv("PATH", path.c_str(), 1);
     expectError(result, 1, kName,
                 {"gnuplot is not installed", "depth_weight_curves.svg", "the tables are in"});
     EXPECT_EQ(table("depth_weight.csv").size(), 5u);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "support/environment.h"
 #include "tools/bag_fixture.h"
 
 namespace roevo {
@@ -35,15 +36,12 @@ TEST_F(Bag2RawlogErrors, LeavesNothingInTheHomeDirectory) {
     // Debian's ROS libraries put a cache into ~/.ros
     const std::string home = std::filesystem::path(bagPath()).parent_path() / "home";
     std::filesystem::create_directory(home);
-    const char* before = std::getenv("HOME");
-    const std::string kept = before == nullptr ? "" : before;
-    setenv("HOME", home.c_str(), 1);
+    const test::WithEnvironment with("HOME", home);
     expectRefusal({"recording.bag", "no such file"});
     write([](BagWriter& bag) { bag.frames(2); });
     std::filesystem::remove_all(home + "/.ros");  // of this process, which wrote the bag
     EXPECT_EQ(runProgram(kName, {"--input", bagPath(), "--list"}).exit_code, 0);
     EXPECT_TRUE(std::filesystem::is_empty(home));
-    setenv("HOME", kept.c_str(), 1);
 }
 
 TEST_F(Bag2RawlogErrors, NoBag) {
