@@ -12,7 +12,8 @@ constexpr double kGroupWidth = 0.8;  // of the distance between groups
 constexpr int kFirstValueTag = 1000;  // of gnuplot's labels, beyond all others
 
 // px
-constexpr int kTitle = 40, kKeyRow = 24, kPanel = 200, kBelow = 80, kLeft = 100, kRight = 15, kKeyColumn = 300;
+constexpr int kTitle = 40, kKeyRow = 24, kPanel = 200, kBelow = 80, kLeft = 100, kRight = 15,
+              kKeyColumn = 300;
 
 struct Layout {
     int width = 0, height = 0, key_rows = 0;
