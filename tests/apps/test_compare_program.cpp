@@ -144,7 +144,7 @@ TEST_F(Compare, RawlogsAreRecordingsToo) {
     const auto converted =
         test::runProgram("rgbd2rawlog", {"--input", input, "--output", folder / "my.rawlog"});
     ASSERT_EQ(converted.exit_code, 0) << converted.all();
-    const auto result = run({folder / "my.rawlog", input}, {"--methods", "roevo-tr", "--rows-only"});
+    const auto result = run({folder / "my.rawlog", input}, {"--methods", "roevo-tr"});
     ASSERT_EQ(result.exit_code, 0) << result.all();
     EXPECT_EQ(readFile(runFolder("my", "roevo-tr") + "/trajectory.txt"),
               readFile(runFolder("clip", "roevo-tr") + "/trajectory.txt"));

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <opencv2/core/version.hpp>
 
+#include "support/environment.h"
 #include "support/run_program.h"
 
 namespace roevo {
@@ -39,19 +40,16 @@ class OldMachine {
         CPU_ZERO(&one);
         CPU_SET(sched_getcpu(), &one);
         sched_setaffinity(0, sizeof one, &one);
-        setenv("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX,-AVX2_Usable,-FMA_Usable,-AVX_Usable", 1);
-        setenv("OPENCV_CPU_DISABLE", "AVX2,FMA3,AVX,FP16,SSSE3", 1);
     }
-    ~OldMachine() {
-        sched_setaffinity(0, sizeof before_, &before_);
-        unsetenv("GLIBC_TUNABLES");
-        unsetenv("OPENCV_CPU_DISABLE");
-    }
+    ~OldMachine() { sched_setaffinity(0, sizeof before_, &before_); }
     OldMachine(const OldMachine&) = delete;
     OldMachine& operator=(const OldMachine&) = delete;
 
   private:
     cpu_set_t before_{};
+    test::WithEnvironment libc_{"GLIBC_TUNABLES",
+                                "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX,-AVX2_Usable,-FMA_Usable,-AVX_Usable"};
+    test::WithEnvironment opencv_{"OPENCV_CPU_DISABLE", "AVX2,FMA3,AVX,FP16,SSSE3"};
 };
 
 bool isDebian12() {

@@ -111,7 +111,7 @@ struct RawlogWriter::Impl {
         }
         const std::size_t head = 2 * sizeof(std::uint32_t);  // rows, columns
         if (!whole || gzTrailerLength(temporary_images / name) != head + sizeof(std::uint16_t) * values)
-            throw std::runtime_error("cannot write " + (temporary_images / name).string() + ": disk full?");
+            throw std::runtime_error("cannot write " + (images / name).string() + ": disk full?");
     }
 
     void append(const mrpt::serialization::CSerializable& object) {
