@@ -101,9 +101,11 @@ def start(options, program, arguments, work):
 
 
 def snapshot(path):
-    """Bytes of the files below a path by name; names of temporary ones apart."""
+    """Bytes of the files below a path by name; names of temporary ones, and of empty folders, apart."""
     files, temporary = {}, []
-    for folder, _, names in os.walk(path):
+    for folder, folders, names in os.walk(path):
+        if folder != path and not folders and not names:
+            temporary.append(os.path.relpath(folder, path))
         for name in names:
             full = os.path.join(folder, name)
             relative = os.path.relpath(full, path)

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <list>
 #include <stdexcept>
 #include <utility>
 
@@ -17,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names of the temporary files alive, readable from a signal handler.
+// Names of the temporary files alive, and of folders made for outputs, readable from a signal handler.
 std::array<std::atomic<const char*>, 64> temporary_files{};
 
 int registerFile(const char* path) {
@@ -88,9 +89,16 @@ void writeTextAtomically(const std::string& path, const std::string& text) {
     file.commit();
 }
 
+void removeIfLeftEmpty(const std::string& folder) {
+    static std::list<std::string> folders;  // a handler may read them until the end
+    registerFile(folders.emplace_back(folder).c_str());
+}
+
 void removeTemporaryFiles() noexcept {
-    for (auto& slot : temporary_files)
+    for (const auto& slot : temporary_files)
         if (const char* path = slot.load()) unlink(path);
+    for (const auto& slot : temporary_files)
+        if (const char* path = slot.load()) rmdir(path);
 }
 
 }  // namespace roevo

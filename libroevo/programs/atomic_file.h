@@ -42,7 +42,10 @@ void writeAtomically(const std::string& path,
 /// Same for text that is at hand. @throws std::runtime_error
 void writeTextAtomically(const std::string& path, const std::string& text);
 
-/// Removes the temporary files of all AtomicFile objects alive; safe in a signal handler.
+/// A folder that was made for outputs goes again when the program fails or is interrupted before there are any.
+void removeIfLeftEmpty(const std::string& folder);
+
+/// Removes the temporary files of all AtomicFile objects alive, and such folders; safe in a signal handler.
 void removeTemporaryFiles() noexcept;
 
 }  // namespace roevo

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 void prepareOutputFolder(const std::string& folder) {
     std::error_code error;
-    fs::create_directories(folder, error);
+    if (fs::create_directories(folder, error)) removeIfLeftEmpty(folder);
     if (error || !fs::is_directory(folder))
         throw std::runtime_error("cannot create the output folder " + folder + ": " +
                                  (error ? error.message() : "a file of that name is in the way"));

@@ -24,6 +24,7 @@ void onSignal(int signal) {
 }
 
 int fail(const char* name, const std::string& message, int code) {
+    removeTemporaryFiles();
     std::fflush(stdout);
     std::fprintf(stderr, "%s: error: %s\n", name, firstLine(message).c_str());
     return code;
@@ -31,7 +32,6 @@ int fail(const char* name, const std::string& message, int code) {
 
 // Of what nobody can catch: in a thread, or on the way out of something else.
 [[noreturn]] void onTerminate() {
-    removeTemporaryFiles();
     try {
         if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
         fail(program_name, "ended by a fault of this program", kFailure);

@@ -11,6 +11,7 @@
 
 #include "input/edit_distance.h"
 #include "programs/atomic_file.h"
+#include "programs/output_folder.h"
 #include "programs/program.h"
 #include "programs/text.h"
 #include "support/run_program.h"
@@ -94,10 +95,13 @@ TEST(Program, TurnsExceptionsIntoExitCodes) {
 }
 
 // In a process of its own, which the signal ends.
-int exitCodeAfter(int signal, const std::string& file) {
+int exitCodeAfter(int signal, const std::string& file, const std::string& whole = "") {
     const pid_t child = fork();
     if (child == 0)
         _exit(runProgram("p", [&] {
+            const std::filesystem::path outputs = std::filesystem::path(file).parent_path();
+            prepareOutputFolder(outputs.string());
+            if (!whole.empty()) writeTextAtomically((outputs / whole).string(), "whole");
             AtomicFile half(file);
             half.stream() << "half" << std::flush;
             raise(signal);
@@ -114,6 +118,28 @@ TEST(Program, LeavesNothingHalfWrittenWhenASignalEndsIt) {
         EXPECT_EQ(exitCodeAfter(signal, folder / "a.txt"), 128 + signal);
         EXPECT_EQ(filesIn(folder), 0u) << signal;
     }
+}
+
+TEST(Program, LeavesNoEmptyFolderWhenItFailsOrIsInterrupted) {
+    const TemporaryFolder folder;
+    const std::string outputs = folder / "new";
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(runProgram("p",
+                         [&]() -> int {
+                             prepareOutputFolder(outputs);
+                             throw std::runtime_error("what happened");
+                         }),
+              1);
+    ::testing::internal::GetCapturedStderr();
+    EXPECT_FALSE(std::filesystem::exists(outputs));
+    EXPECT_EQ(exitCodeAfter(SIGINT, outputs + "/a.txt"), 128 + SIGINT);
+    EXPECT_FALSE(std::filesystem::exists(outputs));
+    // What was there before stays, and so does what was written
+    std::filesystem::create_directory(outputs);
+    EXPECT_EQ(exitCodeAfter(SIGINT, outputs + "/a.txt"), 128 + SIGINT);
+    EXPECT_TRUE(std::filesystem::exists(outputs));
+    EXPECT_EQ(exitCodeAfter(SIGTERM, folder / "other/a.txt", "whole.txt"), 128 + SIGTERM);
+    EXPECT_TRUE(std::filesystem::exists(folder / "other/whole.txt"));
 }
 
 TEST(Program, OutlivesItsTerminalUnderNohup) {
