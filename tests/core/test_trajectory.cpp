@@ -180,6 +180,23 @@ TEST(Trajectory, NothingIsInterpolatedBetweenTracks) {
     EXPECT_NEAR(foundAgain().frames()[3].T_world_camera.translation().x(), 41, 1e-12);
 }
 
+TEST(Trajectory, FramesAreInterpolatedAcrossATrackThatWasNeverJoined) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    trajectory.addFrame(0, from(0, at(0)));
+    trajectory.addFrame(1, from(0, at(0)), false);
+    beginTrack(trajectory, 2, at(50));
+    trajectory.addFrame(2, from(1, at(0)));
+    trajectory.addFrame(3, from(1, at(0)), false);
+    trajectory.addFrame(4, from(0, at(4)));
+    for (const bool smooth : {false, true}) {
+        const std::vector<StampedPose> frames = trajectory.frames(smooth);
+        EXPECT_NEAR(frames[1].T_world_camera.translation().x(), 1, 1e-9);
+        EXPECT_NEAR(frames[2].T_world_camera.translation().x(), 50, 1e-9);
+        EXPECT_NEAR(frames[3].T_world_camera.translation().x(), 50, 1e-9);
+    }
+}
+
 TEST(Trajectory, MotionIsKnownBetweenAllFramesOfATrack) {
     const Trajectory trajectory = foundAgain();
     for (const auto& [a, b] : {std::pair{0, 1}, {0, 4}, {1, 4}, {4, 1}, {2, 3}})

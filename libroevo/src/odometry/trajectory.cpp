@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -292,23 +293,25 @@ bool Trajectory::isKeyframe(const Frame& frame) const {
 std::vector<StampedPose> Trajectory::frames(bool smooth) const {
     std::vector<StampedPose> poses;
     for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame)});
+    // Of each track those from the first that was measured to the last; another track may be in between
+    std::map<int, std::vector<std::size_t>> of_tracks;
+    for (std::size_t k = 0; k < frames_.size(); ++k)
+        of_tracks[beginOfTrack(frames_[k].pose.keyframe)].push_back(k);
     std::vector<MotionSample> samples;
-    for (std::size_t begin = 0; begin < frames_.size(); begin += samples.size()) {
-        // From a measured frame to the last measured one of the same track
+    for (auto& [track, indices] : of_tracks) {
+        const auto measured = [&](std::size_t k) { return frames_[k].measured; };
+        const auto begin = std::find_if(indices.begin(), indices.end(), measured);
+        const auto end = std::find_if(indices.rbegin(), indices.rend(), measured).base();
         samples.clear();
-        std::size_t count = 1;
-        for (std::size_t k = begin; k < frames_.size(); ++k) {
-            const Frame& frame = frames_[k];
-            if (!areOfOneTrack(frames_[begin].pose.keyframe, frame.pose.keyframe)) break;
+        for (auto k = begin; k < end; ++k) {
+            const Frame& frame = frames_[*k];
             // A keyframe is where the map has it
             const Matrix6d covariance = isKeyframe(frame) ? Matrix6d::Zero() : frame.pose.uncertainty.own();
-            samples.push_back({frame.timestamp, poses[k].T_world_camera, covariance, frame.measured});
-            if (frame.measured) count = samples.size();
-            if (!frames_[begin].measured) break;
+            samples.push_back({frame.timestamp, poses[*k].T_world_camera, covariance, frame.measured});
         }
-        samples.resize(count);
         (smooth ? smoothMotion : bridgeMotion)(samples);
-        for (std::size_t k = 0; k < count; ++k) poses[begin + k].T_world_camera = samples[k].T_world_camera;
+        for (std::size_t k = 0; k < samples.size(); ++k)
+            poses[*(begin + static_cast<std::ptrdiff_t>(k))].T_world_camera = samples[k].T_world_camera;
     }
     return poses;
 }
