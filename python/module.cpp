@@ -1,5 +1,6 @@
 // import roevo: the odometry for Python, images and results as numpy arrays.
 #include "bindings.h"
+#include "roevo/odometry.h"
 
 PYBIND11_MODULE(roevo, module) {
     module.doc() = R"(RGB-D visual odometry from organized edges.
@@ -15,7 +16,7 @@ PYBIND11_MODULE(roevo, module) {
 Poses are 4 x 4 matrices T_world_camera, which map points of the camera (x right, y down, z forward, metres) into the
 world. What is wrong with arguments is told by ValueError and TypeError in one line; a bad frame is no error, but comes
 back as "rejected" with a reason. The same frames give the same poses as roevo-odometry does, to the last bit.)";
-    module.attr("__version__") = ROEVO_VERSION;
+    module.attr("__version__") = roevo::version();
     roevo::python::addCamera(module);
     roevo::python::addOptions(module);
     roevo::python::addOdometry(module);

@@ -106,6 +106,7 @@ class Session {
 void addResult(py::module_& module) {
     py::class_<FrameResult>(module, "FrameResult", "What became of one frame.")
         .def_readonly("timestamp", &FrameResult::timestamp, "seconds")
+        .def_readonly("index", &FrameResult::index, "place in live_trajectory(); -1 when rejected")
         .def_property_readonly(
             "status", [](const FrameResult& self) { return toString(self.status); },
             "\"ok\", \"initialised\" (a new beginning), \"predicted\" or \"lost\" (not tracked), "
@@ -126,6 +127,8 @@ void addResult(py::module_& module) {
                 return py::cast(self.covariance);
             },
             "6 x 6: position (m), then orientation (rad), along the world's axes; None when rejected")
+        .def_readonly("keyframe", &FrameResult::keyframe,
+                      "id of the keyframe that the pose is relative to; -1 when rejected")
         .def_readonly("new_keyframe", &FrameResult::new_keyframe, "whether it brought a new keyframe")
         .def_readonly("num_edges", &FrameResult::num_edges, "organized edges in the frame")
         .def_readonly("num_points", &FrameResult::num_points, "points of its edges")

@@ -26,7 +26,7 @@ roevo_test(test_core_odometry
   LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
 roevo_test(test_core_mapped_runs
   SOURCES core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp
-          core/test_relocalisation.cpp core/test_loop_closing.cpp core/test_kidnapping.cpp
+          core/test_relocalisation.cpp core/test_loop_closing.cpp core/test_kidnapping.cpp core/test_lack_of_resources.cpp
   LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
 roevo_test(test_core_map_file SOURCES core/test_map_file.cpp LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
 # In four entries, since they take long

@@ -117,6 +117,11 @@ std::string OptionField::fromText(const std::string& text) const {
 }
 
 std::string OptionField::check() const {
+    if (const auto* mode = std::get_if<Mode*>(&value)) {
+        const int number = static_cast<int>(**mode);
+        if (number >= 0 && number <= static_cast<int>(Mode::kBundleAdjustment)) return {};
+        return "option " + name() + " = " + std::to_string(number) + " is none of ct, tr, ba";
+    }
     const auto* real = std::get_if<double*>(&value);
     const auto* whole = std::get_if<int*>(&value);
     if (real == nullptr && whole == nullptr) return {};

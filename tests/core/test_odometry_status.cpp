@@ -164,7 +164,9 @@ TEST_F(OdometryStatus, AnotherSizeOrTypeIsRejectedWithBothSizes) {
     frame.grey = cv::Mat::zeros(240, 320, CV_8UC3);
     EXPECT_EQ(feed(frame).status, FrameStatus::kRejected);
     frame.grey = cv::Mat();
-    EXPECT_EQ(feed(frame).status, FrameStatus::kRejected);
+    EXPECT_EQ(feed(frame).reason, "no colour image");
+    frame.colour = cv::Mat::zeros(240, 320, CV_8UC3);
+    EXPECT_EQ(feed(frame).reason, "no grey image beside the colour image");
     for (const int type : {CV_8UC4, CV_32FC3, CV_8UC1}) {
         frame = frameAt(3);
         frame.colour = cv::Mat::zeros(240, 320, type);
@@ -264,6 +266,13 @@ TEST_F(OdometryStatus, UnusableFirstFramesAreRejectedUntilOneWillDo) {
     blind.timestamp = 0.2;
     blind.depth = cv::Mat();
     EXPECT_NE(feed(blind).reason.find("depth"), std::string::npos);
+    for (const double unit : {1e3, 1e-3}) {  // mm, km
+        RgbdFrame wrong = frameAt(0);
+        wrong.timestamp = unit > 1 ? 0.3 : 0.4;
+        wrong.depth = cv::Mat(unit * wrong.depth);
+        const std::string reason = feed(wrong).reason;
+        EXPECT_NE(reason.find("are they in metres?"), std::string::npos) << reason;
+    }
     EXPECT_TRUE(odometry_.trajectory().empty());
     EXPECT_TRUE(odometry_.keyframes().empty());
     feedRoom(0, 4);

@@ -209,6 +209,12 @@ TEST(Options, ModesAreCtAndTr) {
     EXPECT_EQ(options.mode, Mode::kTracking);
 }
 
+TEST(Options, AModeThatIsNoneIsRefused) {
+    OdometryOptions options;
+    options.mode = static_cast<Mode>(7);
+    EXPECT_EQ(checkOptions(options), "option odometry.mode = 7 is none of ct, tr, ba");
+}
+
 TEST(Options, DepthRangeMustBeARange) {
     OdometryOptions options;
     options.sensor.min_depth = 3;

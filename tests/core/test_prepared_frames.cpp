@@ -4,6 +4,7 @@
 #include <cstring>
 #include <deque>
 #include <future>
+#include <optional>
 #include <stdexcept>
 
 #include "core/support/simulated.h"
@@ -111,6 +112,16 @@ TEST(PreparedFrames, OneThatWasUsedOrIsLateIsNotTracked) {
     Odometry other(spoilt().camera, OdometryOptions(), spoilt().start());
     EXPECT_THROW((void)other.processFrame(odometry.prepareFrame(spoilt().frames[2])), std::logic_error);
     EXPECT_EQ(odometry.processFrame(odometry.prepareFrame(spoilt().frames[3])).status, FrameStatus::kOk);
+}
+
+TEST(PreparedFrames, OneOfAnOdometryThatIsNoMoreIsRefused) {
+    std::optional<Odometry> odometry(std::in_place, spoilt().camera, OdometryOptions(), spoilt().start());
+    for (int i = 0; i < 30; ++i) {  // now and then the new one is where the old one was
+        PreparedFrame stale = odometry->prepareFrame(spoilt().frames[0]);
+        odometry.reset();
+        odometry.emplace(spoilt().camera, OdometryOptions(), spoilt().start());
+        EXPECT_THROW((void)odometry->processFrame(std::move(stale)), std::logic_error);
+    }
 }
 
 TEST(PreparedFrames, TheLongestEdgesAreKeptAsTheyAreAndInTheirOrder) {

@@ -88,8 +88,8 @@ class SameAsTheProgram(unittest.TestCase):
 
     def test_results_agree_with_the_trajectory(self):
         odometry, results = track()
-        for result, row in zip(results, odometry.live_trajectory()):
-            self.assertEqual(result.timestamp, row[0])
+        for index, (result, row) in enumerate(zip(results, odometry.live_trajectory())):
+            self.assertEqual((result.index, result.timestamp), (index, row[0]))
             np.testing.assert_array_equal(result.pose[:3, 3], row[1:4])
             np.testing.assert_array_equal(result.pose[3], [0, 0, 0, 1])
             x, y, z, w = row[4:]

@@ -28,12 +28,14 @@ struct StageTimes {
 /// What became of one frame.
 struct FrameResult {
     double timestamp = 0;
+    int index = -1;  ///< place in Odometry::liveTrajectory(), as motion() wants it; -1 when rejected
     FrameStatus status = FrameStatus::kRejected;
     std::string reason;                      ///< in words; empty only when all is well
     Pose T_world_camera = Pose::Identity();  ///< meaningless when rejected
     /// Of T_world_camera: position (m) then orientation (rad), both along the world's axes; the orientation
     /// error phi is meant as R <- exp(phi) R. Meaningless when rejected: ask hasPose() first.
     Matrix6d covariance = Matrix6d::Zero();
+    int keyframe = -1;                  ///< id of the one that the pose is relative to; -1 when rejected
     bool new_keyframe = false;          ///< this frame brought a new keyframe: itself or the frame before it
     int num_edges = 0, num_points = 0;  ///< organized edges and their points in this frame
     int found_at = -1;                  ///< keyframe that a lost camera was recognised by

@@ -13,6 +13,9 @@ namespace roevo {
 
 class Tracker;
 
+/// Of the library that runs, such as "0.1.0".
+const char* version();
+
 /// What becomes of a map that is loaded.
 enum class MapUse {
     kExtend,   ///< keyframes are added to it, and loops may move it
@@ -38,10 +41,15 @@ class PreparedFrame {
 /// thread-safe, but for prepareFrame(). What tells of the whole recording (trajectory, keyframes, map, edges,
 /// surface) changes no result, but waits for the mapping thread and takes time that grows with the recording:
 /// use FrameResult for every frame. With mapping in a thread (options().threads) it cannot be used
-/// or destroyed in a process that fork() made.
+/// or destroyed in a process that fork() made. One that was moved from can only be destroyed or assigned to.
+///
+/// Memory may run out, in the caller's thread or in mapping's: processFrame() throws std::bad_alloc then, or
+/// whatever else was thrown, and again from then on, as do saveMap(), refineAll() and what waits for the map
+/// (map(), keyframeEdges()). Poses, keyframes and surface are given as far as they had come.
 class Odometry {
   public:
-    /// @throws std::invalid_argument when the camera or an option is unusable (one line that names it).
+    /// @throws std::invalid_argument when the camera, an option or the start pose is unusable (one line that
+    /// names it); std::system_error when the mapping thread cannot be started
     Odometry(const PinholeCamera& camera, const OdometryOptions& options,
              const Pose& T_world_start = Pose::Identity());
     /// With another tracker, for experiments: frames that it loses are not looked up among the keyframes, and
@@ -55,7 +63,7 @@ class Odometry {
     /// Begins with the map of an earlier recording, before the first frame. The first frame that shows one of
     /// its places, or else the first keyframe, brings the recording into the map's world; until then it is in
     /// a world of its own, which begins at T_world_start (FrameResult::found_at and joined_at tell when;
-    /// keyframes of the map are the first of keyframes()).
+    /// keyframes of the map are the first of keyframes()). The stream must end with the map.
     /// @return how many keyframes the map has
     /// @throws std::runtime_error in one line: no map, of another version, incomplete, damaged, of another
     /// camera, or recognising is off (options().loss). The odometry is then as it was
@@ -69,7 +77,8 @@ class Odometry {
     /// @throws std::logic_error when a map is used to localise only
     int saveMap(std::ostream& out) const;
 
-    /// Tracks one frame. Never throws for bad frames: they come back kRejected with a reason.
+    /// Tracks one frame. Never throws for bad frames: they come back kRejected with a reason. What it does
+    /// throw, see above, ends the odometry.
     [[nodiscard]] FrameResult processFrame(const RgbdFrame& frame);
 
     /// The two halves of processFrame(), for a pipeline of two threads: what needs no pose, and the rest. One
@@ -94,13 +103,14 @@ class Odometry {
     /// The poses as they were known when their frames were processed.
     std::vector<StampedPose> liveTrajectory() const;
 
-    /// Covariance of the motion between two frames of liveTrajectory(), given by their places in it: of
-    /// T_from_to, position (m), then orientation (rad), along the axes of the second camera. Infinite where
-    /// tracking was begun anew between them.
+    /// Covariance of the motion between two frames, given by FrameResult::index: of T_from_to, position (m),
+    /// then orientation (rad, R <- R exp(phi)), along the axes of the second camera. Infinite where tracking
+    /// was begun anew between them and nothing has brought the two together.
     /// @throws std::out_of_range where there is no such frame
     Matrix6d motionCovariance(std::size_t from, std::size_t to) const;
-    /// T_from_to of the same frames as it is known by now. Live poses from before and after the map moved do
-    /// not make a motion of the camera.
+    /// T_from_to of the same frames as it is known by now; where its covariance is infinite it means nothing.
+    /// Live poses from before and after the map moved do not make a motion of the camera.
+    /// @throws std::out_of_range where there is no such frame
     Pose motion(std::size_t from, std::size_t to) const;
 
     /// Those of a map that was loaded come first, once the camera was recognised in it.

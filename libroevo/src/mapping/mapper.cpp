@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <exception>
 #include <functional>
+#include <list>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -108,15 +109,18 @@ class RefiningMapper : public Mapper {
 
   private:
     /// On the LocalMapper: a keyframe is inserted, and an update comes of that, or those that were are
-    /// corrected.
-    using Job = std::function<std::optional<MapUpdate>()>;
+    /// corrected. The update's room is there from the beginning: outside of jobs the worker needs no memory.
+    struct Job {
+        std::function<void(MapUpdate&)> run;
+        std::list<MapUpdate> update;  ///< one or none
+    };
     using Lock = std::unique_lock<std::mutex>;
     void work();
     void runNext(Lock& lock);
     template <class Condition>
     void waitFor(Lock& lock, const Condition& condition);
     void push(Job job);
-    MapUpdate take();
+    std::optional<MapUpdate> take();
     bool ready() const;
     LocalMapper& finish();
 
@@ -129,7 +133,7 @@ class RefiningMapper : public Mapper {
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Job> jobs_;
-    std::deque<MapUpdate> updates_;
+    std::list<MapUpdate> updates_;
     std::exception_ptr failure_;
     bool busy_ = false, stop_ = false;
     std::thread worker_;  // last: it uses all of the above
@@ -153,24 +157,21 @@ void RefiningMapper::insert(NewKeyframe fresh, double timestamp) {
         rows = fresh.previous->row_motion;
     }
     due_.push_back(timestamp + (options_.latency - 0.5) / kFrameRate);
-    push([this, keyframe = std::move(keyframe), previous, found = std::move(found), rows,
-          seconds_per_row = fresh.seconds_per_row]() mutable {
+    auto run = [this, keyframe = std::move(keyframe), previous, found = std::move(found), rows,
+                seconds_per_row = fresh.seconds_per_row](MapUpdate& update) mutable {
         const Stopwatch watch;
         const CpuStopwatch cpu_watch;
         mapper_.learnOf(previous, std::move(found), rows);
         mapper_.setReadout(seconds_per_row);
-        MapUpdate update = mapper_.insert(std::move(keyframe));
+        update = mapper_.insert(std::move(keyframe));
         update.milliseconds = watch.milliseconds();
         update.cpu_milliseconds = cpu_watch.milliseconds();
-        return update;
-    });
+    };
+    push({std::move(run), std::list<MapUpdate>(1)});
 }
 
 void RefiningMapper::correct(const Correction& correction) {
-    push([this, correction] {
-        mapper_.correct(correction);
-        return std::nullopt;
-    });
+    push({[this, correction](MapUpdate&) { mapper_.correct(correction); }, {}});
 }
 
 void RefiningMapper::push(Job job) {
@@ -186,7 +187,9 @@ std::vector<MapUpdate> RefiningMapper::due(double timestamp, double& waited_ms) 
         if (options_.deterministic ? due_.front() > timestamp : taken_.empty() && !ready()) break;
         if (taken_.empty()) {
             const Stopwatch watch;
-            taken_.push_back(take());
+            auto update = take();
+            if (!update) std::rethrow_exception(failure_);
+            taken_.push_back(std::move(*update));
             waited_ms += watch.milliseconds();
         }
         due_.pop_front();
@@ -197,13 +200,17 @@ std::vector<MapUpdate> RefiningMapper::due(double timestamp, double& waited_ms) 
 }
 
 const std::deque<MapUpdate>& RefiningMapper::outstanding() {
-    while (taken_.size() < due_.size()) taken_.push_back(take());
+    while (taken_.size() < due_.size()) {
+        auto update = take();
+        if (!update) break;  // nothing more will take effect, as whoever goes on learns
+        taken_.push_back(std::move(*update));
+    }
     return taken_;
 }
 
 std::vector<MapUpdate> RefiningMapper::refineAll() {
-    (void)outstanding();
     LocalMapper& mapper = finish();
+    (void)outstanding();
     std::vector<MapUpdate> updates(std::make_move_iterator(taken_.begin()),
                                    std::make_move_iterator(taken_.end()));
     taken_.clear();
@@ -234,22 +241,21 @@ void RefiningMapper::waitFor(Lock& lock, const Condition& condition) {
 
 /// @param lock  let go meanwhile
 void RefiningMapper::runNext(Lock& lock) {
-    const Job job = std::move(jobs_.front());
+    Job job = std::move(jobs_.front());
     jobs_.pop_front();
     busy_ = true;
     lock.unlock();
-    std::optional<MapUpdate> update;
     std::exception_ptr thrown;
     try {
-        update = job();
+        MapUpdate none;
+        job.run(job.update.empty() ? none : job.update.front());
     } catch (...) {
         thrown = std::current_exception();
-        update.emplace();  // whoever waits for one learns of it
     }
     lock.lock();
     busy_ = false;
-    if (thrown) failure_ = thrown;
-    if (update) updates_.push_back(std::move(*update));
+    if (thrown && !failure_) failure_ = thrown;
+    updates_.splice(updates_.end(), job.update);  // whoever waits for one learns of what was thrown
     changed_.notify_all();
 }
 
@@ -258,10 +264,11 @@ bool RefiningMapper::ready() const {
     return !updates_.empty();
 }
 
-MapUpdate RefiningMapper::take() {
+/// The next update, when it is there; none if mapping has failed.
+std::optional<MapUpdate> RefiningMapper::take() {
     Lock lock(mutex_);
     waitFor(lock, [&] { return !updates_.empty(); });
-    if (failure_) std::rethrow_exception(failure_);
+    if (failure_) return std::nullopt;
     MapUpdate update = std::move(updates_.front());
     updates_.pop_front();
     return update;

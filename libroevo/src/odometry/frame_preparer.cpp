@@ -1,6 +1,7 @@
 #include "frame_preparer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
@@ -36,6 +37,11 @@ void keepLongest(OrganizedEdges& edges, std::size_t most_points) {
         out.addEdge(edges, own.first, all);
     }
     edges = std::move(out);
+}
+
+std::uint64_t FramePreparer::nextId() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
 }
 
 cv::Mat FramePreparer::sceneOf(RgbdFrame& images) const {
@@ -79,7 +85,7 @@ Fault FramePreparer::faultOf(const RgbdFrame& images) {
 PreparedFrame::Content FramePreparer::prepare(RgbdFrame images) {
     const Stopwatch watch;
     PreparedFrame::Content out;
-    out.by = this;
+    out.by = id_;
     out.timestamp = images.timestamp;
     out.fault = faultOf(images);
     if (out.fault) return out;

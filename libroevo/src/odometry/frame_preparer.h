@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -18,11 +19,9 @@ namespace roevo {
 /// of equally long ones the first.
 void keepLongest(OrganizedEdges& edges, std::size_t most_points);
 
-class FramePreparer;
-
 /// What becomes of an image pair before anything is known of its pose.
 struct PreparedFrame::Content {
-    const FramePreparer* by = nullptr;
+    std::uint64_t by = 0;  ///< id of the preparer
     double timestamp = 0;
     Fault fault;                   ///< why it cannot be processed; then there is no frame
     std::unique_ptr<Frame> frame;  ///< with its edges
@@ -37,6 +36,9 @@ class FramePreparer {
     /// @param options  scaled to the camera
     FramePreparer(const PinholeCamera& camera, const OdometryOptions& options)
         : camera_(camera), undistorter_(camera), extractor_(options.edges), levels_(options.coarse.levels) {}
+
+    /// No other preparer has or had it: a new one may be where an old one was.
+    std::uint64_t id() const { return id_; }
 
     /// @param images  are kept: nobody may write to them any more
     PreparedFrame::Content prepare(RgbdFrame images);
@@ -54,6 +56,9 @@ class FramePreparer {
     Fault faultOf(const RgbdFrame& images);
     std::unique_ptr<Frame> spare();
 
+    static std::uint64_t nextId();
+
+    std::uint64_t id_ = nextId();
     PinholeCamera camera_;
     Undistorter undistorter_;
     EdgeExtractor extractor_;

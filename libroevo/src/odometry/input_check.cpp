@@ -13,7 +13,8 @@ Fault inputFault(const RgbdFrame& frame, const PinholeCamera& camera, double las
         return {"time stamp is no time in seconds (it may be missing, or count nanoseconds)"};
     if (frame.timestamp == last_timestamp) return {"repeated time stamp"};
     if (frame.timestamp < last_timestamp) return {kTimeBackward};
-    if (frame.grey.empty()) return {"no colour image"};
+    if (frame.grey.empty())
+        return {frame.colour.empty() ? "no colour image" : "no grey image beside the colour image"};
     if (frame.grey.type() != CV_8UC1) return {"grey image is not 8-bit with one channel"};
     const auto fits = [&](const cv::Mat& image) {
         return image.cols == camera.width && image.rows == camera.height;

@@ -1,7 +1,9 @@
 #include "keyframe_maker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <sstream>
 
 #include "mapping/semi_dense.h"
 #include "nearest.h"
@@ -16,6 +18,27 @@ bool keyframeIsDue(const Keyframe& reference, const Tracking& tracking, const Ke
            T.translation().norm() > options.max_translation * reference.median_depth;
 }
 
+namespace {
+
+/// Whether the depths as a whole are of another unit, in words to go on with; empty: no.
+std::string wrongUnit(const cv::Mat& depth, const SensorOptions& sensor) {
+    constexpr double kFarOff = 10;  // times
+    std::vector<float> known;
+    for (int v = 0; v < depth.rows; v += 4)
+        for (int u = 0; u < depth.cols; u += 4)
+            if (const float z = depth.at<float>(v, u); std::isfinite(z) && z > 0) known.push_back(z);
+    if (known.empty()) return "";
+    const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+    std::nth_element(known.begin(), middle, known.end());
+    const auto median = static_cast<double>(*middle);
+    if (median >= sensor.min_depth / kFarOff && median <= sensor.depth_limit * kFarOff) return "";
+    std::ostringstream text;
+    text << "; its depths are about " << *middle << " m: are they in metres?";
+    return text.str();
+}
+
+}  // namespace
+
 Fault makeKeyframe(const Frame& frame, const RowMotion& rows, int needed, const PinholeCamera& camera,
                    const OdometryOptions& options, const Tracker& tracker, Keyframe& keyframe) {
     if (frame.images.depth.empty()) return {"no depth image"};
@@ -23,7 +46,7 @@ Fault makeKeyframe(const Frame& frame, const RowMotion& rows, int needed, const 
     const int found = static_cast<int>(keyframe.edges.size());
     if (found < needed)
         return {"only " + std::to_string(found) + " edge points with depth, " + std::to_string(needed) +
-                " needed"};
+                " needed" + wrongUnit(frame.images.depth, options.sensor)};
     keyframe.timestamp = frame.timestamp();
     keyframe.row_motion = rows;
     keyframe.photometric = tracker.choosePoints(keyframe.edges, frame, rows);

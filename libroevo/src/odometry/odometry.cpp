@@ -8,6 +8,10 @@
 
 namespace roevo {
 
+const char* version() {
+    return ROEVO_VERSION;
+}
+
 PreparedFrame::PreparedFrame() = default;
 PreparedFrame::~PreparedFrame() = default;
 PreparedFrame::PreparedFrame(PreparedFrame&&) noexcept = default;
@@ -37,6 +41,7 @@ int Odometry::loadMap(std::istream& in, MapUse use) {
     return impl_->world.loaded();
 }
 int Odometry::saveMap(std::ostream& out) const {
+    impl_->requireWhole();
     StoredMap map = impl_->world.map();
     const auto keyframes = static_cast<int>(map.graph.keyframes.size());
     writeMap(std::move(map), out);
@@ -62,16 +67,23 @@ PreparedFrame Odometry::prepareFrame(RgbdFrame&& images) {
 }
 FrameResult Odometry::processFrame(PreparedFrame prepared) {
     if (!prepared.content_) throw std::logic_error("there is nothing in this prepared frame");
-    if (prepared.content_->by != &impl_->preparer)
+    if (prepared.content_->by != impl_->preparer.id())
         throw std::logic_error("this frame was prepared by another odometry");
+    impl_->requireWhole();
     const Stopwatch watch;
     const double milliseconds = prepared.content_->milliseconds;
-    FrameResult result = impl_->processFrame(std::move(*prepared.content_));
-    result.ms.total = milliseconds + watch.milliseconds();
-    return result;
+    try {
+        FrameResult result = impl_->processFrame(std::move(*prepared.content_));
+        result.ms.total = milliseconds + watch.milliseconds();
+        return result;
+    } catch (...) {
+        impl_->failure = std::current_exception();
+        throw;
+    }
 }
 
 std::vector<MapRefusal> Odometry::refineAll() {
+    impl_->requireWhole();
     return impl_->world.refineAll();
 }
 std::vector<StampedPose> Odometry::trajectory() const {

@@ -379,6 +379,8 @@ FrameResult Odometry::Impl::report(const Outcome& outcome) {
     // A frozen frame leaves the one before it as the last that was looked at
     if (!is_frozen) measured = is_measured;
     world.addFrame(result.timestamp, tracking.pose, is_measured);
+    result.index = static_cast<int>(world.trajectory().live().size()) - 1;
+    result.keyframe = tracking.pose.keyframe;
     result.T_world_camera = world.trajectory().worldPose(tracking.pose);
     result.covariance = world.covariance(tracking.pose);
     result.reason = describe(outcome, result);

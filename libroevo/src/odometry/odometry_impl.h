@@ -1,4 +1,5 @@
 #pragma once
+#include <exception>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -34,6 +35,7 @@ struct Odometry::Impl {
     std::unique_ptr<Frame> frame, frame_before;
     std::vector<std::unique_ptr<Frame>> lost;  // the last ones, since the camera's pose was known
     std::optional<Tracking> candidate;         // of the frame before, if it can still become a keyframe
+    std::exception_ptr failure;                // what a frame threw: all is half done
     double last_timestamp = -std::numeric_limits<double>::infinity();
     double edges_ms = 0;
     bool measured = false;   // the pose of what is in `frame` was
@@ -41,6 +43,9 @@ struct Odometry::Impl {
     int lost_frames = 0;
     double lost_since = 0;  // s
 
+    void requireWhole() const {
+        if (failure) std::rethrow_exception(failure);
+    }
     FrameResult processFrame(PreparedFrame::Content prepared);
     void expect(double timestamp);
     void take(std::unique_ptr<Frame> fresh);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <utility>
 
@@ -75,11 +76,15 @@ void Relocaliser::add(const Keyframe& keyframe, const Frame& frame, std::vector<
         seen->images.mask = frame.images.mask.clone();
     }
     seen->pyramid.build(frame.pyramid.level(0).clone(), 1);
-    const auto launch = threadCount(options_.threads) > 1 ? std::launch::async : std::launch::deferred;
-    at_work_ = std::async(launch, [this, copy = std::move(copy), seen = std::move(seen),
-                                   colours = std::move(colours), tracks = std::move(tracks), end]() mutable {
+    auto describing = [this, copy = std::move(copy), seen = std::move(seen), colours = std::move(colours),
+                       tracks = std::move(tracks), end]() mutable {
         return describe(std::move(copy), std::move(seen), colours, tracks, end);
-    });
+    };
+    // In a thread if there are several, and if one can be started. An attempt that fails must not use it up
+    const auto kept = std::make_shared<decltype(describing)>(std::move(describing));
+    const auto job = [kept] { return (*kept)(); };
+    const auto anyhow = std::launch::async | std::launch::deferred;
+    at_work_ = std::async(threadCount(options_.threads) > 1 ? anyhow : std::launch::deferred, job);
 }
 
 Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<Frame> frame,
@@ -104,10 +109,16 @@ Relocaliser::Described Relocaliser::describe(Keyframe keyframe, std::unique_ptr<
 }
 
 void Relocaliser::collect() {
+    if (failure_) std::rethrow_exception(failure_);
     if (!at_work_.valid()) return;
-    newest_ = at_work_.get();
-    places_.push_back(std::move(newest_.place));
-    index_.insert(static_cast<int>(places_.size()) - 1, places_.back().points);
+    try {
+        newest_ = at_work_.get();
+        places_.push_back(std::move(newest_.place));
+        index_.insert(static_cast<int>(places_.size()) - 1, places_.back().points);
+    } catch (...) {  // places would have other keyframes' ids from now on
+        failure_ = std::current_exception();
+        throw;
+    }
 }
 
 Keyframe Relocaliser::unpacked(int id) const {

@@ -1,4 +1,5 @@
 #pragma once
+#include <exception>
 #include <functional>
 #include <future>
 #include <optional>
@@ -130,6 +131,7 @@ class Relocaliser {
     EdgeRegistrar confirmer_;         ///< to a whole one
     std::vector<KnownPlace> places_;  ///< of each keyframe, by its id
     Described newest_;                ///< keyframe; its place is among places_
+    std::exception_ptr failure_;      ///< of the thread, for good
     std::future<Described> at_work_;  // last: waits for the thread
 };
 

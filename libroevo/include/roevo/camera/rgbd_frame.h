@@ -7,7 +7,7 @@ namespace roevo {
 /// undistorted).
 struct RgbdFrame {
     double timestamp = 0;  ///< seconds, of the colour image
-    cv::Mat grey{};        ///< CV_8UC1, height x width
+    cv::Mat grey{};        ///< CV_8UC1, height x width: what is tracked; cv::cvtColor() makes it of colour
     cv::Mat depth{};       ///< CV_32FC1, height x width, metres along the optical axis; 0 where unknown
     cv::Mat colour{};      ///< optional CV_8UC3 (BGR), only used to colour the map; may be empty
     /// Optional CV_8UC1, height x width: 0 where something is seen that does not stand still in the scene,
