@@ -122,16 +122,16 @@ TEST(Program, LeavesNothingHalfWrittenWhenASignalEndsIt) {
 
 TEST(Program, LeavesNoEmptyFolderWhenItFailsOrIsInterrupted) {
     const TemporaryFolder folder;
-    const std::string outputs = folder / "new";
+    const std::string outputs = folder / "new", failed = folder / "failed";
     ::testing::internal::CaptureStderr();
     EXPECT_EQ(runProgram("p",
                          [&]() -> int {
-                             prepareOutputFolder(outputs);
+                             prepareOutputFolder(failed);
                              throw std::runtime_error("what happened");
                          }),
               1);
     ::testing::internal::GetCapturedStderr();
-    EXPECT_FALSE(std::filesystem::exists(outputs));
+    EXPECT_FALSE(std::filesystem::exists(failed));
     EXPECT_EQ(exitCodeAfter(SIGINT, outputs + "/a.txt"), 128 + SIGINT);
     EXPECT_FALSE(std::filesystem::exists(outputs));
     // What was there before stays, and so does what was written

@@ -296,6 +296,72 @@ TEST_F(RoevoOdometryTest, BadObservationsAreRejectedWithAReason) {
     EXPECT_EQ(odometry_.processObservation(*laterScan(*scan_, 0.12)).status, FrameStatus::kOk);
 }
 
+/// A scan in which nothing can be tracked.
+mrpt::obs::CObservation3DRangeScan::Ptr withoutDepth(const mrpt::obs::CObservation3DRangeScan& scan,
+                                                     double seconds) {
+    auto covered = laterScan(scan, seconds);
+    covered->rangeImage.setZero();
+    return covered;
+}
+
+TEST_F(RoevoOdometryTest, TheRobotBeginsWhereTheFirstScanThatGivesAPoseSeesFrom) {
+    const CPose3D start(1, 2, 0);
+    odometry_.initialize(start);
+    auto tilted = withoutDepth(*scan_, 0);
+    tilted->sensorPose = CPose3D(0.2, 0, 1, 0, 0.5, 0);
+    EXPECT_EQ(odometry_.processObservation(*tilted).status, FrameStatus::kRejected);
+    EXPECT_FALSE(odometry_.odometry());
+    auto level = laterScan(*scan_, 0.03);
+    level->sensorPose = CPose3D(0.2, 0, 1, 0, 0, 0);
+    ASSERT_EQ(odometry_.processObservation(*level).status, FrameStatus::kInitialised);
+    EXPECT_TRUE(toEigen(odometry_.getCurrentPoseEstimation()->getMeanVal()).isApprox(toEigen(start), 1e-9));
+}
+
+TEST_F(RoevoOdometryTest, ACoveredCameraDoesNotKeepOthersFromBeginning) {
+    auto covered = withoutDepth(*scan_, 0);
+    covered->sensorLabel = "REAR";
+    covered->cameraParamsIntensity.fx(400);
+    EXPECT_EQ(odometry_.processObservation(*covered).status, FrameStatus::kRejected);
+    EXPECT_EQ(odometry_.processObservation(*laterScan(*scan_, 0.03)).status, FrameStatus::kInitialised);
+    EXPECT_EQ(odometry_.processObservation(*laterScan(*scan_, 0.06)).status, FrameStatus::kOk);
+}
+
+TEST_F(RoevoOdometryTest, FollowsTheSensorThatIsNamed) {
+    auto rear = laterScan(*scan_, 0.01);
+    rear->sensorLabel = "REAR";
+    mrpt::obs::CActionCollection none;
+    mrpt::obs::CSensoryFrame both;
+    both.insert(scan_);
+    both.insert(rear);
+    odometry_.sensor_label = "REAR";
+    odometry_.processActionObservation(none, both);
+    ASSERT_EQ(odometry_.getTrajectory().size(), 1u);
+    EXPECT_EQ(odometry_.getTrajectory().begin()->first, rear->timestamp);
+    const FrameResult other = odometry_.processObservation(*laterScan(*scan_, 0.02));
+    EXPECT_NE(other.reason.find("follows 'REAR'"), std::string::npos) << other.reason;
+}
+
+TEST_F(RoevoOdometryTest, MotionsAreTheRobots) {
+    const CPose3D mounted(0.3, -0.1, 0.8, 0.4, 0.2, -0.1);
+    scan_->sensorPose = mounted;
+    std::vector<FrameResult> results;
+    for (int i = 0; i < 4; ++i)
+        results.push_back(odometry_.processObservation(*laterScan(*scan_, 0.033 * i)));
+    const auto motion = odometry_.getMotion(results[1], results[3]);
+    const auto trajectory = odometry_.getTrajectory();
+    const CPose3D from(trajectory.at(toMrptTime(results[1].timestamp))),
+        to(trajectory.at(toMrptTime(results[3].timestamp)));
+    EXPECT_LT((CPose3D(to - from) - motion.mean).norm(), 1e-3);  // final poses are smoothed
+    EXPECT_GT(motion.cov(0, 0), 0);
+    EXPECT_THROW(odometry_.getMotion(results[1], FrameResult()), std::out_of_range);
+}
+
+TEST_F(RoevoOdometryTest, ASimpleMapThatCannotBeWrittenSaysWhy) {
+    odometry_.processObservation(*scan_);
+    const std::string error = errorOf([&] { odometry_.saveCurrentMapToFile("/nowhere/m.simplemap"); });
+    EXPECT_EQ(error, "cannot write /nowhere/m.simplemap: No such file or directory");
+}
+
 TEST_F(RoevoOdometryTest, AScanThatIsRejectedMovesNothing) {
     odometry_.processObservation(*scan_);
     odometry_.processObservation(*laterScan(*scan_, 0.06));

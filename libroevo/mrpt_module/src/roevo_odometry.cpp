@@ -48,17 +48,17 @@ void CRoevoOdometry::initialize(const mrpt::poses::CPose3D& robot_pose) {
     T_world_robot_start_ = toEigen(robot_pose);
     map_to_load_.reset();
     odometry_.reset();
-    sensor_label_.clear();
     context_ = {};
     latest_.reset();
     profiler_.clear();
 }
 
 void CRoevoOdometry::loadMapFromFile(const std::string& file, MapUse use) {
-    if (odometry_) throw std::logic_error("a map is loaded before the first observation");
+    if (latest_) throw std::logic_error("a map is loaded before the first observation that gives a pose");
     requireRegularInput(file);
     if (!std::ifstream(file)) throw std::runtime_error("cannot read " + file + ": " + std::strerror(errno));
     map_to_load_ = {file, use};
+    odometry_.reset();
 }
 
 int CRoevoOdometry::saveMapToFile(const std::string& file) const {
@@ -73,9 +73,14 @@ void CRoevoOdometry::begin(const CObservation3DRangeScan& scan, const Pose& T_ro
         const int keyframes = loadMapFile(map_to_load_->file, fresh, map_to_load_->use);
         logFmt(mrpt::system::LVL_INFO, "%s: a map of %d keyframes", map_to_load_->file.c_str(), keyframes);
     }
-    sensor_label_ = scan.sensorLabel;
-    context_.mounts[fromMrptTime(scan.timestamp)] = T_robot_camera;
+    followed_ = scan.sensorLabel;
+    context_.mounts = {{fromMrptTime(scan.timestamp), T_robot_camera}};
     odometry_ = std::move(fresh);
+}
+
+bool CRoevoOdometry::isOther(const CObservation3DRangeScan& scan) const {
+    if (latest_) return scan.sensorLabel != followed_;
+    return !sensor_label.empty() && scan.sensorLabel != sensor_label;
 }
 
 RgbdFrame CRoevoOdometry::convert(const CObservation3DRangeScan& scan) {
@@ -89,14 +94,15 @@ FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
     FrameResult result;
     result.timestamp = fromMrptTime(scan.timestamp);
     const auto camera = [&] { return colourCameraOf(scan); };
-    if (!odometry_) camera();  // without intrinsics nothing can begin
+    if (!latest_ && !isOther(scan)) camera();  // without intrinsics nothing can begin
     RgbdFrame frame;
     Pose T_robot_camera;
     try {
-        if (odometry_ && scan.sensorLabel != sensor_label_)
+        if (isOther(scan))
             throw std::runtime_error("of sensor '" + excerpt(scan.sensorLabel) +
-                                     "', this odometry follows '" + excerpt(sensor_label_) + "'");
-        if (odometry_ && !camera().seesAs(odometry_->camera()))
+                                     "', this odometry follows '" +
+                                     excerpt(latest_ ? followed_ : sensor_label) + "'");
+        if (latest_ && !camera().seesAs(odometry_->camera()))
             throw std::runtime_error("the camera's intrinsics changed");
         frame = convert(scan);  // refuses poses that are none
         T_robot_camera = cameraOnRobot(scan);
@@ -104,7 +110,12 @@ FrameResult CRoevoOdometry::track(const CObservation3DRangeScan& scan) {
         result.reason = reasonOf(fault);
         return result;
     }
-    if (!odometry_) begin(scan, T_robot_camera);
+    // What was rejected until now does not count: the robot begins where this one sees from
+    const auto as_before = [&] {
+        return odometry_ && scan.sensorLabel == followed_ && camera().seesAs(odometry_->camera()) &&
+               context_.mounts.rbegin()->second.isApprox(T_robot_camera);
+    };
+    if (!latest_ && !as_before()) begin(scan, T_robot_camera);
     const mrpt::system::CTimeLoggerEntry entry(profiler_, "track");
     result = odometry_->processFrame(frame);
     if (result.hasPose() && !context_.mounts.rbegin()->second.isApprox(T_robot_camera))
@@ -131,9 +142,14 @@ void CRoevoOdometry::report(const FrameResult& result) {
 
 void CRoevoOdometry::processActionObservation(mrpt::obs::CActionCollection&,
                                               mrpt::obs::CSensoryFrame& observations) {
-    for (const auto& observation : observations)
-        if (const auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation))
+    for (const auto& observation : observations) {
+        const auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation);
+        if (!scan) continue;
+        if (isOther(*scan))
+            logFmt(mrpt::system::LVL_DEBUG, "left out: of sensor '%s'", excerpt(scan->sensorLabel).c_str());
+        else
             processObservation(*scan);
+    }
 }
 
 mrpt::poses::CPose3DPDF::Ptr CRoevoOdometry::getCurrentPoseEstimation() const {
@@ -142,10 +158,20 @@ mrpt::poses::CPose3DPDF::Ptr CRoevoOdometry::getCurrentPoseEstimation() const {
         latest_->T_world_camera, latest_->covariance, context_.mountAt(latest_->timestamp).inverse()));
 }
 
-void CRoevoOdometry::refineAll() {
-    if (!odometry_) return;
-    odometry_->refineAll();
-    if (latest_) latest_->T_world_camera = odometry_->trajectory().back().T_world_camera;
+mrpt::poses::CPose3DPDFGaussian CRoevoOdometry::getMotion(const FrameResult& from,
+                                                          const FrameResult& to) const {
+    if (!latest_ || from.index < 0 || to.index < 0)
+        throw std::out_of_range("there is no motion between observations that have no poses");
+    const auto first = static_cast<std::size_t>(from.index), last = static_cast<std::size_t>(to.index);
+    return robotMotion(odometry_->motion(first, last), odometry_->motionCovariance(first, last),
+                       context_.mountAt(from.timestamp), context_.mountAt(to.timestamp));
+}
+
+std::vector<MapRefusal> CRoevoOdometry::refineAll() {
+    if (!latest_) return {};
+    std::vector<MapRefusal> refusals = odometry_->refineAll();
+    latest_->T_world_camera = odometry_->trajectory().back().T_world_camera;
+    return refusals;
 }
 
 mrpt::poses::CPose3DInterpolator CRoevoOdometry::getTrajectory() const {

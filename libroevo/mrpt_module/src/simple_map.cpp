@@ -5,6 +5,8 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
+#include <cerrno>
+#include <cstring>
 #include <stdexcept>
 
 #include "coloured_points.h"
@@ -12,6 +14,7 @@
 #include "roevo_mrpt/pose_conversions.h"
 #include "roevo_mrpt/time_conversions.h"
 #include "tracking/relative_pose.h"
+#include "whole_file.h"
 
 namespace roevo {
 namespace {
@@ -65,9 +68,15 @@ void buildSimpleMap(const std::vector<KeyframeInfo>& keyframes, const EdgeMap& k
 }
 
 void saveSimpleMap(const std::string& file, const mrpt::maps::CSimpleMap& map) {
-    GzFile out;
-    const bool written = out.open(file, kGzLevel) && out.write(map);
-    if (!out.close() || !written) throw std::runtime_error("cannot write " + file + ": disk full?");
+    writeWholeFile(file, [&](const std::string& temporary) {
+        GzFile out;
+        errno = 0;
+        if (!out.open(temporary, kGzLevel))
+            throw std::runtime_error("cannot write " + file + ": " +
+                                     (errno ? std::strerror(errno) : "the file cannot be created"));
+        const bool written = out.write(map);
+        return out.close() && written;
+    });
 }
 
 }  // namespace roevo

@@ -15,6 +15,7 @@
 #include <iosfwd>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "roevo/odometry.h"
 #include "roevo_mrpt/mrpt_compat.h"
@@ -48,7 +49,11 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// Takes effect at the next initialize() or first observation.
     TOptions options;
 
-    /// Forgets everything; the robot's next pose is x0's mean (default: the origin).
+    /// Observations of this sensor are followed; empty: those of the first that gives a pose.
+    std::string sensor_label;
+
+    /// Forgets everything but options, mask and sensor_label; the first pose that the robot has is x0's mean
+    /// (default: the origin).
     /// @param initial_map  must be empty: a CSimpleMap does not tell what places look like (throws
     /// std::invalid_argument); see loadMapFromFile()
     void initialize(const mrpt::maps::CSimpleMap& initial_map = {},
@@ -57,10 +62,10 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
 
     /// Begins with the map of an earlier run: poses are in its world from where the camera is recognised in
     /// it (odometry()->isLocalised()). To be called between initialize(), which forgets it, and the first
-    /// observation.
+    /// observation that gives a pose.
     /// @param file  of saveMapToFile(); of roevo-odometry --map-out, too, whose worlds are not upright: they
     /// have the axes of a camera. Its contents are read at the first observation
-    /// @throws std::runtime_error when the file cannot be read; std::logic_error after the first observation
+    /// @throws std::runtime_error when the file cannot be read; std::logic_error once there is a pose
     void loadMapFromFile(const std::string& file, MapUse use = MapUse::kExtend);
     /// Writes a map for loadMapFromFile(), see Odometry::saveMap(): where the camera was not recognised in
     /// the map that was loaded, that alone. @return how many keyframes it has
@@ -74,7 +79,7 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     void setMask(const cv::Mat& mask) { mask_ = mask.clone(); }
 
     /// Tracks one observation. Observations that cannot be used come back kRejected with a reason and are
-    /// logged; so do those of another sensorLabel than the first one's: this follows one camera.
+    /// logged; so do those of another sensorLabel: this follows one camera.
     /// @return T_world_camera and its covariance are of the optical frame of the colour camera, in the
     /// robot's world.
     /// @throws std::runtime_error or std::invalid_argument as long as the first observation's intrinsics, an
@@ -82,7 +87,7 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// std::bad_alloc
     FrameResult processObservation(const mrpt::obs::CObservation3DRangeScan& scan);
 
-    /// Tracks every range image of the frame. The action is not used.
+    /// Tracks the range images of the frame, those of other sensors are left out. The action is not used.
     /// @throws as processObservation(), with those that follow not tracked
     void processActionObservation(mrpt::obs::CActionCollection& action,
                                   mrpt::obs::CSensoryFrame& observations);
@@ -91,11 +96,17 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// observation
     mrpt::poses::CPose3DPDF::Ptr getCurrentPoseEstimation() const;
 
+    /// How the robot moved between two observations that have poses, as both are known by now, with
+    /// covariance: what a filter predicts with. Infinite where tracking was begun anew between them.
+    /// @throws std::out_of_range for a result that was rejected
+    mrpt::poses::CPose3DPDFGaussian getMotion(const FrameResult& from, const FrameResult& to) const;
+
     /// The robot's poses at all tracked observations.
     mrpt::poses::CPose3DInterpolator getTrajectory() const;
 
     /// When a recording ends, or whenever there is time: see roevo::Odometry::refineAll().
-    void refineAll();
+    /// @return keyframes that were left as they were, and why
+    std::vector<MapRefusal> refineAll();
 
     /// The keyframes: robot pose, and the keyframe's edges as it saw them (pseudo-edges too) as a
     /// CObservationPointCloud of a CColouredPointsMap. Those of a map that was loaded have the sensor's pose
@@ -118,14 +129,15 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// Time spent per stage.
     const mrpt::system::CTimeLogger& profiler() const { return profiler_; }
 
-    /// The core, null before the first observation that can be used.
-    const Odometry* odometry() const { return odometry_ ? &*odometry_ : nullptr; }
+    /// The core, null before the first observation that gives a pose.
+    const Odometry* odometry() const { return latest_ ? &*odometry_ : nullptr; }
 
   private:
     struct MapToLoad {
         std::string file;
         MapUse use = MapUse::kExtend;
     };
+    bool isOther(const mrpt::obs::CObservation3DRangeScan& scan) const;
     void begin(const mrpt::obs::CObservation3DRangeScan& scan, const Pose& T_robot_camera);
     RgbdFrame convert(const mrpt::obs::CObservation3DRangeScan& scan);
     FrameResult track(const mrpt::obs::CObservation3DRangeScan& scan);
@@ -134,7 +146,7 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     Pose T_world_robot_start_ = Pose::Identity();
     std::optional<MapToLoad> map_to_load_;
     std::optional<Odometry> odometry_;
-    std::string sensor_label_;
+    std::string followed_;  // sensorLabel
     RobotContext context_;  // one mount unless the camera moves on the robot; covariances of frames
     std::optional<FrameResult> latest_;
     cv::Mat mask_;
