@@ -31,6 +31,8 @@ def read_pairs(folder):
 
 def read_camera(file):
     """The camera, and the units of depth per metre."""
+    if not file.exists():
+        sys.exit(f"{file} is missing: it tells the camera, see docs/formats.md (roevo-odometry knows those of TUM)")
     lines = [line.split("#")[0].split(":") for line in file.read_text().splitlines()]
     values = {key.strip(): value for key, value in (line for line in lines if len(line) == 2)}
     for key in values:

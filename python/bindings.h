@@ -3,7 +3,12 @@
 
 #include <pybind11/pybind11.h>
 
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+
 #include "roevo/options.h"
+#include "roevo/types.h"
 
 namespace roevo::python {
 
@@ -11,8 +16,16 @@ void addCamera(pybind11::module_& module);
 void addOptions(pybind11::module_& module);
 void addOdometry(pybind11::module_& module);
 
-/// What a dict of "section.key" and values means, on top of the defaults.
-/// @throws std::invalid_argument in one line, naming the option
-OdometryOptions toOptions(const pybind11::dict& values);
+/// @param values  None: the defaults; Options: a copy; a dict of "section.key" and values: the defaults, and
+/// those on top
+/// @throws std::invalid_argument in one line, naming the option; py::type_error for anything else
+OdometryOptions toOptions(const pybind11::object& values);
+
+/// @param name  as errors call it
+/// @throws std::invalid_argument for what is no rigid motion
+Pose toPose(const Eigen::MatrixXd& matrix, const std::string& name);
+
+/// @throws OSError as Python's open() does: FileNotFoundError, PermissionError ...
+void requireReadable(const std::filesystem::path& file);
 
 }  // namespace roevo::python

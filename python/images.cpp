@@ -4,6 +4,8 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
+#include "roevo/camera/depth_registration.h"
+
 namespace py = pybind11;
 
 namespace roevo::python {
@@ -25,10 +27,16 @@ bool holds(const py::array& array) {
     return array.dtype().equal(py::dtype::of<Value>());
 }
 
+std::string nameOfType(const py::object& object) {
+    return py::str(py::type::of(object).attr("__name__"));
+}
+
 py::array toArray(const py::object& object, const std::string& name) {
     if (!py::isinstance<py::array>(object))
-        throw py::type_error(name + " must be a numpy array, not " +
-                             std::string(py::str(py::type::of(object).attr("__name__"))));
+        throw py::type_error(name + " must be a numpy array, not " + nameOfType(object));
+    // Of which the mask would be lost
+    if (py::isinstance(object, py::module_::import("numpy.ma").attr("MaskedArray")))
+        throw py::type_error(name + " is a masked array: give " + name + ".filled(0)");
     return py::reinterpret_borrow<py::array>(object);
 }
 
@@ -68,27 +76,30 @@ cv::Mat toMetres(const cv::Mat& units, double units_per_metre) {
     return metres;
 }
 
-cv::Mat toDepth(const py::array& array, std::optional<double> scale, const PinholeCamera& camera) {
+cv::Mat toDepth(const py::array& array, const py::object& depth_scale, const PinholeCamera& camera) {
     if (array.ndim() != 2) throw std::invalid_argument("depth must be height x width, not " + shapeOf(array));
     const bool is_float = holds<float>(array);
     if (!is_float && !holds<std::uint16_t>(array))
-        throw py::type_error("depth must be of type uint16 or float32, not " + typeOf(array));
+        throw py::type_error("depth must be of type uint16 or float32, not " + typeOf(array) +
+                             " (see numpy's astype())");
     checkSize(array, "depth", camera);
     if (is_float) {
-        if (scale) throw std::invalid_argument("depth_scale is for uint16 depth; float32 depth is in metres");
+        if (!depth_scale.is_none())
+            throw std::invalid_argument("depth_scale is for uint16 depth; float32 depth is in metres");
         cv::Mat depth = copy<float>(array, CV_32FC1);
         for (int v = 0; v < depth.rows; ++v)
             for (int u = 0; u < depth.cols; ++u)
                 if (!std::isfinite(depth.at<float>(v, u))) depth.at<float>(v, u) = 0;
         return depth;
     }
-    if (!scale)
+    if (depth_scale.is_none())
         throw std::invalid_argument(
             "depth is uint16: give depth_scale, its units per metre (1000 for millimetres, 5000 for TUM's)");
-    if (!(*scale > 0 && std::isfinite(*scale)))
+    const double scale = toNumber(depth_scale, "depth_scale");
+    if (!(scale > 0 && std::isfinite(scale)))
         throw std::invalid_argument("depth_scale must be above 0 units per metre, not " +
-                                    std::string(py::str(py::float_(*scale))));
-    return toMetres(copy<std::uint16_t>(array, CV_16UC1), *scale);
+                                    std::string(py::str(py::float_(scale))));
+    return toMetres(copy<std::uint16_t>(array, CV_16UC1), scale);
 }
 
 cv::Mat toMask(const py::array& array, const PinholeCamera& camera) {
@@ -102,11 +113,30 @@ cv::Mat toMask(const py::array& array, const PinholeCamera& camera) {
 
 }  // namespace
 
-RgbdFrame toFrame(const py::object& colour, const py::object& depth, double stamp,
-                  std::optional<double> depth_scale, bool bgr, const py::object& mask,
+double toNumber(const py::object& value, const std::string& name) {
+    const double number = PyFloat_AsDouble(value.ptr());
+    if (number != -1 || PyErr_Occurred() == nullptr) return number;
+    PyErr_Clear();
+    throw py::type_error(name + " must be a number, not " + nameOfType(value));
+}
+
+py::array_t<float> registerDepth(const py::object& depth, const PinholeCamera& depth_camera,
+                                 const PinholeCamera& colour_camera, const Pose& T_colour_depth,
+                                 const py::object& depth_scale) {
+    const cv::Mat metres = toDepth(toArray(depth, "depth"), depth_scale, depth_camera);
+    const cv::Mat registered = roevo::registerDepth(metres, depth_camera, colour_camera, T_colour_depth);
+    py::array_t<float> out({registered.rows, registered.cols});
+    for (int v = 0; v < registered.rows; ++v)
+        std::memcpy(out.mutable_data(v, 0), registered.ptr<float>(v),
+                    static_cast<std::size_t>(registered.cols) * sizeof(float));
+    return out;
+}
+
+RgbdFrame toFrame(const py::object& colour, const py::object& depth, const py::object& stamp,
+                  const py::object& depth_scale, bool bgr, const py::object& mask,
                   const PinholeCamera& camera) {
     RgbdFrame frame;
-    frame.timestamp = stamp;
+    frame.timestamp = toNumber(stamp, "stamp");
     if (!mask.is_none()) frame.mask = toMask(toArray(mask, "mask"), camera);
     const cv::Mat image = toColour(toArray(colour, "colour"), camera);
     frame.depth = toDepth(toArray(depth, "depth"), depth_scale, camera);

@@ -3,7 +3,9 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
+#include <unistd.h>
 
+#include <memory>
 #include <mutex>
 
 #include "bindings.h"
@@ -13,18 +15,18 @@
 namespace py = pybind11;
 
 namespace roevo::python {
-namespace {
 
-Pose toPose(const Eigen::MatrixXd& matrix) {
-    if (matrix.rows() != 4 || matrix.cols() != 4) throw std::invalid_argument("T_world_start must be 4 x 4");
+Pose toPose(const Eigen::MatrixXd& matrix, const std::string& name) {
+    if (matrix.rows() != 4 || matrix.cols() != 4) throw std::invalid_argument(name + " must be 4 x 4");
     const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
     const bool rigid = matrix.allFinite() && (rotation * rotation.transpose()).isIdentity(1e-4) &&
                        rotation.determinant() > 0 &&
                        matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), 1e-9);
-    if (!rigid)
-        throw std::invalid_argument("T_world_start is no rigid motion (rotation, translation, 0 0 0 1)");
+    if (!rigid) throw std::invalid_argument(name + " is no rigid motion (rotation, translation, 0 0 0 1)");
     return Pose(Eigen::Quaterniond(rotation), matrix.topRightCorner<3, 1>());
 }
+
+namespace {
 
 /// N x 8: timestamp tx ty tz qx qy qz qw, with qw >= 0.
 py::array_t<double> toArray(const std::vector<StampedPose>& poses) {
@@ -55,23 +57,47 @@ py::array_t<Value> rows(const Items& items) {
         items, [](const auto& item) -> const auto& { return item; });
 }
 
+/// Lets other threads run Python. A thread that is in here when Python ends is ended by an unwinding as it
+/// comes back, which pybind11's own (gil_scoped_release) makes the end of the program.
+class WithoutPython {
+  public:
+    WithoutPython() = default;
+    ~WithoutPython() noexcept(false) { PyEval_RestoreThread(state_); }
+    WithoutPython(const WithoutPython&) = delete;
+    WithoutPython& operator=(const WithoutPython&) = delete;
+
+  private:
+    PyThreadState* const state_ = PyEval_SaveThread();
+};
+
 /// The odometry for several Python threads: one at a time works with it, and lets the others run Python
 /// meanwhile.
 class Session {
     template <class Work>
     auto alone(const Work& work) {
-        const py::gil_scoped_release released;
+        if (getpid() != process_)
+            throw std::runtime_error("this Odometry was made before fork(): make another in this process");
+        const WithoutPython released;
         const std::lock_guard<std::mutex> lock(mutex_);
-        return work(odometry_);
+        return work(*odometry_);
     }
 
   public:
-    Session(const PinholeCamera& camera, const OdometryOptions& options, const Eigen::MatrixXd& T_world_start)
-        : odometry_(camera, options, toPose(T_world_start)) {}
+    Session(const PinholeCamera& camera, const py::object& options, const Eigen::MatrixXd& T_world_start)
+        : odometry_(std::make_unique<Odometry>(camera, toOptions(options),
+                                               toPose(T_world_start, "T_world_start"))) {}
+    ~Session() {
+        // The threads that it would wait for are not in this process
+        if (getpid() != process_) (void)odometry_.release();
+    }
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
 
-    FrameResult process(const py::object& colour, const py::object& depth, double stamp,
-                        std::optional<double> depth_scale, bool bgr, const py::object& mask) {
-        const RgbdFrame frame = toFrame(colour, depth, stamp, depth_scale, bgr, mask, odometry_.camera());
+    const Odometry& odometry() const { return *odometry_; }  // what never changes of it
+
+    FrameResult process(const py::object& colour, const py::object& depth, const py::object& stamp,
+                        const py::object& depth_scale, bool bgr, const py::object& mask) {
+        const RgbdFrame frame = toFrame(colour, depth, stamp, depth_scale, bgr, mask, odometry_->camera());
         return alone([&](Odometry& odometry) { return odometry.processFrame(frame); });
     }
 
@@ -83,6 +109,7 @@ class Session {
     }
 
     int loadMap(const std::filesystem::path& file, bool localise_only) {
+        requireReadable(file);
         return alone([&](Odometry& odometry) {
             return loadMapFile(file.string(), odometry, localise_only ? MapUse::kLocalise : MapUse::kExtend);
         });
@@ -93,14 +120,15 @@ class Session {
     }
 
     /// What a constant function of the odometry gives.
-    template <class Value>
-    Value get(Value (Odometry::*function)() const) {
-        return alone([&](const Odometry& odometry) { return (odometry.*function)(); });
+    template <class Value, class... Arguments>
+    Value get(Value (Odometry::*function)(Arguments...) const, Arguments... arguments) {
+        return alone([&](const Odometry& odometry) { return (odometry.*function)(arguments...); });
     }
 
   private:
     std::mutex mutex_;
-    Odometry odometry_;
+    std::unique_ptr<Odometry> odometry_;
+    const pid_t process_ = getpid();
 };
 
 void addResult(py::module_& module) {
@@ -126,7 +154,8 @@ void addResult(py::module_& module) {
                 if (!self.hasPose()) return py::none();
                 return py::cast(self.covariance);
             },
-            "6 x 6: position (m), then orientation (rad), along the world's axes; None when rejected")
+            "6 x 6: position (m), then orientation (rad, R <- exp(phi) R), along the world's axes; None when "
+            "rejected")
         .def_readonly("keyframe", &FrameResult::keyframe,
                       "id of the keyframe that the pose is relative to; -1 when rejected")
         .def_readonly("new_keyframe", &FrameResult::new_keyframe, "whether it brought a new keyframe")
@@ -140,6 +169,10 @@ void addResult(py::module_& module) {
         .def_readonly("joined_at", &FrameResult::joined_at,
                       "keyframe of another track that it was joined to, or -1")
         .def_readonly("closed_at", &FrameResult::closed_at, "keyframe that a loop was closed to, or -1")
+        .def_readonly("map_correction", &FrameResult::map_correction,
+                      "metres: how far the map, or a place that was recognised, moved the camera before this "
+                      "pose was known; poses before and after differ by it without any motion")
+        .def_readonly("map_turn", &FrameResult::map_turn, "radians: how far it turned it, likewise")
         .def_property_readonly(
             "milliseconds", [](const FrameResult& self) { return self.ms.total; }, "that the frame took")
         .def("__repr__", [](const FrameResult& self) {
@@ -162,13 +195,13 @@ void addMapParts(py::module_& module) {
         .def_readonly("views", &MapEdge::views, "keyframes that see it")
         .def_property_readonly(
             "verdict", [](const MapEdge& self) { return toString(self.verdict); },
-            "what mapping thinks of it")
+            "\"unconfirmed\", \"true\", or \"pseudo: \" and why")
         .def_property_readonly(
             "is_pseudo", [](const MapEdge& self) { return isPseudo(self.verdict); },
             "whether it belongs to no surface: a moving shadow, a border")
         .def_readonly("confidence", &MapEdge::confidence, "0 to 1");
     py::class_<KeyframeInfo>(module, "Keyframe", "A keyframe, with its pose as it is known by now.")
-        .def_readonly("id", &KeyframeInfo::id)
+        .def_readonly("id", &KeyframeInfo::id, "0, 1, ... in the order of time")
         .def_readonly("timestamp", &KeyframeInfo::timestamp, "seconds")
         .def_property_readonly(
             "pose", [](const KeyframeInfo& self) -> Eigen::Matrix4d { return self.T_world_camera.matrix(); },
@@ -186,7 +219,29 @@ void addPoses(py::class_<Session>& session) {
             "The same, as they were known when their frames were processed.")
         .def(
             "keyframes", [](Session& self) { return self.get(&Odometry::keyframes); },
-            "List of Keyframe; those of a map that was loaded come first.")
+            "List of Keyframe; those of a map that was loaded come first, once the camera was recognised in "
+            "it.")
+        .def(
+            "motion",
+            [](Session& self, std::size_t from, std::size_t to) -> Eigen::Matrix4d {
+                return self.get(&Odometry::motion, from, to).matrix();
+            },
+            py::arg("from_index"), py::arg("to_index"),
+            R"(T_from_to, 4 x 4: how the camera moved between two frames (FrameResult.index), as both are known by now.
+
+The poses of two results do not make a motion where the map moved between them. Raises IndexError.)")
+        .def(
+            "motion_covariance",
+            [](Session& self, std::size_t from, std::size_t to) {
+                return self.get(&Odometry::motionCovariance, from, to);
+            },
+            py::arg("from_index"), py::arg("to_index"),
+            R"(Of that motion, 6 x 6: position (m), then orientation (rad, R <- R exp(phi)), along the second camera's axes.
+
+Infinite where tracking was begun anew between the frames. Raises IndexError.)")
+        .def_property_readonly(
+            "localised", [](Session& self) { return self.get(&Odometry::isLocalised); },
+            "whether all is in the world of the map that was loaded: the camera was recognised in it")
         .def(
             "map_edges", [](Session& self) { return self.get(&Odometry::map); },
             "List of MapEdge, in the world: fused over all keyframes in mode ba, else the keyframes' own.")
@@ -214,13 +269,20 @@ void addOdometry(py::module_& module) {
     addMapParts(module);
     py::class_<Session> session(module, "Odometry", R"(RGB-D visual odometry. Feed frames in time order.
 
-Threads may share one: they wait for each other, and Python runs on meanwhile.)");
+Threads may share one: they wait for each other, and Python runs on meanwhile. It stays with the process that made it:
+after fork(), as by multiprocessing, make another.)");
     session
-        .def(py::init<const PinholeCamera&, const OdometryOptions&, const Eigen::MatrixXd&>(),
-             py::arg("camera"), py::arg("options") = OdometryOptions(),
+        .def(py::init<const PinholeCamera&, const py::object&, const Eigen::MatrixXd&>(), py::arg("camera"),
+             py::arg("options") = py::none(),
              py::arg("T_world_start") = Eigen::MatrixXd::Identity(4, 4).eval(),
-             "T_world_start is the first frame's pose. Raises ValueError for a camera or an option that is "
-             "unusable.")
+             R"(options are Options, or a dict of those that are not as by default.
+
+T_world_start is the first frame's pose. Raises ValueError for a camera or an option that is unusable.)")
+        .def_property_readonly(
+            "camera", [](const Session& self) { return self.odometry().camera(); }, "as given")
+        .def_property_readonly(
+            "options", [](const Session& self) { return self.odometry().options(); },
+            "a copy of those in use")
         .def("process", &Session::process, py::arg("colour"), py::arg("depth"), py::arg("stamp"),
              py::kw_only(), py::arg("depth_scale") = py::none(), py::arg("bgr") = false,
              py::arg("mask") = py::none(),
@@ -241,10 +303,24 @@ Returns what was left as it was and why, a line each.)")
         .def("load_map", &Session::loadMap, py::arg("file"), py::arg("localise_only") = false,
              R"(Begins with a map that save_map() or roevo-odometry --map-out wrote, before the first frame.
 
-Poses are in its world from where the camera is recognised in it. Returns how many keyframes it has.)")
+Poses are in its world from where the camera is recognised in it (see localised). Returns how many keyframes it has.
+Raises OSError for a file that cannot be read, RuntimeError for what is no map, or one of another camera.)")
         .def("save_map", &Session::saveMap, py::arg("file"),
              "Writes the map for load_map() and roevo-odometry --map-in. Returns how many keyframes it has.");
     addPoses(session);
+    module.def(
+        "register_depth",
+        [](const py::object& depth, const PinholeCamera& depth_camera, const PinholeCamera& colour_camera,
+           const Eigen::MatrixXd& T_colour_depth, const py::object& depth_scale) {
+            return registerDepth(depth, depth_camera, colour_camera, toPose(T_colour_depth, "T_colour_depth"),
+                                 depth_scale);
+        },
+        py::arg("depth"), py::arg("depth_camera"), py::arg("colour_camera"), py::arg("T_colour_depth"),
+        py::kw_only(), py::arg("depth_scale") = py::none(),
+        R"(Depth as the colour camera would see it, float32 in metres, 0 where nothing fell.
+
+depth           of the depth camera, as Odometry.process() takes it
+T_colour_depth  4 x 4, maps points of the depth camera into the colour camera)");
 }
 
 }  // namespace roevo::python

@@ -1,5 +1,9 @@
 #include <pybind11/stl/filesystem.h>
 
+#include <cstdio>
+#include <stdexcept>
+#include <vector>
+
 #include "bindings.h"
 #include "roevo_mrpt/config_file.h"
 
@@ -28,14 +32,18 @@ void set(OdometryOptions& options, const std::string& name, const py::handle& va
         throw std::invalid_argument(fault);
 }
 
+std::string number(const OptionField& field, double value) {
+    if (std::holds_alternative<int*>(field.value)) return std::to_string(static_cast<int>(value));
+    return py::str(py::float_(value));
+}
+
 std::string describe(OdometryOptions& options, const std::string& name) {
     const OptionField field = fieldOf(options, name);
     std::string text = field.description + (field.unit.empty() ? "" : ", " + field.unit);
     if (std::holds_alternative<bool*>(field.value))
         text += ", True or False";
     else if (field.max > field.min)
-        text += ", " + std::string(py::str(py::float_(field.min))) + " to " +
-                std::string(py::str(py::float_(field.max)));
+        text += ", " + number(field, field.min) + " to " + number(field, field.max);
     return text;
 }
 
@@ -51,29 +59,63 @@ bool has(OdometryOptions& options, const std::string& name) {
     return false;
 }
 
+void update(OdometryOptions& options, const py::dict& values) {
+    for (const auto& [name, value] : values) set(options, py::str(name), value);
+}
+
+/// Those that are not as by default.
+py::dict changed(OdometryOptions& options) {
+    OdometryOptions defaults;
+    const std::vector<OptionField> own = optionFields(options), usual = optionFields(defaults);
+    py::dict out;
+    for (std::size_t i = 0; i < own.size(); ++i)
+        if (own[i].toText() != usual[i].toText()) out[py::str(own[i].name())] = valueOf(own[i]);
+    return out;
+}
+
 }  // namespace
 
-OdometryOptions toOptions(const py::dict& values) {
+OdometryOptions toOptions(const py::object& values) {
+    if (py::isinstance<OdometryOptions>(values)) return values.cast<OdometryOptions>();
     OdometryOptions options;
-    for (const auto& [name, value] : values) set(options, py::str(name), value);
+    if (values.is_none()) return options;
+    if (!py::isinstance<py::dict>(values))
+        throw py::type_error("options must be roevo.Options or a dict, not " +
+                             std::string(py::str(py::type::of(values).attr("__name__"))));
+    update(options, values);
     return options;
 }
 
+void requireReadable(const std::filesystem::path& file) {
+    if (std::FILE* const opened = std::fopen(file.c_str(), "rb")) {
+        std::fclose(opened);
+        return;
+    }
+    PyErr_SetFromErrnoWithFilename(PyExc_OSError, file.c_str());
+    throw py::error_already_set();
+}
+
 void addOptions(py::module_& module) {
-    py::class_<OdometryOptions>(module, "Options",
-                                R"(Every option of the odometry, by "section.key" as in roevo.ini.
+    py::class_<OdometryOptions> options(module, "Options",
+                                        R"(Every option of the odometry, by "section.key" as in roevo.ini.
 
     options = roevo.Options({"odometry.mode": "tr"})
     options["keyframe.max_rotation_deg"] = 10
     for name in options:
-        print(name, options[name], options.describe(name)))")
-        .def(py::init(&toOptions), py::arg("values") = py::dict(),
-             "The defaults, and on top what the dict says. Raises ValueError naming the option.")
+        print(name, options[name], options.describe(name)))");
+    options
+        .def(py::init(&toOptions), py::arg("values") = py::none(),
+             "The defaults, and on top what the dict says; or a copy. Raises ValueError naming the option.")
         .def_static(
             "read",
             [](const std::filesystem::path& file) {
+                requireReadable(file);
                 OdometryOptions options;
-                loadConfigFile(file.string(), options);
+                try {
+                    loadConfigFile(file.string(), options);
+                } catch (const std::runtime_error& fault) {
+                    throw std::invalid_argument(fault.what());
+                }
                 return options;
             },
             py::arg("file"), "The defaults, and on top what an .ini file says, such as config_used.ini.")
@@ -91,8 +133,21 @@ void addOptions(py::module_& module) {
         .def("__contains__", &has, py::arg("name"))
         .def("__len__", [](OdometryOptions& self) { return optionFields(self).size(); })
         .def("__iter__", [](OdometryOptions& self) { return py::iter(names(self)); })
-        .def("keys", &names)
+        .def("update", &update, py::arg("values"), "Sets those that the dict names.")
+        .def("__repr__",
+             [](OdometryOptions& self) {
+                 const py::dict own = changed(self);
+                 return "roevo.Options(" + (own.empty() ? "" : std::string(py::repr(own))) + ")";
+             })
+        .def(py::pickle([](OdometryOptions& self) { return py::make_tuple(changed(self)); },
+                        [](const py::tuple& state) { return toOptions(py::object(state[0])); }))
         .def("describe", &describe, py::arg("name"), "What the option is, its unit and its range.");
+    // The rest of what a mapping can
+    const py::object mapping = py::module_::import("collections.abc").attr("Mapping");
+    mapping.attr("register")(options);
+    for (const char* name : {"keys", "values", "items", "get", "__eq__"})
+        options.attr(name) = mapping.attr(name);
+    options.attr("__hash__") = py::none();  // it can be changed
 }
 
 }  // namespace roevo::python

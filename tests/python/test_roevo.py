@@ -1,6 +1,9 @@
 """The Python module: same bytes as roevo-odometry, arrays of all kinds, bad ones, threads."""
+import ast
+import copy
 import os
 import pathlib
+import pickle
 import subprocess
 import sys
 import tempfile
@@ -99,6 +102,20 @@ class SameAsTheProgram(unittest.TestCase):
             self.assertTrue((np.linalg.eigvalsh(result.covariance) >= -1e-15).all())
 
 
+    def test_motions_are_those_between_two_frames(self):
+        odometry, results = track(odometry=roevo.Odometry(recording.camera, {**OPTIONS, "odometry.mode": "tr"}))
+        poses = [result.pose for result in results]
+        self.assertEqual(sum(result.map_correction for result in results), 0)  # so that live poses make motions
+        np.testing.assert_allclose(odometry.motion(4, 9), np.linalg.inv(poses[4]) @ poses[9], atol=1e-12)
+        covariance = odometry.motion_covariance(4, 9)
+        np.testing.assert_allclose(covariance, covariance.T)
+        self.assertTrue((np.linalg.eigvalsh(covariance) > 0).all())
+        np.testing.assert_array_equal(odometry.motion_covariance(4, 4), np.zeros((6, 6)))
+        for wrong in (odometry.motion, odometry.motion_covariance):
+            with self.assertRaises(IndexError):
+                wrong(0, 16)
+
+
 class Example(unittest.TestCase):
     def test_a_folder_with_a_lens_and_depth_that_is_missing_has_the_programs_bytes(self):
         room, out = folder / "lens", folder / "lens_out"
@@ -112,6 +129,10 @@ class Example(unittest.TestCase):
                               stdout=subprocess.PIPE)
         self.assertEqual(made.stdout, (out / "trajectory.txt").read_text())
         self.assertEqual(len(made.stdout.splitlines()), 1 + 5)
+        (room / "camera.txt").unlink()
+        refused = subprocess.run([sys.executable, "-B", str(script), str(room)], text=True, stderr=subprocess.PIPE)
+        self.assertIn("camera.txt is missing", refused.stderr)
+        self.assertEqual((refused.returncode, refused.stderr.count("\n")), (1, 1))
 
 
 class Arrays(unittest.TestCase):
@@ -165,6 +186,7 @@ class Arrays(unittest.TestCase):
         odometry = roevo.Odometry(recording.camera, roevo.Options(OPTIONS))
         for kind, message, mask in [
             (TypeError, "mask must be a numpy array, not str", "mask.png"),
+            (TypeError, "mask is a masked array", np.ma.masked_array(np.ones((240, 320), bool))),
             (TypeError, "mask must be of type bool or uint8, not float64", np.ones((240, 320))),
             (ValueError, "mask must be height x width, not 240 x 320 x 1", np.ones((240, 320, 1), bool)),
             (ValueError, "mask is 320 x 240, but the camera has 240 rows", np.ones((320, 240), bool)),
@@ -178,6 +200,8 @@ class Arrays(unittest.TestCase):
         cases = [
             (TypeError, "colour must be a numpy array, not list", colour.tolist(), depth, 5000),
             (TypeError, "depth must be a numpy array, not NoneType", colour, None, 5000),
+            (TypeError, "depth is a masked array: give depth.filled(0)", colour, np.ma.masked_greater(depth, 9000), 5000),
+            (TypeError, "depth_scale must be a number, not str", colour, depth, "mm"),
             (TypeError, "colour must be of type uint8, not float64", colour / 255, depth, 5000),
             (TypeError, "colour must be of type uint8, not int8", colour.view(np.int8), depth, 5000),
             (TypeError, "depth must be of type uint16 or float32, not int32", colour, depth.astype(np.int32), 5000),
@@ -205,9 +229,24 @@ class Arrays(unittest.TestCase):
                     odometry.process(bad_colour, bad_depth, stamp, depth_scale=scale)
                 self.assertIn(message, str(raised.exception))
                 self.assertNotIn("\n", str(raised.exception))
+        with self.assertRaisesRegex(TypeError, "^stamp must be a number, not NoneType$"):
+            odometry.process(colour, depth, None, depth_scale=5000)
         self.assertEqual(odometry.trajectory().shape, (0, 8))
         track(odometry=odometry)
         np.testing.assert_array_equal(odometry.trajectory(), track()[0].trajectory())
+
+    def test_depth_of_another_camera_is_registered(self):
+        _, depth, _ = recording.frames[0]
+        camera, scale = recording.camera, recording.depth_scale
+        metres = depth.astype(np.float32) / np.float32(scale)
+        same = roevo.register_depth(depth, camera, camera, np.eye(4), depth_scale=scale)
+        np.testing.assert_allclose(same, metres, rtol=1e-5)
+        back = np.eye(4)
+        back[2, 3] = 0.5  # the colour camera is farther away
+        far = roevo.register_depth(metres, camera, camera, back)
+        self.assertAlmostEqual(far[120, 160], metres[118:123, 158:163].mean() + 0.5, delta=0.02)
+        with self.assertRaisesRegex(ValueError, "T_colour_depth is no rigid motion"):
+            roevo.register_depth(metres, camera, camera, 2 * np.eye(4))
 
     def test_bad_frames_are_rejected_with_a_reason(self):
         odometry, results = track(recording.frames[:3])
@@ -247,7 +286,9 @@ class Maps(unittest.TestCase):
     def test_a_kept_map_is_recognised(self):
         odometry = roevo.Odometry(recording.camera)
         self.assertGreater(odometry.load_map(folder / "room.map", localise_only=True), 2)
+        self.assertFalse(odometry.localised)
         _, results = track(odometry=odometry)
+        self.assertTrue(odometry.localised)
         self.assertTrue(any(result.found_at >= 0 or result.joined_at >= 0 for result in results))
         truth = np.loadtxt(recording.out / "trajectory.txt")
         np.testing.assert_allclose(odometry.trajectory()[:, 1:4], truth[:, 1:4], atol=0.01)
@@ -257,7 +298,9 @@ class Maps(unittest.TestCase):
 
     def test_what_is_no_map_is_told_in_one_line(self):
         (folder / "text.map").write_text("not a map")
-        for file, words in (("none.map", "cannot read"), ("text.map", "text.map: "), (".", "folder")):
+        with self.assertRaisesRegex(FileNotFoundError, "none.map"):
+            roevo.Odometry(recording.camera).load_map(folder / "none.map")
+        for file, words in (("text.map", "text.map: "), (".", "folder")):
             with self.assertRaisesRegex(RuntimeError, words) as raised:
                 roevo.Odometry(recording.camera).load_map(folder / file)
             self.assertNotIn("\n", str(raised.exception))
@@ -275,6 +318,33 @@ class OptionsAndCamera(unittest.TestCase):
         self.assertEqual((folder / "again.ini").read_text(), (recording.out / "config_used.ini").read_text())
         self.assertEqual(dict(options), {name: options[name] for name in options})
         self.assertEqual({type(options[name]) for name in options}, {bool, int, float, str})
+        (folder / "bad.ini").write_text("[edges]\nmin_length = zz\n")
+        with self.assertRaisesRegex(ValueError, "bad.ini:2: .*zz"):
+            roevo.Options.read(folder / "bad.ini")
+        with self.assertRaises(FileNotFoundError):
+            roevo.Options.read(folder / "no.ini")
+
+    def test_options_and_cameras_are_values(self):
+        options = roevo.Options(OPTIONS)
+        self.assertEqual(repr(options), f"roevo.Options({OPTIONS})")
+        self.assertEqual(repr(roevo.Options()), "roevo.Options()")
+        self.assertNotEqual(options, roevo.Options())
+        self.assertEqual(options.get("no.option", 7), 7)
+        self.assertIn(("keyframe.max_translation", 0.02), options.items())
+        for same in (roevo.Options(options), copy.deepcopy(options), pickle.loads(pickle.dumps(options)),
+                     eval(repr(options)), roevo.Odometry(recording.camera, OPTIONS).options):
+            self.assertEqual(same, options)
+            same.update({"keyframe.max_translation": 0.03})
+            self.assertNotEqual(same, options)
+        self.assertRegex(options.describe("odometry.threads"), ", 0 to 256$")
+        with self.assertRaisesRegex(TypeError, "^options must be roevo.Options or a dict, not str$"):
+            roevo.Odometry(recording.camera, "tr")
+        for camera in (recording.camera, roevo.Camera(640, 480, 525, 525, 320, 240, [[0.1, 0.01, 0, 0, 0.001]]),
+                       roevo.Camera(640, 480, 525, 525, 320, 240, np.array([0.1, 0.01, 0, 0, 0.001, 0.2, 0.02, 0])),
+                       roevo.Camera(640, 480, 300, 300, 320, 240, fisheye=[0.1, 0.01, 0, 0])):
+            for same in (copy.deepcopy(camera), pickle.loads(pickle.dumps(camera)), eval(repr(camera))):
+                self.assertEqual((same, hash(same), repr(same)), (camera, hash(camera), repr(camera)))
+            self.assertEqual(roevo.Odometry(camera).camera, camera)
 
     def test_options_are_set_and_checked_by_name(self):
         options = roevo.Options({"odometry.mode": "tr", "loss.recognise": False, "edges.min_length": 12})
@@ -306,6 +376,13 @@ class OptionsAndCamera(unittest.TestCase):
         self.assertEqual(eval(repr(camera)), camera)
         self.assertNotEqual(camera, None)
         self.assertEqual(roevo.Camera(640, 480, 525, 525, 319.5, 239.5, distortion=[0.1, 0, 0, 0, 0]).distortion[0], 0.1)
+        self.assertEqual(len(roevo.Camera(640, 480, 525, 525, 320, 240, [0.1, 0, 0, 0, 0, 0.2, 0, 0]).distortion), 8)
+        fisheye = roevo.Camera(640, 480, 300, 300, 320, 240, fisheye=[0.1, 0.01, 0, 0])
+        self.assertEqual((fisheye.distortion, fisheye.fisheye), ([], [0.1, 0.01, 0, 0]))
+        for words, lens in (("4, 5 or 8 numbers", {"distortion": 6 * [0]}), ("4 numbers", {"fisheye": 5 * [0]}),
+                            ("not both", {"distortion": 4 * [0.1], "fisheye": 4 * [0.1]})):
+            with self.assertRaisesRegex(ValueError, words):
+                roevo.Camera(640, 480, 525, 525, 319.5, 239.5, **lens)
         start = np.eye(4)
         start[:3, 3] = 1, 2, 3
         odometry = roevo.Odometry(recording.camera, T_world_start=start)
@@ -321,8 +398,69 @@ class OptionsAndCamera(unittest.TestCase):
         for owner in (roevo, roevo.Camera, roevo.Options, roevo.Odometry, roevo.FrameResult, roevo.MapEdge, roevo.Keyframe):
             self.assertTrue(owner.__doc__)
         for name, member in vars(roevo.Odometry).items():
-            if not name.startswith("_"):
+            if isinstance(member, property):
+                self.assertTrue(member.__doc__, name)
+            elif not name.startswith("_"):
                 self.assertIn("\n", member.__doc__, name)  # more than the signature
+
+
+    def test_the_stub_has_what_the_module_has(self):
+        def public(owner):
+            return {name for name in owner if not name.startswith("_")}
+
+        stub = ast.parse((pathlib.Path(__file__).resolve().parents[2] / "python" / "roevo.pyi").read_text())
+        named = {node.name: node for node in stub.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+        self.assertEqual(set(named), public(vars(roevo)))
+        inherited = {"keys", "values", "items", "get"}  # of Mapping
+        for name, node in named.items():
+            if not isinstance(node, ast.ClassDef):
+                continue
+            members = {member.name: member for member in node.body}
+            self.assertEqual(public(members), public(vars(getattr(roevo, name))) - inherited, name)
+            for member in public(members):
+                is_property = isinstance(vars(getattr(roevo, name))[member], property)
+                decorators = [decorator.id for decorator in members[member].decorator_list]
+                self.assertEqual("property" in decorators, is_property, f"{name}.{member}")
+            for method in public(members) - inherited:
+                arguments = members[method].args
+                shown = getattr(roevo, name).__dict__[method].__doc__ or ""
+                for argument in arguments.args[1:] + arguments.kwonlyargs:
+                    self.assertIn(argument.arg + ":", shown, f"{name}.{method}")
+
+
+class Processes(unittest.TestCase):
+    def script(self, text):
+        begin = f"""if True:
+            import os, sys, threading, time, numpy, roevo
+            odometry = roevo.Odometry(roevo.Camera(320, 240, 262, 262, 160, 120))
+            grey = (numpy.indices((240, 320)).sum(0) * 5 % 251).astype(numpy.uint8)
+            depth = numpy.ones((240, 320), numpy.float32)
+            odometry.process(grey, depth, 1)
+            """
+        return subprocess.run([sys.executable, "-c", begin + text], timeout=60, text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT)
+
+    def test_python_ends_while_a_thread_is_at_work(self):
+        ended = self.script("""
+            def work():
+                for stamp in range(2, 100000):
+                    odometry.process(grey, depth, stamp)
+            threading.Thread(target=work, daemon=True).start()
+            time.sleep(0.2)""")
+        self.assertEqual((ended.returncode, ended.stdout), (0, ""))
+
+    def test_a_forked_child_can_end_and_is_told_to_make_its_own(self):
+        ended = self.script("""
+            child = os.fork()
+            if child == 0:
+                try:
+                    odometry.process(grey, depth, 2)
+                except RuntimeError as fault:
+                    print(fault, flush=True)
+                del odometry
+                sys.exit(7)
+            print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))""")
+        self.assertEqual(ended.stdout, "this Odometry was made before fork(): make another in this process\n7\n")
 
 
 class Threads(unittest.TestCase):
