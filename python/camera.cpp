@@ -111,7 +111,10 @@ Raises ValueError for what no camera is.)")
                                "k1 k2 p1 p2 k3, and k4 k5 k6 of a rational model; empty for a fish-eye")
         .def_property_readonly("fisheye", &fisheyeOf, "k1 k2 k3 k4 of a fish-eye, else empty")
         .def(py::self == py::self)
-        .def("__hash__", [](const PinholeCamera& self) { return py::hash(py::str(toText(self))); })
+        .def("__hash__",
+             [](const PinholeCamera& self) {
+                 return py::hash(py::make_tuple(self.width, self.height, self.fx, self.fy, self.cx, self.cy));
+             })
         .def("__repr__", &toText)
         .def(py::pickle(&stateOf, [](const py::tuple& state) {
             const auto at = [&](std::size_t i) { return state[i].cast<double>(); };

@@ -201,11 +201,18 @@ void addMapParts(py::module_& module) {
             "whether it belongs to no surface: a moving shadow, a border")
         .def_readonly("confidence", &MapEdge::confidence, "0 to 1");
     py::class_<KeyframeInfo>(module, "Keyframe", "A keyframe, with its pose as it is known by now.")
-        .def_readonly("id", &KeyframeInfo::id, "0, 1, ... in the order of time")
+        .def_readonly("id", &KeyframeInfo::id,
+                      "as FrameResult.keyframe; those of a map that was loaded come first")
         .def_readonly("timestamp", &KeyframeInfo::timestamp, "seconds")
         .def_property_readonly(
             "pose", [](const KeyframeInfo& self) -> Eigen::Matrix4d { return self.T_world_camera.matrix(); },
             "T_world_camera, 4 x 4");
+}
+
+/// Of a result that has a pose.
+std::size_t toIndex(py::ssize_t index) {
+    if (index < 0) throw py::index_error("a frame that was rejected has no pose");
+    return static_cast<std::size_t>(index);
 }
 
 void addPoses(py::class_<Session>& session) {
@@ -223,8 +230,8 @@ void addPoses(py::class_<Session>& session) {
             "it.")
         .def(
             "motion",
-            [](Session& self, std::size_t from, std::size_t to) -> Eigen::Matrix4d {
-                return self.get(&Odometry::motion, from, to).matrix();
+            [](Session& self, py::ssize_t from, py::ssize_t to) -> Eigen::Matrix4d {
+                return self.get(&Odometry::motion, toIndex(from), toIndex(to)).matrix();
             },
             py::arg("from_index"), py::arg("to_index"),
             R"(T_from_to, 4 x 4: how the camera moved between two frames (FrameResult.index), as both are known by now.
@@ -232,8 +239,8 @@ void addPoses(py::class_<Session>& session) {
 The poses of two results do not make a motion where the map moved between them. Raises IndexError.)")
         .def(
             "motion_covariance",
-            [](Session& self, std::size_t from, std::size_t to) {
-                return self.get(&Odometry::motionCovariance, from, to);
+            [](Session& self, py::ssize_t from, py::ssize_t to) {
+                return self.get(&Odometry::motionCovariance, toIndex(from), toIndex(to));
             },
             py::arg("from_index"), py::arg("to_index"),
             R"(Of that motion, 6 x 6: position (m), then orientation (rad, R <- R exp(phi)), along the second camera's axes.

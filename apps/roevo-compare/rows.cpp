@@ -154,8 +154,12 @@ Json toJson(const SequenceComparison& sequence) {
               {"notes", sequence.notes},
               {"ground_truth", sequence.ground_truth},
               {"ground_truth_fault", sequence.ground_truth_fault}};
-    if (!sequence.reference.empty())
-        json["ground_truth_length_m"] = finite(pathLength(sequence.reference), "the ground truth's length");
+    if (!sequence.reference.empty()) {
+        const MethodRun& run = sequence.runs.at(0);
+        const double length =
+            pathLength(run.ok() ? coveredPart(sequence.reference, run.trajectory) : sequence.reference);
+        json["ground_truth_length_m"] = finite(length, "the ground truth's length");
+    }
     if (sequence.paper_ate_cm) json["paper_ate_cm"] = *sequence.paper_ate_cm;
     return json;
 }

@@ -1,10 +1,13 @@
 // roevo-eval: errors of a trajectory against a reference.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/scale_check.h"
 #include "evaluation/to_json.h"
 #include "evaluation/trajectory_io.h"
 #include "page.h"
@@ -18,11 +21,10 @@ namespace roevo {
 namespace {
 
 constexpr char kName[] = "roevo-eval";
-constexpr double kComparable = 0.9;  // share of the poses: what is judged by fewer is another stretch
 
 void printRow(const char* label, const ErrorStatistics& s, double scale) {
     if (s.count == 0) {
-        std::printf("%-22s %10s   (no two poses are that far apart)\n", label, "n/a");
+        std::printf("%-22s %10s   (no two poses are that far apart, within 10 %%)\n", label, "n/a");
         return;
     }
     std::printf("%-22s %10.4f %10.4f %10.4f %10.4f %10.4f\n", label, s.rmse * scale, s.mean * scale,
@@ -69,7 +71,12 @@ JudgedEstimate judge(const std::vector<StampedPose>& reference, const std::strin
     auto poses = readTrajectory(named.file, trajectoryFormat(settings.format), times);
     for (StampedPose& pose : poses) pose.timestamp += settings.offset;
     try {
-        const Evaluation e = evaluate(reference, poses, settings.max_dt, alignmentOf(settings).alignment);
+        const Alignment alignment = alignmentOf(settings).alignment;
+        const Evaluation e = evaluate(reference, poses, settings.max_dt, alignment);
+        const std::string scaled = scaleContradiction(reference, poses, e.pairs);
+        if (alignment != Alignment::kSim3 && !scaled.empty())
+            printWarning(kName,
+                         cleanText(named.file) + ": " + scaled + " --align sim3 judges the shape alone");
         for (StampedPose& pose : poses) pose.T_world_camera.translation() *= e.scale;
         return {named.name.empty() ? named.file : named.name, named.file, poses.size(), e, poses};
     } catch (const std::runtime_error& e) {
@@ -103,9 +110,12 @@ void warnOfParts(const std::vector<JudgedEstimate>& estimates) {
     const auto [fewest, most] = std::minmax_element(
         estimates.begin(), estimates.end(),
         [&](const JudgedEstimate& a, const JudgedEstimate& b) { return poses(a) < poses(b); });
-    if (static_cast<double>(poses(*fewest)) >= kComparable * static_cast<double>(poses(*most))) return;
-    printWarning(kName, cleanText(fewest->name) + " is judged by " + counted(poses(*fewest), "pose") + ", " +
-                            cleanText(most->name) + " by " + std::to_string(poses(*most)) +
+    if (isComparable(*fewest, estimates)) return;
+    const auto nameOf = [&](const JudgedEstimate& estimate) {
+        return cleanText(fewest->name == most->name ? estimate.file : estimate.name);
+    };
+    printWarning(kName, nameOf(*fewest) + " is judged by " + counted(poses(*fewest), "pose") + ", " +
+                            nameOf(*most) + " by " + std::to_string(poses(*most)) +
                             ": errors of a part do not compare with those of the whole");
 }
 
@@ -156,6 +166,10 @@ int run(int argc, char** argv) {
     keepInputs("--json", settings.json, inputs);
     keepInputs("--table", settings.table, inputs);
     keepInputs("--plot", settings.plot, inputs);
+    for (const auto& [a, b] : {std::pair(settings.json, settings.table), {settings.json, settings.plot}})
+        if (isSameFile(a, b)) throw UsageError("'" + a + "' is to be two outputs; give another name");
+    if (!std::isfinite(settings.offset) || !std::isfinite(settings.max_dt))
+        throw UsageError("--offset and --max-dt must be finite numbers");
 
     RowTimes times{{}, settings.reference};
     if (!settings.times.empty()) times = readRowTimes(settings.times);

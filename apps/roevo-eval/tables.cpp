@@ -47,12 +47,13 @@ std::string shownFigure(const Column& column, const Evaluation& evaluation) {
     return value ? shownNumber(value, column.decimals) : "";
 }
 
-// Of several estimates. Those that look alike are alike.
+// Of several estimates of the same stretch. Those that look alike are alike.
 bool isBest(const Column& column, const JudgedEstimate& estimate, const std::vector<JudgedEstimate>& all) {
     const auto value = shownValue(column, estimate.evaluation);
-    return all.size() > 1 && value && std::none_of(all.begin(), all.end(), [&](const JudgedEstimate& other) {
+    return all.size() > 1 && value && isComparable(estimate, all) &&
+           std::none_of(all.begin(), all.end(), [&](const JudgedEstimate& other) {
                const auto theirs = shownValue(column, other.evaluation);
-               return theirs && *theirs < *value &&
+               return theirs && isComparable(other, all) && *theirs < *value &&
                       shownFigure(column, other.evaluation) != shownFigure(column, estimate.evaluation);
            });
 }
@@ -78,6 +79,13 @@ void appendFigures(const ErrorStatistics& s, std::string& row) {
 }
 
 }  // namespace
+
+bool isComparable(const JudgedEstimate& estimate, const std::vector<JudgedEstimate>& all) {
+    constexpr double kComparable = 0.9;  // what is judged by fewer is another stretch
+    std::size_t most = 0;
+    for (const JudgedEstimate& other : all) most = std::max(most, other.evaluation.pairs.size());
+    return static_cast<double>(estimate.evaluation.pairs.size()) >= kComparable * static_cast<double>(most);
+}
 
 std::string terminalTable(const std::vector<JudgedEstimate>& estimates) {
     std::size_t width = 8;

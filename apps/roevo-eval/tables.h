@@ -15,6 +15,9 @@ struct JudgedEstimate {
     std::vector<StampedPose> trajectory;  ///< with the scale taken off
 };
 
+/// Whether it is judged by about as many poses as the others: errors of a part do not compare.
+bool isComparable(const JudgedEstimate& estimate, const std::vector<JudgedEstimate>& all);
+
 /// One row per estimate, for a terminal.
 std::string terminalTable(const std::vector<JudgedEstimate>& estimates);
 

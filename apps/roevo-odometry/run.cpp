@@ -203,16 +203,6 @@ void evaluateRun(RunReport& report, const GroundTruth& ground_truth) {
 }
 
 // What the run was compared with; empty where it was not.
-std::vector<StampedPose> coveredPart(const std::vector<StampedPose>& ground_truth, const RunReport& report) {
-    std::vector<StampedPose> covered;
-    if (!report.evaluation) return covered;
-    for (const StampedPose& pose : ground_truth)
-        if (pose.timestamp >= report.trajectory.front().timestamp - kDefaultMaxDt &&
-            pose.timestamp <= report.trajectory.back().timestamp + kDefaultMaxDt)
-            covered.push_back(pose);
-    return covered;
-}
-
 // Moves it onto the trajectory.
 std::vector<StampedPose> aligned(std::vector<StampedPose> ground_truth, const RunReport& report) {
     for (StampedPose& pose : ground_truth)
@@ -322,7 +312,8 @@ RunReport runOdometry(const RunSettings& settings) {
         if (report.mounted)
             writeTumTrajectory(files.path("trajectory_robot.txt"),
                                robotTrajectory(report.trajectory, report.camera_on_robot));
-        std::vector<StampedPose> reference = coveredPart(ground_truth.poses, report);
+        std::vector<StampedPose> reference;
+        if (report.evaluation) reference = coveredPart(ground_truth.poses, report.trajectory);
         if (!reference.empty()) writeTumTrajectory(files.path("trajectory_truth.txt"), reference);
         writeMap(files, report, odometry, std::move(content), aligned(std::move(reference), report));
         if (map_file) no_map = saveMap(odometry, settings.map_out, map_file, report);

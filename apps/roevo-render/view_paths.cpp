@@ -33,15 +33,6 @@ std::vector<float> errorsOf(const std::vector<StampedPose>& poses, const std::ve
     return errors;
 }
 
-std::vector<StampedPose> during(const std::vector<StampedPose>& span, const std::vector<StampedPose>& poses) {
-    std::vector<StampedPose> kept;
-    for (const StampedPose& pose : poses)
-        if (pose.timestamp >= span.front().timestamp - kDefaultMaxDt &&
-            pose.timestamp <= span.back().timestamp + kDefaultMaxDt)
-            kept.push_back(pose);
-    return kept;
-}
-
 }  // namespace
 
 std::vector<ViewPath> alignPaths(const std::vector<NamedPath>& paths, std::size_t foreign,
@@ -70,7 +61,7 @@ std::vector<ViewPath> alignPaths(const std::vector<NamedPath>& paths, std::size_
         view.errors = errorsOf(view.poses, truth_in_world, e.pairs);
         views.push_back(std::move(view));
     }
-    views.push_back({truth.name, during(paths.front().poses, truth_in_world), {}, {}});
+    views.push_back({truth.name, coveredPart(truth_in_world, paths.front().poses), {}, {}});
     return views;
 }
 

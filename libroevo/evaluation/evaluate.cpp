@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -10,6 +11,7 @@ namespace roevo {
 namespace {
 
 constexpr std::size_t kMinPairs = 3;
+constexpr double kLargestMaxDt = 1;  // s, that roevo-eval takes
 
 std::string seconds(double value, int decimals = 6) {
     char text[64];
@@ -35,7 +37,7 @@ double largestGap(const std::vector<StampedPose>& poses) {
 
 // What would let the two trajectories meet, in words; empty when nothing is known to.
 std::string advice(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
-                   std::size_t found, double max_dt) {
+                   std::size_t found, double closest, double max_dt) {
     if (found == estimate.size()) return "; the estimate itself is too short";
     const auto duration = [](const std::vector<StampedPose>& poses) {
         return poses.back().timestamp - poses.front().timestamp;
@@ -43,7 +45,8 @@ std::string advice(const std::vector<StampedPose>& reference, const std::vector<
     const double overlap = std::min(reference.back().timestamp, estimate.back().timestamp) -
                            std::max(reference.front().timestamp, estimate.front().timestamp);
     if (overlap >= 0 && overlap >= 0.5 * std::min(duration(reference), duration(estimate)))
-        return "; try a larger --max-dt of roevo-eval";
+        return closest <= kLargestMaxDt ? "; try a larger --max-dt of roevo-eval"
+                                        : "; are the stamps in seconds, from the same clock?";
 
     const double offset = reference.front().timestamp - estimate.front().timestamp;
     auto shifted = estimate;
@@ -56,14 +59,14 @@ std::string advice(const std::vector<StampedPose>& reference, const std::vector<
 
 std::string explainTooFew(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
                           std::size_t found, double max_dt) {
+    const double closest = smallestDifference(stampsOf(reference), stampsOf(estimate));
     return (found == 0   ? std::string("no pose has")
             : found == 1 ? "only 1 pose has"
                          : "only " + count(found) + " have") +
            " a reference within " + seconds(max_dt, 3) + " (at least 3 are needed): reference has " +
            range(reference) + " (largest gap " + seconds(largestGap(reference), 3) + "), estimate has " +
-           range(estimate) + "; the closest stamps are " +
-           seconds(smallestDifference(stampsOf(reference), stampsOf(estimate)), 3) + " apart" +
-           advice(reference, estimate, found, max_dt);
+           range(estimate) + "; the closest stamps are " + seconds(closest) + " apart" +
+           advice(reference, estimate, found, closest, max_dt);
 }
 
 // Of the estimate, in units of the reference's.
@@ -112,6 +115,17 @@ Evaluation evaluate(const std::vector<StampedPose>& reference, const std::vector
     // Squares of what is beyond 1e150 m are no numbers any more
     if (!allFinite(result)) throw std::runtime_error("its errors are too large to be computed");
     return result;
+}
+
+std::vector<StampedPose> coveredPart(const std::vector<StampedPose>& reference,
+                                     const std::vector<StampedPose>& trajectory) {
+    std::vector<StampedPose> covered;
+    if (trajectory.empty()) return covered;
+    std::copy_if(reference.begin(), reference.end(), std::back_inserter(covered), [&](const auto& pose) {
+        return pose.timestamp >= trajectory.front().timestamp - kDefaultMaxDt &&
+               pose.timestamp <= trajectory.back().timestamp + kDefaultMaxDt;
+    });
+    return covered;
 }
 
 double pathLength(const std::vector<StampedPose>& trajectory) {

@@ -27,6 +27,10 @@ struct Evaluation {
 Evaluation evaluate(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
                     double max_dt = kDefaultMaxDt, Alignment alignment = Alignment::kSe3);
 
+/// The poses in the time of a trajectory and up to kDefaultMaxDt around it.
+std::vector<StampedPose> coveredPart(const std::vector<StampedPose>& reference,
+                                     const std::vector<StampedPose>& trajectory);
+
 /// Sum of the distances between successive camera centres, m.
 double pathLength(const std::vector<StampedPose>& trajectory);
 

@@ -64,7 +64,8 @@ class Rows {
 
     template <class Number>
     Number number(std::size_t column, const char* what = "number") const {
-        const std::string_view word = words_[column];
+        std::string_view word = words_[column];
+        if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
         Number value{};
         const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
         if (error != std::errc() || rest != word.data() + word.size())
@@ -203,7 +204,12 @@ std::vector<StampedPose> readAsWritten(const std::string& path, std::optional<Tr
     }
     if (poses.empty()) throw std::runtime_error(path + ": no pose in it; expected lines of " + expected);
     if (*format == TrajectoryFormat::kKitti) setTimes(poses, times, rows, path);
+    const std::size_t rows_read = poses.size();
     sortByTime(poses);
+    if (2 * poses.size() < rows_read)
+        throw std::runtime_error(path + ": " + std::to_string(rows_read - poses.size()) + " of " +
+                                 std::to_string(rows_read) +
+                                 " rows repeat a time stamp: was it written with too few digits?");
     return poses;
 }
 

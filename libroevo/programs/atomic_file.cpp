@@ -90,7 +90,7 @@ void writeTextAtomically(const std::string& path, const std::string& text) {
 }
 
 void removeIfLeftEmpty(const std::string& folder) {
-    static std::list<std::string> folders;  // a handler may read them until the end
+    static auto& folders = *new std::list<std::string>;  // never freed: a handler may read them until the end
     registerFile(folders.emplace_back(folder).c_str());
 }
 

@@ -12,7 +12,12 @@ namespace fs = std::filesystem;
 
 void prepareOutputFolder(const std::string& folder) {
     std::error_code error;
-    if (fs::create_directories(folder, error)) removeIfLeftEmpty(folder);
+    std::vector<std::string> missing;  // the innermost first
+    for (fs::path path = fs::path(folder).lexically_normal(); !path.empty() && !fs::exists(path, error);
+         path = path.parent_path())
+        missing.push_back(path.string());
+    fs::create_directories(folder, error);
+    for (const std::string& made : missing) removeIfLeftEmpty(made);
     if (error || !fs::is_directory(folder))
         throw std::runtime_error("cannot create the output folder " + folder + ": " +
                                  (error ? error.message() : "a file of that name is in the way"));

@@ -168,11 +168,27 @@ TEST_F(EvalSeveral, ATableForAPaperHasTheBestInBoldAndNamesAsTheyAre) {
 TEST_F(EvalSeveral, OneThatHasPartOfThePosesOnlyIsNamed) {
     const std::string whole = test::readFile(folder_ / "right.txt");
     test::writeFile(folder_ / "part.txt", whole.substr(0, whole.find('\n', whole.size() / 2) + 1));
-    const auto run = eval({named("whole", "right.txt"), named("half", "part.txt")});
+    const auto run =
+        eval({named("whole", "right.txt"), named("half", "part.txt")}, {"--table", folder_ / "t.tex"});
     EXPECT_EQ(run.exit_code, 0);
+    const std::string tex = test::readFile(folder_ / "t.tex");
+    EXPECT_EQ(tex.find("textbf", tex.find("\nhalf")), std::string::npos) << "a part is not the best:\n"
+                                                                         << tex;
+    EXPECT_NE(tex.find("textbf", tex.find("\nwhole")), std::string::npos) << tex;
+    const auto alike = eval({named("a", "right.txt"), named("a", "part.txt")});
+    EXPECT_NE(alike.err.find("part.txt is judged by "), std::string::npos) << alike.err;
     EXPECT_NE(run.err.find("warning: half is judged by "), std::string::npos) << run.err;
     EXPECT_NE(run.err.find(", whole by "), std::string::npos) << run.err;
     EXPECT_EQ(eval({named("whole", "right.txt"), named("too", "right.txt")}).err, "");
+}
+
+TEST_F(EvalSeveral, AScaleThatExplainsTheErrorIsNamed) {
+    const auto run = eval({folder_ / "small.txt"});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_NE(run.err.find("small.txt: the ground truth's path is 2.5 times as long"), std::string::npos)
+        << run.err;
+    EXPECT_NE(run.err.find("--align sim3"), std::string::npos) << run.err;
+    EXPECT_EQ(eval({folder_ / "small.txt"}, {"--align", "sim3"}).err, "");
 }
 
 TEST_F(EvalSeveral, FailuresAreOneLine) {

@@ -61,6 +61,10 @@ TEST(EvalProgram, FailuresAreOneLine) {
     expectError(with(folder / "two.txt"), 1, kName, {"only 2 poses"});
     expectError(with(folder / "r.txt", {"--max-dt", "-1"}), 2, kName, {"--max-dt"});
     expectError(with(folder / "r.txt", {"--max-dt", "much"}), 2, kName, {"--max-dt"});
+    expectError(with(folder / "r.txt", {"--offset", "nan"}), 2, kName, {"--offset", "finite"});
+    expectError(with(folder / "r.txt", {"--json", folder / "e.csv", "--table", folder / "e.csv"}), 2, kName,
+                {"e.csv' is to be two outputs"});
+    EXPECT_FALSE(std::filesystem::exists(folder / "e.csv"));
     expectError(with(folder / "r.txt", {"--json", folder / "no/such/e.json"}), 1, kName,
                 {"cannot write", "e.json"});
     for (const char* option : {"--json", "--table", "--plot"}) {

@@ -193,6 +193,21 @@ TEST(Evaluation, SuggestsOnlyWhatWouldHelp) {
     EXPECT_FALSE(has(complaint(reference, sparse), "--offset")) << complaint(reference, sparse);
 }
 
+TEST(Evaluation, StampsThatAreFarFromAllOthersAreOfAnotherClock) {
+    std::vector<StampedPose> reference(4), estimate(3);
+    for (std::size_t i = 0; i < 4; ++i) reference[i].timestamp = i < 2 ? static_cast<double>(i) : 100;
+    reference[3].timestamp = 101;
+    for (std::size_t i = 0; i < 3; ++i) estimate[i].timestamp = 40 + static_cast<double>(i);
+    try {
+        evaluate(reference, estimate);
+        FAIL();
+    } catch (const std::runtime_error& e) {
+        const std::string text = e.what();
+        EXPECT_NE(text.find("39.000000 s apart; are the stamps in seconds"), std::string::npos) << text;
+        EXPECT_EQ(text.find("--max-dt"), std::string::npos) << text;
+    }
+}
+
 TEST(Evaluation, GoldenFiguresOfFr2Desk) {
     const std::string folder = test::dataFolder() + "/eval_fr2_desk/";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
@@ -206,6 +221,15 @@ TEST(Evaluation, GoldenFiguresOfFr2Desk) {
     EXPECT_EQ(micrometres(evo.median), 7415);
     EXPECT_EQ(micrometres(evo.max), 24300);
     EXPECT_EQ(micrometres(evaluate(reference, estimate, 0.02).ate.translation.rmse), 8144);
+}
+
+TEST(CoveredPart, IsWhatIsInTheTimeOfATrajectory) {
+    const auto reference = curve(30);
+    const std::vector<StampedPose> part(reference.begin() + 10, reference.begin() + 15);
+    const auto covered = coveredPart(reference, part);
+    ASSERT_EQ(covered.size(), 5u);
+    EXPECT_EQ(covered[0].timestamp, reference[10].timestamp);
+    EXPECT_TRUE(coveredPart(reference, {}).empty());
 }
 
 TEST(PathLength, AddsUpSteps) {

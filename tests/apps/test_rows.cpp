@@ -230,6 +230,14 @@ TEST_F(ManyRows, StateTheErrorsThatTheirTrajectoriesGive) {
     EXPECT_EQ(row.ground_truth_length_m, 6.0);
 }
 
+TEST_F(ManyRows, TheGroundTruthsLengthIsOfThePartThatWasRun) {
+    MethodRun part = test::makeRun("roevo-ba", 0.01);
+    part.trajectory.pop_back();
+    part.frames = part.tracked = 3;
+    put("a", part);
+    EXPECT_EQ(read().sequences.at(0).ground_truth_length_m, 4.0);
+}
+
 TEST_F(ManyRows, SeveralMayBeInOneFile) {
     const std::string a = put("a", test::makeRun("roevo-ba", 0.01)),
                       b = put("b", test::makeRun("roevo-ba", 0.02));

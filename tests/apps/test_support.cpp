@@ -134,6 +134,8 @@ TEST(Program, LeavesNoEmptyFolderWhenItFailsOrIsInterrupted) {
     EXPECT_FALSE(std::filesystem::exists(failed));
     EXPECT_EQ(exitCodeAfter(SIGINT, outputs + "/a.txt"), 128 + SIGINT);
     EXPECT_FALSE(std::filesystem::exists(outputs));
+    EXPECT_EQ(exitCodeAfter(SIGINT, folder / "outer/inner/a.txt"), 128 + SIGINT);
+    EXPECT_FALSE(std::filesystem::exists(folder / "outer"));
     // What was there before stays, and so does what was written
     std::filesystem::create_directory(outputs);
     EXPECT_EQ(exitCodeAfter(SIGINT, outputs + "/a.txt"), 128 + SIGINT);

@@ -24,8 +24,8 @@ std::string complaint(const std::string& text) {
 TEST(TrajectoryIo, ReadsCommentsBlankLinesTabsAndCarriageReturns) {
     const TemporaryFolder folder;
     writeFile(folder / "t.txt",
-              "\xEF\xBB\xBF# head\r\n\r\n  \n2.5 1 2 3 0 0 0 1\r\n1.25\t0 0 -1e-3 0 0 0.6 0.8 # turned\n3 0 "
-              "0 0 0 0 0 1");
+              "\xEF\xBB\xBF# head\r\n\r\n  \n2.5 1 2 3 0 0 0 1\r\n1.25\t0 0 -1e-3 0 0 0.6 0.8 # turned\n+3 "
+              "+0 0 0 0 0 0 1");
     const auto poses = readTumTrajectory(folder / "t.txt");
     ASSERT_EQ(poses.size(), 3u);
     EXPECT_EQ(poses[0].timestamp, 1.25) << "sorted";
@@ -55,6 +55,8 @@ TEST(TrajectoryIo, ErrorsNameFileAndLine) {
     expect(good + "2 0 inf 0 0 0 0 1\n", "not finite");
     expect(good + "2 0 0 0 0 0 0 0\n", "t.txt:2: the quaternion has length 0");
     expect(good + "2 0 0 0 1 0 0 1\n", "length 1.41");
+    expect(good + good + good, "t.txt: 2 of 3 rows repeat a time stamp: was it written with too few digits?");
+    expect(good + "2 0 0 +-1 0 0 0 1\n", "'+-1' is not a number");
     expect("# nothing\n", "no pose");
     expect("", "no pose");
 }

@@ -41,6 +41,21 @@ TEST(TimeConversions, WhatWasPrintedWithSixDecimalsComesBackToTheBit) {
     }
 }
 
+TEST(TimeConversions, WhatIsRoundedIsWhatIsPrinted) {
+    std::mt19937 rng(2);
+    std::uniform_real_distribution<double> seconds(1.6e9, 1.8e9);
+    for (int i = 0; i < 20000; i++) {
+        const double stamp = seconds(rng);
+        char printed[40], rounded[40];
+        std::snprintf(printed, sizeof printed, "%.6f", stamp);
+        std::snprintf(rounded, sizeof rounded, "%.6f", roundToMicroseconds(stamp));
+        ASSERT_STREQ(rounded, printed);
+        ASSERT_EQ(fromMrptTime(toMrptTime(stamp)), roundToMicroseconds(stamp));
+    }
+    EXPECT_TRUE(std::isnan(roundToMicroseconds(NAN)));
+    EXPECT_EQ(roundToMicroseconds(1e300), 1e300);
+}
+
 TEST(TimeConversions, AgreesWithMrptsClock) {
     const double stamp = 1305031453.359684;
     EXPECT_NEAR(mrpt::Clock::toDouble(toMrptTime(stamp)), stamp, 3e-7);

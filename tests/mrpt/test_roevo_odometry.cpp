@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "mrpt/synthetic_scan.h"
 #include "mrpt/test_helpers.h"
@@ -354,6 +355,14 @@ TEST_F(RoevoOdometryTest, MotionsAreTheRobots) {
     EXPECT_LT((CPose3D(to - from) - motion.mean).norm(), 1e-3);  // final poses are smoothed
     EXPECT_GT(motion.cov(0, 0), 0);
     EXPECT_THROW(odometry_.getMotion(results[1], FrameResult()), std::out_of_range);
+}
+
+TEST(RobotMotion, WhereNothingIsKnownIsInfinite) {
+    const Pose mount = toEigen(CPose3D(0.3, -0.1, 0.8, 0.4, 0.2, -0.1));
+    const auto motion =
+        robotMotion(Pose(), Matrix6d::Constant(std::numeric_limits<double>::infinity()), mount, mount);
+    EXPECT_LT(motion.mean.norm(), 1e-9);
+    for (int i = 0; i < 6; ++i) EXPECT_TRUE(std::isinf(motion.cov(i, i))) << i;
 }
 
 TEST_F(RoevoOdometryTest, ASimpleMapThatCannotBeWrittenSaysWhy) {

@@ -101,7 +101,6 @@ class SameAsTheProgram(unittest.TestCase):
             np.testing.assert_allclose(result.covariance, result.covariance.T, rtol=1e-12, atol=1e-18)
             self.assertTrue((np.linalg.eigvalsh(result.covariance) >= -1e-15).all())
 
-
     def test_motions_are_those_between_two_frames(self):
         odometry, results = track(odometry=roevo.Odometry(recording.camera, {**OPTIONS, "odometry.mode": "tr"}))
         poses = [result.pose for result in results]
@@ -112,9 +111,9 @@ class SameAsTheProgram(unittest.TestCase):
         self.assertTrue((np.linalg.eigvalsh(covariance) > 0).all())
         np.testing.assert_array_equal(odometry.motion_covariance(4, 4), np.zeros((6, 6)))
         for wrong in (odometry.motion, odometry.motion_covariance):
-            with self.assertRaises(IndexError):
-                wrong(0, 16)
-
+            for index in (16, -1):  # the result of a frame that was rejected has -1
+                with self.assertRaises(IndexError):
+                    wrong(0, index)
 
 class Example(unittest.TestCase):
     def test_a_folder_with_a_lens_and_depth_that_is_missing_has_the_programs_bytes(self):
@@ -304,6 +303,10 @@ class Maps(unittest.TestCase):
             with self.assertRaisesRegex(RuntimeError, words) as raised:
                 roevo.Odometry(recording.camera).load_map(folder / file)
             self.assertNotIn("\n", str(raised.exception))
+        os.mkfifo(folder / "pipe")
+        for read, kind in ((roevo.Odometry(recording.camera).load_map, RuntimeError), (roevo.Options.read, ValueError)):
+            with self.assertRaisesRegex(kind, "pipe"):
+                read(folder / "pipe")
         with self.assertRaisesRegex(RuntimeError, "keyframe"):
             roevo.Odometry(recording.camera).save_map(folder / "none.map")
         with self.assertRaises(RuntimeError):
@@ -403,7 +406,6 @@ class OptionsAndCamera(unittest.TestCase):
             elif not name.startswith("_"):
                 self.assertIn("\n", member.__doc__, name)  # more than the signature
 
-
     def test_the_stub_has_what_the_module_has(self):
         def public(owner):
             return {name for name in owner if not name.startswith("_")}
@@ -435,7 +437,7 @@ class Processes(unittest.TestCase):
             odometry = roevo.Odometry(roevo.Camera(320, 240, 262, 262, 160, 120))
             grey = (numpy.indices((240, 320)).sum(0) * 5 % 251).astype(numpy.uint8)
             depth = numpy.ones((240, 320), numpy.float32)
-            odometry.process(grey, depth, 1)
+            assert odometry.process(grey, depth, 1).status == "initialised"
             """
         return subprocess.run([sys.executable, "-c", begin + text], timeout=60, text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT)

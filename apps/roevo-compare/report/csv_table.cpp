@@ -151,9 +151,10 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
         row.count(rank_names[k], rank ? std::optional<std::size_t>(*rank) : std::nullopt);
     }
     addCosts(row, run, stages);
-    row.number("ground_truth_length_m", sequence.reference.empty()
-                                            ? sequence.ground_truth_length_m
-                                            : std::optional<double>(pathLength(sequence.reference)));
+    std::optional<double> length = sequence.ground_truth_length_m;
+    if (run && !run->trajectory.empty() && !sequence.reference.empty())
+        length = pathLength(coveredPart(sequence.reference, run->trajectory));
+    row.number("ground_truth_length_m", length);
     row.number("paper_roevo_ba_ate_cm", sequence.paper_ate_cm);
     row.text("input", sequence.input);
     row.text("ground_truth", sequence.ground_truth);

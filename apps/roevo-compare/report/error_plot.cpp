@@ -86,13 +86,17 @@ std::string shownTic(double value) {
     return text;
 }
 
-// 1, 2, 5 in every decade while these are few: gnuplot would label the powers of ten only.
+// All digits within about a decade, so that a logarithmic axis is seen to be one; 1, 2, 5 while these are
+// few: gnuplot would label the powers of ten only.
 std::string ticsOf(char axis, double low, double high) {
-    const bool few = high / low < 1000;
+    const double span = high / low;
     std::string tics;
     for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10)
-        for (const double step : {1.0, 2.0, 5.0})
-            if (few || step < 1.5) tics += (tics.empty() ? "" : ", ") + shownTic(decade * step);
+        for (int digit = 1; digit < 10; ++digit) {
+            const bool is_round = digit == 1 || digit == 2 || digit == 5;
+            if (digit == 1 || span < 12 || (is_round && span < 1000))
+                tics += (tics.empty() ? "" : ", ") + shownTic(decade * digit);
+        }
     return std::string("set ") + axis + "tics (" + tics + ")\n";
 }
 

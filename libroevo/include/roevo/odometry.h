@@ -43,9 +43,9 @@ class PreparedFrame {
 /// use FrameResult for every frame. With mapping in a thread (options().threads) it cannot be used
 /// or destroyed in a process that fork() made. One that was moved from can only be destroyed or assigned to.
 ///
-/// Memory may run out, in the caller's thread or in mapping's: processFrame() throws std::bad_alloc then, or
-/// whatever else was thrown, and again from then on, as do saveMap(), refineAll() and what waits for the map
-/// (map(), keyframeEdges()). Poses, keyframes and surface are given as far as they had come.
+/// Memory may run out, in the caller's thread or in mapping's: processFrame() or refineAll() throws
+/// std::bad_alloc then, or whatever else was thrown, and so do both from then on, and saveMap(), map() and
+/// keyframeEdges(). Poses, keyframes and surface are given as far as they had come.
 class Odometry {
   public:
     /// @throws std::invalid_argument when the camera, an option or the start pose is unusable (one line that

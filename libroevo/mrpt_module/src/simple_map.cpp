@@ -43,6 +43,10 @@ mrpt::poses::CPose3DPDFGaussian RobotContext::robotPose(double timestamp, const 
 mrpt::poses::CPose3DPDFGaussian robotMotion(const Pose& T_from_to, const Matrix6d& covariance,
                                             const Pose& mount_from, const Pose& mount_to) {
     const Pose T_robot_to = mount_from * T_from_to;
+    if (!covariance.allFinite()) {  // no motion is known; infinity turned would be no number
+        const mrpt::poses::CPose3D mean = toMrpt(T_robot_to * mount_to.inverse());
+        return {mean, mrpt::math::CMatrixDouble66(covariance)};
+    }
     return toMrptGaussian(T_robot_to, turned(covariance, T_robot_to.linear()), mount_to.inverse());
 }
 

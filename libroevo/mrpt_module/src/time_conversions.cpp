@@ -15,18 +15,32 @@ std::int64_t epochTicks() {
     return mrpt::Clock::fromDouble(0.0).time_since_epoch().count();
 }
 
+/// Neither no number nor one that does not fit into MRPT's clock.
+bool isUsable(double seconds) {
+    return std::abs(seconds) < 1e11;
+}
+
+/// To the nearest, of two as printf() does. Whole seconds apart, since the product of all of it would be
+/// rounded, too.
+std::int64_t toMicroseconds(double seconds) {
+    const double whole = std::floor(seconds);
+    return static_cast<std::int64_t>(whole) * static_cast<std::int64_t>(kMicrosecondsPerSecond) +
+           static_cast<std::int64_t>(std::nearbyint((seconds - whole) * kMicrosecondsPerSecond));
+}
+
 }  // namespace
 
 double roundToMicroseconds(double seconds) {
-    return std::round(seconds * kMicrosecondsPerSecond) / kMicrosecondsPerSecond;
+    if (!isUsable(seconds)) return seconds;
+    return static_cast<double>(toMicroseconds(seconds)) / kMicrosecondsPerSecond;
 }
 
 mrpt::Clock::time_point toMrptTime(double seconds) {
-    if (!(std::abs(seconds) < 1e11))
+    if (!isUsable(seconds))
         throw std::runtime_error("time stamp " + std::to_string(seconds) + " s is not a usable time");
     // Through integers: seconds times 1e7 does not fit the 53 bits of a double for present-day dates.
-    const auto microseconds = static_cast<std::int64_t>(std::round(seconds * kMicrosecondsPerSecond));
-    return mrpt::Clock::time_point(mrpt::Clock::duration(epochTicks() + microseconds * kTicksPerMicrosecond));
+    return mrpt::Clock::time_point(
+        mrpt::Clock::duration(epochTicks() + toMicroseconds(seconds) * kTicksPerMicrosecond));
 }
 
 double fromMrptTime(mrpt::Clock::time_point time) {

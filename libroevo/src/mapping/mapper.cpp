@@ -188,7 +188,8 @@ std::vector<MapUpdate> RefiningMapper::due(double timestamp, double& waited_ms) 
         if (taken_.empty()) {
             const Stopwatch watch;
             auto update = take();
-            if (!update) std::rethrow_exception(failure_);
+            if (!update && failure_) std::rethrow_exception(failure_);
+            if (!update) break;
             taken_.push_back(std::move(*update));
             waited_ms += watch.milliseconds();
         }
@@ -244,11 +245,12 @@ void RefiningMapper::runNext(Lock& lock) {
     Job job = std::move(jobs_.front());
     jobs_.pop_front();
     busy_ = true;
+    const bool failed = failure_ != nullptr;  // what it left half done is not gone on with
     lock.unlock();
     std::exception_ptr thrown;
     try {
         MapUpdate none;
-        job.run(job.update.empty() ? none : job.update.front());
+        if (!failed) job.run(job.update.empty() ? none : job.update.front());
     } catch (...) {
         thrown = std::current_exception();
     }
@@ -267,8 +269,9 @@ bool RefiningMapper::ready() const {
 /// The next update, when it is there; none if mapping has failed.
 std::optional<MapUpdate> RefiningMapper::take() {
     Lock lock(mutex_);
-    waitFor(lock, [&] { return !updates_.empty(); });
-    if (failure_) return std::nullopt;
+    // None comes where memory ran out between a promise and its job, either
+    waitFor(lock, [&] { return !updates_.empty() || (jobs_.empty() && !busy_); });
+    if (failure_ || updates_.empty()) return std::nullopt;
     MapUpdate update = std::move(updates_.front());
     updates_.pop_front();
     return update;

@@ -10,14 +10,6 @@
 #include "tracking/se3.h"
 
 namespace roevo {
-
-bool keyframeIsDue(const Keyframe& reference, const Tracking& tracking, const KeyframeOptions& options) {
-    const Pose& T = tracking.pose.T_keyframe_camera;
-    return tracking.matchedRatio() < options.min_overlap ||
-           rotationAngle(T) / kDegree > options.max_rotation_deg ||
-           T.translation().norm() > options.max_translation * reference.median_depth;
-}
-
 namespace {
 
 /// Whether the depths as a whole are of another unit, in words to go on with; empty: no.
@@ -38,6 +30,13 @@ std::string wrongUnit(const cv::Mat& depth, const SensorOptions& sensor) {
 }
 
 }  // namespace
+
+bool keyframeIsDue(const Keyframe& reference, const Tracking& tracking, const KeyframeOptions& options) {
+    const Pose& T = tracking.pose.T_keyframe_camera;
+    return tracking.matchedRatio() < options.min_overlap ||
+           rotationAngle(T) / kDegree > options.max_rotation_deg ||
+           T.translation().norm() > options.max_translation * reference.median_depth;
+}
 
 Fault makeKeyframe(const Frame& frame, const RowMotion& rows, int needed, const PinholeCamera& camera,
                    const OdometryOptions& options, const Tracker& tracker, Keyframe& keyframe) {

@@ -69,22 +69,15 @@ FrameResult Odometry::processFrame(PreparedFrame prepared) {
     if (!prepared.content_) throw std::logic_error("there is nothing in this prepared frame");
     if (prepared.content_->by != impl_->preparer.id())
         throw std::logic_error("this frame was prepared by another odometry");
-    impl_->requireWhole();
     const Stopwatch watch;
     const double milliseconds = prepared.content_->milliseconds;
-    try {
-        FrameResult result = impl_->processFrame(std::move(*prepared.content_));
-        result.ms.total = milliseconds + watch.milliseconds();
-        return result;
-    } catch (...) {
-        impl_->failure = std::current_exception();
-        throw;
-    }
+    FrameResult result = impl_->changing([&] { return impl_->processFrame(std::move(*prepared.content_)); });
+    result.ms.total = milliseconds + watch.milliseconds();
+    return result;
 }
 
 std::vector<MapRefusal> Odometry::refineAll() {
-    impl_->requireWhole();
-    return impl_->world.refineAll();
+    return impl_->changing([&] { return impl_->world.refineAll(); });
 }
 std::vector<StampedPose> Odometry::trajectory() const {
     return impl_->world.finalTrajectory().frames(impl_->options.motion.smooth);
@@ -105,9 +98,11 @@ bool Odometry::isLocalised() const {
     return impl_->world.isLocalised();
 }
 EdgeMap Odometry::map() const {
+    impl_->requireWhole();
     return impl_->world.fusedMap();
 }
 EdgeMap Odometry::keyframeEdges() const {
+    impl_->requireWhole();
     return impl_->world.keyframeEdges();
 }
 std::vector<ColouredPoint> Odometry::semiDense() const {

@@ -46,6 +46,17 @@ struct Odometry::Impl {
     void requireWhole() const {
         if (failure) std::rethrow_exception(failure);
     }
+    /// What changes something: where it throws, all is half done.
+    template <class Work>
+    auto changing(const Work& work) {
+        requireWhole();
+        try {
+            return work();
+        } catch (...) {
+            failure = std::current_exception();
+            throw;
+        }
+    }
     FrameResult processFrame(PreparedFrame::Content prepared);
     void expect(double timestamp);
     void take(std::unique_ptr<Frame> fresh);

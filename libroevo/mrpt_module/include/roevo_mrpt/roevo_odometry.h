@@ -49,7 +49,8 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// Takes effect at the next initialize() or first observation.
     TOptions options;
 
-    /// Observations of this sensor are followed; empty: those of the first that gives a pose.
+    /// Observations of this sensor are followed; empty: those of the first that gives a pose. Takes effect at
+    /// the next initialize(), or before there is a pose.
     std::string sensor_label;
 
     /// Forgets everything but options, mask and sensor_label; the first pose that the robot has is x0's mean
@@ -64,7 +65,8 @@ class CRoevoOdometry : public mrpt::system::COutputLogger {
     /// it (odometry()->isLocalised()). To be called between initialize(), which forgets it, and the first
     /// observation that gives a pose.
     /// @param file  of saveMapToFile(); of roevo-odometry --map-out, too, whose worlds are not upright: they
-    /// have the axes of a camera. Its contents are read at the first observation
+    /// have the axes of a camera. Its contents are read at the first observation, and again
+    /// where another sensor, or one that has moved, observes before there is a pose
     /// @throws std::runtime_error when the file cannot be read; std::logic_error once there is a pose
     void loadMapFromFile(const std::string& file, MapUse use = MapUse::kExtend);
     /// Writes a map for loadMapFromFile(), see Odometry::saveMap(): where the camera was not recognised in
