@@ -105,7 +105,7 @@ def snapshot(path):
     files, temporary = {}, []
     for folder, folders, names in os.walk(path):
         if folder != path and not folders and not names:
-            temporary.append(os.path.relpath(folder, path))
+            temporary.append(os.path.relpath(folder, path) + "/")
         for name in names:
             full = os.path.join(folder, name)
             relative = os.path.relpath(full, path)
@@ -146,6 +146,8 @@ class Whole:
 
 def fault(program, chosen, before, after, temporary, whole):
     """What is wrong with what a program left, or None."""
+    if program.by_file:  # what is begun is gone on with, in the same folders
+        temporary = [name for name in temporary if not name.endswith("/")]
     if temporary and chosen != signal.SIGKILL:
         return f"left behind {temporary}"
     if after == before:

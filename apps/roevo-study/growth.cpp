@@ -2,6 +2,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <stdexcept>
@@ -107,6 +108,18 @@ struct GrowthPanel {
     std::vector<std::vector<std::vector<double>>> rows;
 };
 
+/// Between labels that have room beside each other, up to five digits each.
+double ticStep(const GrowthPanel& panel) {
+    constexpr double kMostSteps = 5.5;
+    double largest = 1e-9;
+    for (const auto& rows : panel.rows)
+        for (const auto& row : rows) largest = std::max(largest, row[0]);
+    const double least = largest / kMostSteps, decade = std::pow(10, std::floor(std::log10(least)));
+    for (const double digit : {1, 2, 5})
+        if (digit * decade >= least) return digit * decade;
+    return 10 * decade;
+}
+
 void draw(StudyReport& report, const std::string& folder, const std::string& name, const std::string& title,
           const std::vector<std::string>& recordings, const std::vector<GrowthPanel>& panels) {
     std::string script = "set multiplot layout 1," + std::to_string(panels.size()) + " title " +
@@ -121,7 +134,8 @@ void draw(StudyReport& report, const std::string& folder, const std::string& nam
                     std::to_string(i % 8 + 1) + " title " + gnuplotText(recordings[i]);
         }
         script += "set xlabel " + gnuplotText(panels[p].x_label) + "\nset ylabel " +
-                  gnuplotText(panels[p].y_label) + '\n' + plot + "\nset key off\n";
+                  gnuplotText(panels[p].y_label) + "\nset xtics 0, " + format("%g", ticStep(panels[p])) +
+                  '\n' + plot + "\nset key off\n";
     }
     addPlot(report, folder, name, script + "unset multiplot\n", 980, 440);
 }

@@ -93,8 +93,8 @@ std::string ticsOf(char axis, double low, double high) {
     std::string tics;
     for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10)
         for (int digit = 1; digit < 10; ++digit) {
-            const bool is_round = digit == 1 || digit == 2 || digit == 5;
-            if (digit == 1 || span < 12 || (is_round && span < 1000))
+            const bool is_round = digit == 1 || digit == 2 || digit == 5, has_room = digit != 7 && digit != 9;
+            if (digit == 1 || (has_room && span < 12) || (is_round && span < 1000))
                 tics += (tics.empty() ? "" : ", ") + shownTic(decade * digit);
         }
     return std::string("set ") + axis + "tics (" + tics + ")\n";

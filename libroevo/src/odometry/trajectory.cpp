@@ -41,10 +41,10 @@ Matrix6d positivePart(const Matrix6d& difference) {
            axes.eigenvectors().transpose();
 }
 
-/// Room for more, so that adding them cannot fail.
+/// For one more, so that adding it cannot fail.
 template <class Items>
-void growBy(std::size_t more, Items& items) {
-    if (items.size() + more > items.capacity()) items.reserve(2 * items.size() + more);
+void makeRoom(Items& items) {
+    if (items.size() == items.capacity()) items.reserve(2 * items.size() + 1);
 }
 
 double changeOfView(const Pose& motion) {
@@ -89,8 +89,8 @@ int Trajectory::addKeyframe(double timestamp, const RelativePose& pose,
 int Trajectory::add(double timestamp, const Pose& T_world_camera, const RelativePose& link,
                     PoseUncertainty in_world) {
     const int id = static_cast<int>(keyframes_.size());
-    // All or none: what is known of one keyframe is of the same length
-    growBy(1, keyframes_), growBy(1, in_world_), growBy(1, links_), growBy(1, tracks_);
+    // All four lists get longer or, where memory runs out, none
+    makeRoom(keyframes_), makeRoom(in_world_), makeRoom(links_), makeRoom(tracks_);
     keyframes_.push_back({id, timestamp, T_world_camera});
     in_world_.push_back(std::move(in_world));
     links_.push_back(link);
