@@ -86,8 +86,8 @@ std::string shownTic(double value) {
     return text;
 }
 
-// All digits within about a decade, so that a logarithmic axis is seen to be one; 1, 2, 5 while these are
-// few: gnuplot would label the powers of ten only.
+// Nearly all digits within about a decade, so that a logarithmic axis is seen to be one; 1, 2, 5 while these
+// are few: gnuplot would label the powers of ten only.
 std::string ticsOf(char axis, double low, double high) {
     const double span = high / low;
     std::string tics;
