@@ -32,7 +32,8 @@ extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
     return EAGAIN;
 }
 
-void* operator new(std::size_t size) {
+// Not inlined, where GCC takes free() for the wrong end of what new began
+[[gnu::noinline]] void* operator new(std::size_t size) {
     auto& left = std::this_thread::get_id() == main_thread ? left_in_this_thread : left_in_other_threads;
     int before = left;
     while (before > 0 && !left.compare_exchange_weak(before, before - 1)) {
@@ -48,13 +49,13 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
         return nullptr;
     }
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
     std::free(memory);
 }
 void operator delete(void* memory, const std::nothrow_t&) noexcept {
     std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
     std::free(memory);
 }
 
