@@ -21,6 +21,9 @@ void addOdometry(pybind11::module_& module);
 /// @throws std::invalid_argument in one line, naming the option; py::type_error for anything else
 OdometryOptions toOptions(const pybind11::object& values);
 
+/// As errors call it.
+std::string nameOfType(const pybind11::object& object);
+
 /// @param name  as errors call it
 /// @throws std::invalid_argument for what is no rigid motion
 Pose toPose(const Eigen::MatrixXd& matrix, const std::string& name);

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
+#include "bindings.h"
 #include "roevo/camera/depth_registration.h"
 
 namespace py = pybind11;
@@ -27,15 +28,10 @@ bool holds(const py::array& array) {
     return array.dtype().equal(py::dtype::of<Value>());
 }
 
-std::string nameOfType(const py::object& object) {
-    return py::str(py::type::of(object).attr("__name__"));
-}
-
 py::array toArray(const py::object& object, const std::string& name) {
     if (!py::isinstance<py::array>(object))
         throw py::type_error(name + " must be a numpy array, not " + nameOfType(object));
-    // Of which the mask would be lost
-    if (py::isinstance(object, py::module_::import("numpy.ma").attr("MaskedArray")))
+    if (py::hasattr(object, "filled"))  // its mask would be lost
         throw py::type_error(name + " is a masked array: give " + name + ".filled(0)");
     return py::reinterpret_borrow<py::array>(object);
 }
@@ -112,6 +108,10 @@ cv::Mat toMask(const py::array& array, const PinholeCamera& camera) {
 }
 
 }  // namespace
+
+std::string nameOfType(const py::object& object) {
+    return py::str(py::type::of(object).attr("__name__"));
+}
 
 double toNumber(const py::object& value, const std::string& name) {
     const double number = PyFloat_AsDouble(value.ptr());

@@ -80,8 +80,7 @@ OdometryOptions toOptions(const py::object& values) {
     OdometryOptions options;
     if (values.is_none()) return options;
     if (!py::isinstance<py::dict>(values))
-        throw py::type_error("options must be roevo.Options or a dict, not " +
-                             std::string(py::str(py::type::of(values).attr("__name__"))));
+        throw py::type_error("options must be roevo.Options or a dict, not " + nameOfType(values));
     update(options, values);
     return options;
 }
