@@ -2,11 +2,11 @@
 #include <pybind11/operators.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <sstream>
 #include <vector>
 
 #include "bindings.h"
+#include "camera/lens_terms.h"
 #include "roevo/camera/pinhole_camera.h"
 
 namespace py = pybind11;
@@ -16,17 +16,17 @@ namespace {
 
 using Terms = std::vector<double>;
 
-/// In OpenCV's order: k1 k2 p1 p2 k3, and k4 k5 k6 of a rational model; of a fish-eye none.
-Terms distortionOf(const PinholeCamera& camera) {
-    if (camera.lens != LensModel::kBrownConrady) return {};
-    Terms terms(camera.distortion.begin(), camera.distortion.end());
-    if (camera.isRational()) terms.insert(terms.end(), camera.denominator.begin(), camera.denominator.end());
+/// The first ones, if the lens is such a one; else none.
+Terms termsOf(const PinholeCamera& camera, LensModel lens, std::size_t count) {
+    Terms terms;
+    for (std::size_t i = 0; camera.lens == lens && i < count; ++i) terms.push_back(lensTerm(camera, i));
     return terms;
 }
-/// k1 k2 k3 k4; of another lens none.
+Terms distortionOf(const PinholeCamera& camera) {
+    return termsOf(camera, LensModel::kBrownConrady, camera.isRational() ? 8 : 5);
+}
 Terms fisheyeOf(const PinholeCamera& camera) {
-    if (camera.lens != LensModel::kKannalaBrandt) return {};
-    return {camera.distortion.begin(), camera.distortion.begin() + 4};
+    return termsOf(camera, LensModel::kKannalaBrandt, 4);
 }
 
 /// What makes the same camera again: all digits that tell it from others.
@@ -70,14 +70,13 @@ PinholeCamera makeCamera(int width, int height, double fx, double fy, double cx,
     if (count != 0 && count != 4 && count != 5 && count != 8)
         throw std::invalid_argument("distortion must be 4, 5 or 8 numbers (k1 k2 p1 p2 k3 k4 k5 k6), not " +
                                     std::to_string(count));
-    for (std::size_t i = 0; i < count; ++i)
-        (i < 5 ? camera.distortion[i] : camera.denominator[i - 5]) = terms[i];
+    for (std::size_t i = 0; i < count; ++i) lensTerm(camera, i) = terms[i];
     if (!of_fisheye.empty()) {
         if (of_fisheye.size() != 4)
             throw std::invalid_argument("fisheye must be 4 numbers (k1 k2 k3 k4), not " +
                                         std::to_string(of_fisheye.size()));
         camera.lens = LensModel::kKannalaBrandt;
-        std::copy(of_fisheye.begin(), of_fisheye.end(), camera.distortion.begin());
+        for (std::size_t i = 0; i < 4; ++i) lensTerm(camera, i) = of_fisheye[i];
     }
     if (const std::string fault = camera.check(); !fault.empty()) throw std::invalid_argument(fault);
     return camera;

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "camera/lens_terms.h"
 #include "input/edit_distance.h"
 #include "input/excerpt.h"
 #include "input/regular_file.h"
@@ -134,8 +135,7 @@ void readLens(const Values& values, const std::string& prefix, PinholeCamera& ca
                                      ": one lens at a time");
         known = key;
         const auto terms = numbers(found->second, key, lens.terms);
-        for (std::size_t i = 0; i < terms.size(); i++)
-            (i < 5 ? camera.distortion[i] : camera.denominator[i - 5]) = terms[i];
+        for (std::size_t i = 0; i < terms.size(); i++) lensTerm(camera, i) = terms[i];
         camera.lens = lens.model;
     }
 }
@@ -231,8 +231,7 @@ std::string cameraFileText(const PinholeCamera& camera, double depth_scale,
                           : camera.isRational()                    ? kEightTerms
                                                                    : kFiveTerms;
     text += std::string(lens.key) + ":";
-    for (std::size_t i = 0; i < lens.terms; i++)
-        text += " " + number(i < 5 ? camera.distortion[i] : camera.denominator[i - 5]);
+    for (std::size_t i = 0; i < lens.terms; i++) text += " " + number(lensTerm(camera, i));
     text += "\ndepth_scale: " + number(depth_scale) + "   # PNG value / depth_scale = metres\n";
     for (const std::string& note : notes) text += note + "\n";
     return text;

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "camera/lens_terms.h"
 #include "input/excerpt.h"
 
 namespace roevo {
@@ -42,8 +43,7 @@ void setLens(const std::string& model, const std::vector<double>& terms, Pinhole
                                  " coefficients is not supported, only with up to " + std::to_string(most) +
                                  ": undistort the images first");
     camera.lens = fisheye ? LensModel::kKannalaBrandt : LensModel::kBrownConrady;
-    for (std::size_t i = 0; i < used; i++)
-        (i < 5 ? camera.distortion[i] : camera.denominator[i - 5]) = terms[i];
+    for (std::size_t i = 0; i < used; i++) lensTerm(camera, i) = terms[i];
 }
 
 std::string lensText(const PinholeCamera& camera) {
