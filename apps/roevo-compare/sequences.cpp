@@ -45,7 +45,7 @@ std::string faultOf(FrameSource& source, const SequenceInput& sequence) {
     return "none of its " + std::to_string(count) + " frames can be read: " + first_fault;
 }
 
-void setGroundTruth(SequenceComparison& out, const SequenceInput& sequence, const FrameSource& source) {
+void setGroundTruth(SequenceComparison& out, const FrameSource& source) {
     GroundTruth truth = source.groundTruth();
     out.ground_truth = truth.file;
     out.reference = std::move(truth.poses);
@@ -100,7 +100,7 @@ SequenceComparison openSequence(const SequenceInput& sequence) {
         out.part = partOf(sequence, source->size());
         for (const std::string& note : source->notes())  // of the ground truth setGroundTruth() tells
             if (note.rfind("ground truth:", 0) != 0) out.notes.push_back(note);
-        setGroundTruth(out, sequence, *source);
+        setGroundTruth(out, *source);
         out.failure = faultOf(*source, sequence);
     } catch (const UsageError&) {
         throw;

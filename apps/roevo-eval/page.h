@@ -6,8 +6,8 @@
 
 namespace roevo {
 
-/// A page that needs nothing but itself: the table of the estimates, trajectories from above and from the
-/// side, errors over time and their cumulative curve.
+/// A page that needs nothing but itself: the table of the estimates, trajectories from two
+/// sides, errors over time and their cumulative curve.
 /// @param alignment  in words
 /// @throws NoGnuplot; Interrupted
 std::string htmlPage(const std::string& reference_file, const std::vector<StampedPose>& reference,

@@ -277,7 +277,7 @@ TEST(CompareReport, APlotThatFailsCostsOnlyThatPlot) {
     const test::WithEnvironment with("PATH", folder.path().string() + ":" + std::getenv("PATH"));
     const WrittenComparison out({makeSequence("s", {makeRun("roevo-tr", 0.01), makeRun("b", 0.02)})});
     EXPECT_EQ(count(out.html, "class=\"plot\""), 5u);
-    EXPECT_TRUE(contains(out.html, "No plot (s: trajectories, Top view): gnuplot failed: out of ink"));
+    EXPECT_TRUE(contains(out.html, "No plot (s: trajectories, Seen along y): gnuplot failed: out of ink"));
     EXPECT_TRUE(contains(out.html, "No plot (s: position error over time): gnuplot failed: out of ink"));
     EXPECT_FALSE(contains(out.html, "No plots"));
 }

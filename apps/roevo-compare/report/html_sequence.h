@@ -9,7 +9,7 @@ namespace roevo {
 /// Table of all figures of a sequence, each method linked with the folder of its run.
 std::string allFigures(const SequenceResults& results, const std::string& id, const std::string& folder);
 
-/// Trajectories from above and from the side, with their legend. @param files  see setFigure()
+/// Trajectories from two sides, with their legend. @param files  see setFigure()
 /// @throws NoGnuplot; Interrupted
 std::string trajectoryBlock(const SequenceResults& results, const Legend& legend, const std::string& title,
                             PageFiles* files = nullptr);

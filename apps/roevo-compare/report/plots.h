@@ -28,7 +28,7 @@ struct Legend {
     std::size_t indexOf(const std::string& method) const;
 };
 
-/// Trajectories from above and from the side, aligned with the ground truth; without one each from its own
+/// Trajectories from two sides, aligned with the ground truth; without one each from its own
 /// first pose. Up is the axis of the world nearest to the mean of the cameras' up. @return two figures, or
 /// one that says why there is none. @throws as drawFigure()
 std::vector<Figure> trajectoryFigures(const SequenceResults& results, const Legend& legend);

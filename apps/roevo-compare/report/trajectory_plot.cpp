@@ -40,7 +40,7 @@ using Box = std::array<Range, 3>;
 
 // Two axes of the world as a picture shows them: right, and upwards.
 struct View {
-    const char* name;
+    std::string name;
     int right, up;
     bool flipped;  // the upward axis has its greater values below
 };
@@ -53,7 +53,13 @@ Box boundingBox(const std::vector<StampedPose>& poses) {
     return box;
 }
 
-// From above and from the side. Up is where the cameras' up points to on the whole, to the nearest axis.
+// Not "from above": where up is, no trajectory tells.
+std::string seenAlong(int axis) {
+    return std::string("Seen along ") + "xyz"[axis];
+}
+
+// Along the axis that the cameras' up points to on the whole, from above where cameras look ahead, and across
+// it.
 std::array<View, 2> chooseViews(const std::vector<StampedPose>& poses, const Box& box) {
     Eigen::Vector3d up = Eigen::Vector3d::Zero();
     for (const StampedPose& pose : poses) up -= pose.T_world_camera.linear().col(1);
@@ -62,9 +68,10 @@ std::array<View, 2> chooseViews(const std::vector<StampedPose>& poses, const Box
     const int v = static_cast<int>(vertical);
     const bool down = up[vertical] < 0;
     const int a = (v + 1) % 3, b = (v + 2) % 3;  // right-handed with the positive axis
-    const View top{"Top view", down ? b : a, down ? a : b, false};
     const auto extent = [&](int k) { return box[static_cast<std::size_t>(k)].extent(); };
-    return {top, View{"Side view", extent(a) >= extent(b) ? a : b, v, down}};
+    const int wide = extent(a) >= extent(b) ? a : b;
+    return {View{seenAlong(v), down ? b : a, down ? a : b, false},
+            View{seenAlong(a + b - wide), wide, v, down}};
 }
 
 void add(std::string& script, const std::string& name, const std::vector<StampedPose>& poses,
