@@ -5,7 +5,8 @@ roevo_test(test_simulator
 roevo_test(test_simulator_program SOURCES tools/test_simulator_program.cpp LIBS roevo_simulator SUITES)
 add_dependencies(test_simulator_program rawlog-simulate)
 roevo_test(test_layouts
-  SOURCES tools/test_layouts_bad_input.cpp tools/test_eth3d.cpp tools/test_plain_folder.cpp tools/test_icl.cpp
+  SOURCES tools/test_layouts_bad_input.cpp tools/test_eth3d.cpp tools/test_plain_folder.cpp
+          tools/test_misread_folders.cpp tools/test_icl.cpp
           tools/test_seven_scenes.cpp tools/test_same_frames.cpp
   LIBS roevo_datasets roevo_mrpt roevo_evaluation roevo_simulator SUITES)
 target_include_directories(test_layouts PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})

@@ -147,6 +147,13 @@ std::optional<CameraDescription> findCamera(const YAML::Node& root, int levels) 
             if (auto found = findCamera(inner, levels - 1)) {
                 if (!(found->depth_scale > 0))
                     found->depth_scale = unitsOf(numberIn(root, {"depth_scale", "png_depth_scale"}, 0));
+                for (const char* other : {"depth", "depth_intrinsics"})
+                    if (const YAML::Node beside = root[other]; beside.IsDefined() && beside.IsMap())
+                        if (const auto depth = findCamera(beside, levels - 1);
+                            depth && std::abs(depth->camera.fx - found->camera.fx) > 1)
+                            found->notes.push_back(
+                                "it also has a depth camera of another focal length: depth is taken as "
+                                "registered to colour already (camera.txt can say otherwise)");
                 return found;
             }
     return std::nullopt;

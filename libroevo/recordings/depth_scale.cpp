@@ -24,7 +24,7 @@ double medianOf(const cv::Mat& depth, Value invalid) {
     std::vector<Value> values;
     for (int row = 0; row < depth.rows; ++row)
         std::copy_if(depth.ptr<Value>(row), depth.ptr<Value>(row) + depth.cols, std::back_inserter(values),
-                     [=](Value d) { return d > 0 && d != invalid; });
+                     [=](Value d) { return d > 0 && d != invalid && std::isfinite(static_cast<double>(d)); });
     if (values.empty()) return 0;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());

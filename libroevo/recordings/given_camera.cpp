@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "camera/lens_terms.h"
 #include "recordings/calibration_file.h"
 #include "recordings/image_sizes.h"
 #include "recordings/lens.h"
@@ -34,14 +35,16 @@ CameraDescription chosenCamera(const FolderChoice& choice) {
 bool isSameCamera(const PinholeCamera& a, const PinholeCamera& b) {
     const auto near = [](double x, double y) { return std::abs(x - y) <= 1e-3 * std::abs(x) + 1e-3; };
     const bool sizes = a.width == 0 || b.width == 0 || (a.width == b.width && a.height == b.height);
-    return sizes && near(a.fx, b.fx) && near(a.fy, b.fy) && near(a.cx, b.cx) && near(a.cy, b.cy);
+    bool lenses = a.lens == b.lens || !(a.isDistorted() || b.isDistorted());
+    for (std::size_t i = 0; i < 8; i++) lenses = lenses && near(lensTerm(a, i), lensTerm(b, i));
+    return sizes && lenses && near(a.fx, b.fx) && near(a.fy, b.fy) && near(a.cx, b.cx) && near(a.cy, b.cy);
 }
 
 std::string shortText(const PinholeCamera& camera) {
     char text[120];
     std::snprintf(text, sizeof text, "%dx%d fx %g fy %g cx %g cy %g", camera.width, camera.height, camera.fx,
                   camera.fy, camera.cx, camera.cy);
-    return text;
+    return text + (", " + lensText(camera));
 }
 
 /// Calibrations of other programs in the folder, by name.
@@ -98,6 +101,10 @@ std::optional<CameraDescription> givenCamera(const std::string& folder, const Fo
     return out;
 }
 
+double frameRate(const FolderChoice& choice, const std::optional<CameraDescription>& camera, double usual) {
+    return choice.frame_rate > 0 ? choice.frame_rate : camera ? camera->frame_rate.value_or(usual) : usual;
+}
+
 void setCamera(const CameraDescription& camera, DatasetDescription& out) {
     out.camera = camera.camera;
     out.depth_scale = camera.depth_scale;
@@ -112,6 +119,14 @@ void setCamera(const CameraDescription& camera, DatasetDescription& out) {
     }
     if (const std::string fault = out.camera.check(); !fault.empty())
         throw std::runtime_error(out.folder + ": " + camera.source + ": " + fault);
+    constexpr double kFarFromMiddle = 0.15;  // of the side: no lens, but images that were made smaller or cut
+    const auto off = [](double centre, int side) { return std::abs((centre + 0.5) / side - 0.5); };
+    if (camera.camera.width == 0 && std::max(off(out.camera.cx, out.camera.width),
+                                             off(out.camera.cy, out.camera.height)) > kFarFromMiddle)
+        throw std::runtime_error(
+            out.folder + ": " + camera.source + ": (" + shortText(out.camera) +
+            "): the principal point is far from the middle: intrinsics of images of "
+            "another size? If they are right, say so by a camera.txt with width and height");
 }
 
 std::string noIntrinsics(const std::string& folder, const std::string& layout) {

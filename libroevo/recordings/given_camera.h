@@ -14,6 +14,9 @@ namespace roevo {
 /// @throws std::runtime_error naming the file and what is wrong with it, or two files that differ
 std::optional<CameraDescription> givenCamera(const std::string& folder, const FolderChoice& choice);
 
+/// Hz, of images that are numbered: as chosen, else as the camera's file says, else the usual one.
+double frameRate(const FolderChoice& choice, const std::optional<CameraDescription>& camera, double usual);
+
 /// Puts a camera into the description of a dataset whose frames are known.
 /// @throws std::runtime_error when it cannot be one
 void setCamera(const CameraDescription& camera, DatasetDescription& out);

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "programs/text.h"
 #include "recordings/given_camera.h"
 #include "recordings/handedness.h"
 #include "recordings/image_lists.h"
@@ -22,10 +23,6 @@ namespace roevo {
 namespace {
 
 constexpr double kRenderedRate = 30;  // Hz, the rate at which the dataset was rendered
-
-bool isWhole(double value) {
-    return value >= 0 && value == std::floor(value);
-}
 
 std::vector<fs::path> trajectoriesIn(const fs::path& folder) {
     std::vector<fs::path> found;
@@ -50,21 +47,17 @@ bool isNumbered(const fs::path& associations) {
 }
 
 /// Whether anything but the numbering speaks for ICL-NUIM, as its camera must not be given to other data:
-/// its ground truth, depth named before colour in the list, or the name of an unpacked archive.
+/// its ground truth, or depth named before colour in the list.
 bool isSurelyIcl(const fs::path& folder) {
     if (!trajectoriesIn(folder).empty()) return true;
     const fs::path associations = folder / "associations.txt";
     if (fs::exists(associations))
         for (const TextLine& line : readTextLines(associations.string()))
             return line.words.size() > 1 && line.words[1].find("depth") != std::string::npos;
-    const std::string name = fs::weakly_canonical(folder).filename().string();
-    for (const char* part : {"icl", "living_room", "livingroom", "office_", "_traj"})
-        if (name.find(part) != std::string::npos) return true;
     return false;
 }
 
-CameraDescription findCamera(const std::string& folder, const DatasetOptions& options) {
-    if (const auto given = givenCamera(folder, options.folder)) return *given;
+CameraDescription customaryCamera(const std::string& folder, const DatasetOptions& options) {
     if (options.format != "icl" && !isSurelyIcl(folder))
         throw std::runtime_error("no intrinsics: " + folder +
                                  " counts frames as ICL-NUIM does, but nothing else says that it is: write "
@@ -85,15 +78,6 @@ std::size_t framesWithPose(const DatasetDescription& dataset) {
                 break;
             }
     return count;
-}
-
-/// Whole numbers are those of frames: they become seconds. @return whether they are
-bool numbersToSeconds(std::vector<StampedPose>& poses) {
-    const bool whole = std::all_of(poses.begin(), poses.end(),
-                                   [](const StampedPose& pose) { return isWhole(pose.timestamp); });
-    for (StampedPose& pose : poses)
-        if (whole) pose.timestamp = roundToMicroseconds(pose.timestamp / kRenderedRate);
-    return whole;
 }
 
 void findGroundTruth(DatasetDescription& out) {
@@ -117,7 +101,7 @@ void convertIclTruth(DatasetDescription& out) {
     GroundTruth& truth = out.ground_truth;
     truth.copyable = false;
     const double first = truth.poses.front().timestamp, last = truth.poses.back().timestamp;
-    const bool as_published = numbersToSeconds(truth.poses);
+    const bool as_published = numbersToSeconds(out);
     settleClock(out);
 
     HandednessResult told = compareHandedness(out);
@@ -151,30 +135,31 @@ DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions&
     DatasetDescription out;
     out.folder = folder_name;
     out.format = "icl";
+    const auto given = givenCamera(folder_name, options.folder);
+    out.frame_rate = frameRate({}, given, kRenderedRate);
     if (fs::exists(folder / "associations.txt")) {
         readAssociations("associations.txt", options.max_time_difference, out);
         for (const DatasetEntry& frame : out.frames)
-            if (!isWhole(frame.timestamp) || !isWhole(frame.depth_timestamp))
+            if (!isFrameNumber(frame.timestamp) || !isFrameNumber(frame.depth_timestamp))
                 throw std::runtime_error((folder / "associations.txt").string() +
                                          ": ICL-NUIM counts frames in whole numbers; these are times "
                                          "(--format tum reads them)");
         for (DatasetEntry& frame : out.frames) {
-            frame.timestamp /= kRenderedRate;
-            frame.depth_timestamp /= kRenderedRate;
+            frame.timestamp /= out.frame_rate;
+            frame.depth_timestamp /= out.frame_rate;
         }
     } else if (fs::is_directory(folder / "rgb") && fs::is_directory(folder / "depth")) {
         const NamedImages colours = imagesIn(folder / "rgb"), depths = imagesIn(folder / "depth");
         requireImages(colours, (folder / "rgb").string());
         requireImages(depths, (folder / "depth").string());
-        pairByName(colours, depths, kRenderedRate, options.max_time_difference, out);
+        pairByName(colours, depths, out.frame_rate, options.max_time_difference, out);
         out.notes.push_back("no associations.txt: colour and depth were paired by file name");
     } else {
         throw std::runtime_error(folder_name + " has no associations.txt, nor rgb/ and depth/");
     }
-    out.frame_rate = kRenderedRate;
     finishFrames(out);
-    out.notes.push_back("times are frame numbers at 30 Hz");
-    setCamera(findCamera(folder_name, options), out);
+    out.notes.push_back("times are frame numbers at " + plainNumber(out.frame_rate) + " Hz");
+    setCamera(given ? *given : customaryCamera(folder_name, options), out);
     if (options.ground_truth.empty()) findGroundTruth(out);
     return out;
 }

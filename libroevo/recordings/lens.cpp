@@ -25,7 +25,8 @@ bool isOneOf(const std::string& name, std::initializer_list<const char*> names) 
 }  // namespace
 
 void setLens(const std::string& model, const std::vector<double>& terms, PinholeCamera& camera) {
-    const std::string name = plainName(model);
+    std::string name = plainName(model);
+    if (name.rfind("distortion", 0) == 0) name.erase(0, 10);  // pyrealsense2's "distortion.brown_conrady"
     const bool fisheye =
         isOneOf(name, {"equidistant", "fisheye", "kannalabrandt", "kannalabrandt4", "kannalabrandt8"});
     std::size_t used = terms.size();

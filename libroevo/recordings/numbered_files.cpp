@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
+#include <regex>
 #include <stdexcept>
 #include <vector>
 
@@ -25,7 +27,8 @@ bool isDigit(char c) {
 
 struct NamedNumber {
     double value = 0;
-    bool decimal = false;
+    bool decimal = false;   ///< a time, with decimals or as a date
+    std::size_t begin = 0;  ///< where it stands in the name
 };
 
 /// Where the digits begin that end before `end`.
@@ -34,25 +37,82 @@ std::size_t beginOfDigits(const std::string& name, std::size_t end) {
     return end;
 }
 
+/// Seconds and their decimals as two numbers ("1305031453_359"), or as a date ("20240517_123046_033333",
+/// "2024-05-17 12-30-46.03"): seconds since 1970.
+std::optional<NamedNumber> timeInParts(const std::string& name) {
+    static const std::regex seconds("(?:^|[^0-9])([0-9]{10})[-_]([0-9]{3}|[0-9]{6})(?![0-9])");
+    static const std::regex date(
+        "(?:^|[^0-9])((?:19|20)[0-9]{2})[-_.]?(0[1-9]|1[0-2])[-_.]?([0-3][0-9])[-_. T]?"
+        "([01][0-9]|2[0-3])[-_.:h]?([0-5][0-9])[-_.:m]?([0-5][0-9])(?:\\.([0-9]+)|[-_]?([0-9]{3}|[0-9]{6}|[0-"
+        "9]{9}))?"
+        "(?![0-9])");
+    std::smatch part;
+    NamedNumber out;
+    out.decimal = true;
+    if (std::regex_search(name, part, seconds)) {
+        out.value = std::stod(part.str(1) + "." + part.str(2));
+    } else if (std::regex_search(name, part, date)) {
+        std::tm day{};
+        day.tm_year = std::stoi(part.str(1)) - 1900;
+        day.tm_mon = std::stoi(part.str(2)) - 1;
+        day.tm_mday = std::stoi(part.str(3));
+        day.tm_hour = std::stoi(part.str(4));
+        day.tm_min = std::stoi(part.str(5));
+        day.tm_sec = std::stoi(part.str(6));
+        out.value = static_cast<double>(timegm(&day)) + std::stod("0." + part.str(7) + part.str(8) + "0");
+    } else {
+        return std::nullopt;
+    }
+    out.begin = static_cast<std::size_t>(part.position(1));
+    return out;
+}
+
 /// The last number in a name, with its decimals. Seconds and nanoseconds of a stamp ("1305031453_359684000")
 /// are one.
 std::optional<NamedNumber> lastNumber(const std::string& name) {
     constexpr std::size_t kSeconds = 10, kNanoseconds = 9, kLongest = 60;  // digits
     std::size_t end = name.size();
     while (end > 0 && !isDigit(name[end - 1])) end--;
-    std::size_t begin = beginOfDigits(name, end);
-    if (begin == end) return std::nullopt;
-    std::string digits = name.substr(begin, std::min(end - begin, kLongest));
     NamedNumber out;
-    if (begin > 1) {
+    out.begin = beginOfDigits(name, end);
+    if (out.begin == end) return std::nullopt;
+    std::string digits = name.substr(out.begin, std::min(end - out.begin, kLongest));
+    if (const std::size_t begin = out.begin; begin > 1) {
         const std::size_t whole = beginOfDigits(name, begin - 1);
         const char between = name[begin - 1];
         out.decimal = whole < begin - 1 &&
                       (between == '.' || ((between == '_' || between == '-') &&
                                           begin - 1 - whole == kSeconds && end - begin == kNanoseconds));
-        if (out.decimal) digits = name.substr(whole, std::min(begin - 1 - whole, kLongest)) + "." + digits;
+        if (out.decimal) {
+            digits = name.substr(whole, std::min(begin - 1 - whole, kLongest)) + "." + digits;
+            out.begin = whole;
+        }
     }
+    const std::size_t length = end - out.begin;  // stamps have 10, 13, 16 or 19 digits
+    if (length == 14 || length == 17 || length == 20)
+        if (const auto date = timeInParts(digits)) return NamedNumber{date->value, true, out.begin};
     out.value = std::stod(digits);
+    return out;
+}
+
+/// What all names end with from a letter or sign on: "_640x480".
+std::string commonEnding(const NamedImages& files) {
+    std::string ending = files.begin()->first;
+    for (const auto& [name, file] : files) {
+        const auto differing =
+            std::mismatch(ending.rbegin(), ending.rend(), name.rbegin(), name.rend()).first;
+        ending.erase(ending.begin(), differing.base());
+    }
+    ending.erase(ending.begin(), std::find_if_not(ending.begin(), ending.end(), isDigit));
+    return ending;
+}
+
+/// A name's numbers before a place in it.
+std::vector<double> numbersBefore(const std::string& name, std::size_t end) {
+    std::vector<double> out;
+    for (auto number = lastNumber(name.substr(0, end)); number;
+         number = lastNumber(name.substr(0, number->begin)))
+        out.push_back(number->value);
     return out;
 }
 
@@ -62,23 +122,28 @@ struct Numbered {
     bool stamps = false;            ///< the numbers are times
 
     Numbered(const NamedImages& files, AssociationReport& report) {
-        bool decimal = false;
-        std::string by_number;  // the first that is
-        for (const auto& [name, file] : files) {
-            const auto number = lastNumber(name);
-            if (!number)
+        for (const auto& [name, file] : files)
+            if (!lastNumber(name))
                 throw std::runtime_error(file +
                                          ": no time in its name: expected a number or a time in seconds");
-            decimal = decimal || number->decimal;
-            if (!number->decimal && number->value < kFirstStamp && by_number.empty()) by_number = file;
-            images.push_back({number->value, file});
-        }
-        if (decimal && !by_number.empty())
-            throw std::runtime_error(by_number + ": some images are named by number, others by time");
+        const std::string ending = commonEnding(files);
+        const auto beforeEnding = [&](const std::string& name) {
+            return lastNumber(name.substr(0, name.size() - ending.size()));
+        };
+        if (!take(files, lastNumber) && !take(files, timeInParts) && !take(files, beforeEnding))
+            throw std::runtime_error(
+                files.begin()->second +
+                ": which number in its name is the time? By the last one, others of these "
+                "images go forward and back: name them by one number or time, or list "
+                "them (rgb.txt and depth.txt, or --associations)");
         // By name "10" comes before "9": that is no disorder of a list
         std::stable_sort(images.begin(), images.end(),
                          [](const ListEntry& a, const ListEntry& b) { return a.timestamp < b.timestamp; });
         sortByTime(images, report);
+        if (2 * images.size() < files.size())
+            throw std::runtime_error(images.front().file + ": " + std::to_string(files.size()) +
+                                     " images like it have but " + std::to_string(images.size()) +
+                                     " different times in their names");
         const bool far_apart = images.size() > 1 && images.back().timestamp - images.front().timestamp >
                                                         kLargestStep * static_cast<double>(images.size() - 1);
         stamps = decimal || far_apart || images.back().timestamp >= kFirstStamp;
@@ -87,6 +152,37 @@ struct Numbered {
     void toSeconds(double rate) {
         const double unit = stamps ? unitOfStamps(stampsOf(images)) : rate;
         for (ListEntry& image : images) image.timestamp /= unit;
+    }
+
+  private:
+    bool decimal = false;
+
+    /// Reads all names in one way. @return false where that cannot be: one has no such number, or in their
+    /// order another number in the names goes back
+    template <class Read>
+    bool take(const NamedImages& files, const Read& read) {
+        images.clear();
+        decimal = false;
+        std::string by_number;  // the first that is
+        std::vector<std::pair<double, std::vector<double>>> order;
+        for (const auto& [name, file] : files) {
+            const std::optional<NamedNumber> number = read(name);
+            if (!number) return false;
+            decimal = decimal || number->decimal;
+            if (!number->decimal && number->value < kFirstStamp && by_number.empty()) by_number = file;
+            images.push_back({number->value, file});
+            order.emplace_back(number->value, numbersBefore(name, number->begin));
+        }
+        if (decimal && !by_number.empty())
+            throw std::runtime_error(by_number + ": some images are named by number, others by time");
+        std::sort(order.begin(), order.end());
+        for (std::size_t i = 1; i < order.size(); i++) {
+            const auto &before = order[i - 1].second, &now = order[i].second;
+            if (order[i].first == order[i - 1].first && now != before) return false;
+            for (std::size_t k = 0; k < std::min(before.size(), now.size()); k++)
+                if (now[k] < before[k]) return false;
+        }
+        return true;
     }
 };
 
@@ -125,6 +221,20 @@ void requireImages(const NamedImages& images, const std::string& place) {
     if (images.empty()) throw std::runtime_error(place + " has no images in it");
 }
 
+namespace {
+
+/// Whether it is plain that numbers belong together that are not the same: both without gaps, as many of
+/// each.
+bool areOneApart(const std::vector<ListEntry>& colours, const std::vector<ListEntry>& depths) {
+    const auto unbroken = [](const std::vector<ListEntry>& images) {
+        return images.back().timestamp - images.front().timestamp == static_cast<double>(images.size() - 1);
+    };
+    return colours.size() == depths.size() && unbroken(colours) && unbroken(depths) &&
+           std::abs(colours.front().timestamp - depths.front().timestamp) == 1;
+}
+
+}  // namespace
+
 std::string pairByName(const NamedImages& colour_files, const NamedImages& depth_files, double rate,
                        double max_difference, DatasetDescription& out) {
     Numbered colours(colour_files, out.association), depths(depth_files, out.association);
@@ -132,6 +242,10 @@ std::string pairByName(const NamedImages& colour_files, const NamedImages& depth
         throw std::runtime_error(depths.images.front().file +
                                  ": some images are named by number, others by time (" +
                                  fs::path(colours.images.front().file).filename().string() + ")");
+    if (!colours.stamps && areOneApart(colours.images, depths.images))
+        out.notes.push_back(
+            "warning: as many colour as depth images, and one kind is numbered from one more than the other: "
+            "if the first ones belong together, every pair is a frame off; number both alike");
     colours.toSeconds(rate);
     depths.toSeconds(rate);
     matchEntries(colours.images, depths.images, colours.stamps ? max_difference : 0, out);

@@ -174,8 +174,7 @@ DatasetDescription loadRecord3d(const std::string& folder_name, const DatasetOpt
     const auto camera = givenCamera(folder_name, options.folder);
     if (!camera) throw std::runtime_error(where + ": no camera in it");
     readPairs(options, out);
-    const double rate =
-        options.folder.frame_rate > 0 ? options.folder.frame_rate : camera->frame_rate.value_or(kPhoneRate);
+    const double rate = frameRate(options.folder, camera, kPhoneRate);
     try {
         const auto poses = metadata.value("poses", std::vector<std::vector<double>>());
         const Pose T_arkit_optical(Eigen::Quaterniond(0, 1, 0, 0),

@@ -66,7 +66,7 @@ std::optional<ImagePair> findImages(const std::string& folder_name) {
     const fs::path colour = findFolder(folder, {"rgb", "color", "colour", "images", "image", "rgb_images",
                                                 "color_images", "rgb_image", "color_image"});
     const fs::path depth = findFolder(
-        folder, {"depth", "depths", "depth_images", "depth_image", "aligned_depth", "depth_aligned"});
+        folder, {"aligned_depth", "depth_aligned", "depth", "depths", "depth_images", "depth_image"});
     if (!colour.empty() && !depth.empty())
         return ImagePair{imagesIn(colour), imagesIn(depth), colour.string(), depth.string()};
     ImagePair pair = sideBySide(folder_name);
@@ -94,8 +94,7 @@ DatasetDescription loadPlain(const std::string& folder_name, const DatasetOption
     const auto camera = givenCamera(folder_name, options.folder);
     if (!camera) throw std::runtime_error(noIntrinsics(folder_name));
     const bool told = camera->frame_rate || options.folder.frame_rate > 0;
-    const double rate =
-        options.folder.frame_rate > 0 ? options.folder.frame_rate : camera->frame_rate.value_or(kUsualRate);
+    const double rate = frameRate(options.folder, camera, kUsualRate);
     std::string times = pairByName(images->colour, images->depth, rate, options.max_time_difference, out);
     if (!told && times.find("Hz") != std::string::npos)
         times += " (assumed; frame_rate in camera.txt or --frame-rate sets it)";

@@ -77,10 +77,10 @@ DatasetDescription loadScanNet(const std::string& folder_name, const DatasetOpti
     const NamedImages colours = imagesIn(folder / "color"), depths = imagesIn(folder / "depth");
     requireImages(colours, (folder / "color").string());
     requireImages(depths, (folder / "depth").string());
-    const double rate = options.folder.frame_rate > 0 ? options.folder.frame_rate : kScanNetRate;
+    const auto given = givenCamera(folder_name, options.folder);
+    const double rate = frameRate(options.folder, given, kScanNetRate);
     out.notes.push_back(pairByName(colours, depths, rate, options.max_time_difference, out));
     finishFrames(out);
-    const auto given = givenCamera(folder_name, options.folder);
     setCamera(given ? *given : readCameras(folder, out), out);
 
     std::map<double, std::string> poses;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "programs/text.h"
 #include "recordings/camera_file.h"
 #include "recordings/given_camera.h"
 #include "recordings/image_lists.h"
@@ -48,6 +49,19 @@ std::map<long long, FrameFiles> filesIn(const fs::path& folder) {
     return frames;
 }
 
+/// Others name their files alike, and bring a camera in a file of their own, or colour as JPEG: 7-Scenes'
+/// camera must not be given to them.
+bool isSurelySevenScenes(const fs::path& folder) {
+    for (const fs::path& place : {folder, folder / ".."})
+        for (const char* file : {"info.txt", "_info.txt", "camera-intrinsics.txt"})
+            if (fs::exists(place / file)) return false;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const auto parsed = parseName(entry.path().filename().string());
+        if (parsed && parsed->second == ".color.jpg") return false;
+    }
+    return true;
+}
+
 /// @param T_depth_colour  from the camera whose poses are wanted to the one that the files speak of
 void readPoses(const std::map<long long, FrameFiles>& frames, const Pose& T_depth_colour,
                DatasetDescription& out) {
@@ -55,7 +69,7 @@ void readPoses(const std::map<long long, FrameFiles>& frames, const Pose& T_dept
     std::map<double, std::string> poses;
     for (const auto& [number, files] : frames) {
         if (!files.pose.empty())
-            poses[static_cast<double>(number) / kRate] = files.pose;
+            poses[static_cast<double>(number) / out.frame_rate] = files.pose;
         else if (!files.colour.empty() && !files.depth.empty())
             missing++;
     }
@@ -103,26 +117,33 @@ DatasetDescription loadSevenScenes(const std::string& folder, const DatasetOptio
     out.folder = folder;
     out.format = "7scenes";
     const auto frames = filesIn(folder);
+    const auto given = givenCamera(folder, options.folder);
+    out.frame_rate = frameRate({}, given, kRate);
     for (const auto& [number, files] : frames) {
         if (files.colour.empty() != files.depth.empty())
             (files.colour.empty() ? out.association.dropped_depth : out.association.dropped_colour)++;
         if (files.colour.empty() || files.depth.empty()) continue;
-        const double time = static_cast<double>(number) / kRate;
+        const double time = static_cast<double>(number) / out.frame_rate;
         out.frames.push_back({time, time, files.colour, files.depth});
     }
     if (out.frames.empty())
         throw std::runtime_error(folder + " has no frame-000000.color.png with its frame-000000.depth.png");
-    out.frame_rate = kRate;
     finishFrames(out);
-    out.notes.push_back("times are frame numbers at 30 Hz");
+    out.notes.push_back("times are frame numbers at " + plainNumber(out.frame_rate) + " Hz");
     out.invalid_depth = kInvalidDepth;
 
-    if (const auto given = givenCamera(folder, options.folder)) {
+    if (given) {
         setCamera(*given, out);
         if (!out.registration)
             out.notes.push_back("depth is taken as registered to colour, because there is " +
                                 std::string(options.folder.intrinsics.empty() ? "a " : "") + given->source);
     } else {
+        if (options.format != "7scenes" && !isSurelySevenScenes(folder))
+            throw std::runtime_error(
+                "no intrinsics: " + folder +
+                " names its files as 7-Scenes does, but is of another dataset "
+                "(BundleFusion, 3DMatch): write camera.txt (or give --format 7scenes for "
+                "7-Scenes' camera)");
         CameraDescription customary;
         customary.camera = sevenScenesColourCamera();
         customary.depth_scale = kUnitsPerMetre;

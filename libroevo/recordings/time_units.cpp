@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kYear2100 = 4.1e9;  // s
 constexpr double kLongestStep = 10;  // s
+constexpr double kMostlyShared = 0.5;
 
 double medianStep(const std::vector<double>& ascending) {
     std::vector<double> steps;
@@ -47,7 +48,7 @@ double sharedPart(const Span& a, const Span& b) {
 
 /// Whether `in_seconds` and the other, in another unit, are of one time, with a rate that there can be.
 bool fits(const Span& in_seconds, const Span& other) {
-    constexpr double kMostlyShared = 0.5, kShortestStep = 2e-4;  // s
+    constexpr double kShortestStep = 2e-4;  // s
     return sharedPart(in_seconds, other) > kMostlyShared && other.step >= kShortestStep;
 }
 
@@ -60,7 +61,22 @@ std::string unitName(double divisor) {
     return divisor == 1e3 ? "ms" : divisor == 1e6 ? "us" : "ns";
 }
 
+bool countsFrames(const GroundTruth& truth) {
+    return std::all_of(truth.poses.begin(), truth.poses.end(),
+                       [](const StampedPose& pose) { return isFrameNumber(pose.timestamp); });
+}
+
 }  // namespace
+
+bool isFrameNumber(double stamp) {
+    return stamp >= 0 && stamp == std::floor(stamp);
+}
+
+bool numbersToSeconds(DatasetDescription& dataset) {
+    if (!countsFrames(dataset.ground_truth)) return false;
+    divideTimes(dataset.ground_truth.poses, &StampedPose::timestamp, dataset.frame_rate);
+    return true;
+}
 
 double unitOfStamps(std::vector<double> stamps) {
     if (stamps.empty()) return 1;
@@ -87,6 +103,13 @@ void settleClock(DatasetDescription& dataset) {
     constexpr double kHardlyShared = 0.1;
     const Span images(stampsOf(dataset.frames)), truth(stampsOf(poses));
     const double shared = sharedPart(images, truth);
+    if (dataset.frame_rate > 0 && countsFrames(dataset.ground_truth) &&
+        sharedPart(images, truth.dividedBy(dataset.frame_rate)) > std::max(shared, kMostlyShared)) {
+        numbersToSeconds(dataset);
+        dataset.ground_truth.copyable = false;
+        dataset.notes.emplace_back("the ground truth counts frames, as the images do");
+        return;
+    }
     if (shared > kHardlyShared) return;
     if (const std::string unit = toSeconds(dataset.ground_truth); !unit.empty()) {
         dataset.notes.push_back("times of the ground truth are in " + unit);

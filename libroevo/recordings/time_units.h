@@ -15,8 +15,15 @@ double unitOfStamps(std::vector<double> stamps);
 /// @return the unit: "ms", "us" or "ns"; empty: s, or not told
 std::string toSeconds(GroundTruth& truth);
 
-/// Where the ground truth's times have nothing in common with the images', and are in another unit of the
-/// same clock: brings both to seconds, and says so. Times that have nothing in common at all are said, too.
+/// Whether it may be the number of a frame: whole, and not below 0.
+bool isFrameNumber(double stamp);
+
+/// Ground truth that counts frames at the images' rate gets seconds. @return whether it did count
+bool numbersToSeconds(DatasetDescription& dataset);
+
+/// Where the ground truth counts frames as the images do, or has times that have nothing in common with
+/// theirs and are in another unit of the same clock: brings both to seconds, and says so. Times that have
+/// nothing in common at all are said, too.
 void settleClock(DatasetDescription& dataset);
 
 }  // namespace roevo

@@ -45,6 +45,52 @@ TEST(PlainFolder, NamesTellTheTime) {
     EXPECT_EQ(timesWithNames({"1000000", "1033333"}), (Times{1, 1.033333})) << "us of a device's clock";
 }
 
+TEST(PlainFolder, NamesWithSeveralNumbers) {
+    using Times = std::vector<double>;
+    const Times minute{1715949059.966667, 1715949060, 1715949060.033333};  // 2024-05-17 12:30:59.97 UTC
+    EXPECT_EQ(timesWithNames({"20240517_123059_966667", "20240517_123100_000000", "20240517_123100_033333"}),
+              minute);
+    EXPECT_EQ(timesWithNames({"a-2024-05-17_12-30-59.966667", "a-2024-05-17_12-31-00.0",
+                              "a-2024-05-17_12-31-00.033333"}),
+              minute);
+    EXPECT_EQ(timesWithNames({"20240517123059967", "20240517123100000"}),
+              (Times{1715949059.967, 1715949060}));
+    EXPECT_EQ(timesWithNames({"1305031454_033333", "1305031453_966667", "1305031453_933333"}),
+              (Times{1305031453.933333, 1305031453.966667, 1305031454.033333}));
+    EXPECT_EQ(timesWithNames({"1305031453_966", "1305031454_033"}), (Times{1305031453.966, 1305031454.033}));
+    EXPECT_EQ(timesWithNames({"frame_0003_640x480", "frame_0012_640x480"}), (Times{0.1, 0.4}));
+    EXPECT_EQ(timesWithNames({"3_1305031453.5", "12_1305031453.6"}), (Times{1305031453.5, 1305031453.6}));
+    EXPECT_EQ(timesWithNames({"20240517_123059_0003", "20240517_123100_0006"}), (Times{0.1, 0.2}))
+        << "a number at a date's end";
+}
+
+TEST(PlainFolder, NamesThatDoNotTellWhichNumberCounts) {
+    EXPECT_CONTAINS(errorOf([] { timesWithNames({"1_2", "2_1", "3_3"}); }), "which number in its name");
+    EXPECT_CONTAINS(errorOf([] {
+                        timesWithNames({"a_7", "b_7", "c_7", "d_8", "e_7"});
+                    }),
+                    "5 images like it have but 2 different times");
+}
+
+TEST(PlainFolder, KindsThatAreNumberedFromAnotherStart) {
+    const SmallDataset folder("plain", 4);
+    for (int i = 3; i >= 0; i--) {
+        rename(folder, i, std::to_string(i));
+        fs::rename(folder / ("rgb/" + std::to_string(i) + ".png"),
+                   folder / ("rgb/" + std::to_string(i + 1) + ".png"));
+    }
+    EXPECT_CONTAINS(openDataset(folder.path()).summary(), "warning: as many colour as depth images, and one");
+    folder.remove("rgb/4.png");
+    EXPECT_EQ(openDataset(folder.path()).summary().find("warning: as many"), std::string::npos)
+        << "the first depth image has no partner";
+}
+
+TEST(PlainFolder, AlignedDepthIsTakenBeforeWhatTheSensorSaw) {
+    const SmallDataset folder("plain");
+    fs::copy(folder / "depth", folder / "aligned_depth");
+    EXPECT_CONTAINS(openDataset(folder.path()).entry(0).depth, "/aligned_depth/");
+}
+
 TEST(PlainFolder, AnAssumedRateIsSaid) {
     const SmallDataset folder("plain", 1);
     rename(folder, 0, "7");

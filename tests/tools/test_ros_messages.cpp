@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "mrpt/test_helpers.h"
+#include "recordings/bags/bag_camera.h"
 #include "recordings/bags/inverse_lens.h"
 #include "recordings/bags/messages.h"
 #include "roevo_mrpt/image_conversions.h"
@@ -56,7 +57,7 @@ TEST_P(RosMessages, HaveTheirFieldsWhateverLengthTheStringsBeforeThemHave) {
 // Every message that is cut, and every count that is larger than what follows it.
 TEST_P(RosMessages, ThatEndTooEarlyAreRefused) {
     const std::string info = infoMessage(GetParam(), "rgb", tinyCamera());
-    const std::size_t unread = GetParam() == Encoding::kRos1 ? 33 : 40;  // binning, region of interest
+    const std::size_t unread = GetParam() == Encoding::kRos1 ? 9 : 16;  // behind the region of interest
     for (std::size_t size = 0; size + unread < info.size(); size++)
         EXPECT_THROW(parseCameraInfo({std::string_view(info).substr(0, size), wire()}), std::runtime_error)
             << size;
@@ -309,6 +310,35 @@ TEST_F(RosFrames, ThatMoveAgainstOneAnotherDoNotCount) {
     const std::string error = errorOf([&] { open(); });
     EXPECT_CONTAINS(error, "'ir' and 'rgb'");
     EXPECT_CONTAINS(error, "record /tf_static");
+}
+
+TEST(CameraInfo, OfAPartOfTheSensorIsThatOfTheImage) {
+    CameraInfoMessage message;
+    message.width = 1280, message.height = 960;
+    message.K = {1000, 0, 640, 0, 900, 480, 0, 0, 1};
+    message.P = {1000, 0, 640, 0, 0, 900, 480, 0, 0, 0, 1, 0};
+    message.roi_x = 100, message.roi_y = 40, message.roi_width = 800, message.roi_height = 600;
+    message.binning_x = message.binning_y = 2;
+    for (const bool rectified : {false, true}) {
+        const PinholeCamera camera = cameraOf(message, rectified, false);
+        EXPECT_EQ(camera.width, 400);
+        EXPECT_EQ(camera.height, 300);
+        EXPECT_EQ(camera.fx, 500);
+        EXPECT_EQ(camera.fy, 450);
+        EXPECT_EQ(camera.cx, 270);
+        EXPECT_EQ(camera.cy, 220);
+    }
+}
+
+TEST(InverseLens, IsThatOfDepthOnly) {
+    CameraInfoMessage message;
+    message.width = 1280, message.height = 720;
+    message.K = {640, 0, 645, 0, 639, 362, 0, 0, 1};
+    message.distortion_model = "Inverse Brown Conrady";
+    message.D = {-0.056, 0.067, -7e-4, 4e-4, -0.021};
+    const auto terms = cameraOf(message, false, false).distortion;
+    EXPECT_EQ(std::vector<double>(terms.begin(), terms.end()), message.D);
+    EXPECT_GT(cameraOf(message, false, true).distortion[0], 0.05);
 }
 
 // Of a D455's colour camera, about. Rays by the definition of the inverse model; our lens must lead them

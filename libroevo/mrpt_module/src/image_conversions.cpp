@@ -81,7 +81,8 @@ cv::Mat asAnyDepth(const Bytes& bytes, const std::string& file) {
 }
 
 cv::Mat asColour(const Bytes& bytes, const std::string& file) {
-    return decode(bytes, file, cv::IMREAD_ANYCOLOR);
+    // Not turned as a camera was held: depth and intrinsics are of the pixels as they are stored
+    return decode(bytes, file, cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
 }  // namespace

@@ -12,18 +12,28 @@
 namespace roevo {
 namespace {
 
-void setDistortion(const CameraInfoMessage& message, PinholeCamera& camera) {
-    const bool inverse = message.distortion_model == "Inverse Brown Conrady";  // of RealSense
+void setDistortion(const CameraInfoMessage& message, bool of_depth, PinholeCamera& camera) {
+    const bool inverse = message.distortion_model == "Inverse Brown Conrady";
     const auto zero = [](double k) { return k == 0; };
-    if (!inverse)
-        setLens(message.distortion_model, message.D, camera);
+    if (!inverse || !of_depth)
+        setLens(inverse ? "" : message.distortion_model, message.D, camera);
     else if (!std::all_of(message.D.begin(), message.D.end(), zero))
         camera.distortion = distortionOfInverse(camera, message.D);
 }
 
+/// The message tells the camera of the whole sensor: of what of it the image is made, and in how many pixels.
+void toImage(const CameraInfoMessage& message, PinholeCamera& camera) {
+    const double x = std::max(1u, message.binning_x), y = std::max(1u, message.binning_y);
+    const bool part = message.roi_width > 0 && message.roi_height > 0;
+    camera.width = static_cast<int>((part ? message.roi_width : message.width) / x);
+    camera.height = static_cast<int>((part ? message.roi_height : message.height) / y);
+    camera.fx /= x, camera.cx = (camera.cx - message.roi_x) / x;
+    camera.fy /= y, camera.cy = (camera.cy - message.roi_y) / y;
+}
+
 }  // namespace
 
-PinholeCamera cameraOf(const CameraInfoMessage& message, bool rectified) {
+PinholeCamera cameraOf(const CameraInfoMessage& message, bool rectified, bool of_depth) {
     PinholeCamera camera;
     camera.width = static_cast<int>(message.width);
     camera.height = static_cast<int>(message.height);
@@ -33,16 +43,18 @@ PinholeCamera cameraOf(const CameraInfoMessage& message, bool rectified) {
     } else {
         const auto& K = message.K;
         camera.fx = K[0], camera.cx = K[2], camera.fy = K[4], camera.cy = K[5];
-        if (camera.check().empty()) setDistortion(message, camera);
+        if (camera.check().empty()) setDistortion(message, of_depth, camera);
     }
     if (camera.fx == 0 || camera.fy == 0)
         throw std::runtime_error(std::string("the camera is not calibrated: ") + (rectified ? "P" : "K") +
                                  " is zero");
+    toImage(message, camera);
     if (const std::string fault = camera.check(); !fault.empty()) throw std::runtime_error(fault);
     return camera;
 }
 
-BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const BagTopic& images) {
+BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const BagTopic& images,
+                     bool of_depth) {
     const std::string base = imageTopicBase(images.name);
     const bool rectified = base.substr(base.rfind('/') + 1).find("rect") != std::string::npos;
     BagCamera out;
@@ -52,7 +64,8 @@ BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const Ba
     std::string fault = "it has no message";
     for (std::size_t i = 0; i < all; i++) {
         try {
-            const PinholeCamera camera = cameraOf(parseCameraInfo(bag.message(info_topic, i)), rectified);
+            const PinholeCamera camera =
+                cameraOf(parseCameraInfo(bag.message(info_topic, i)), rectified, of_depth);
             if (!first) first = camera;
             if (camera != *first) others++;
         } catch (const std::runtime_error& error) {

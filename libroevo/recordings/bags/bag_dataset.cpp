@@ -136,7 +136,7 @@ std::string noPairText(const BagTopicNames& topics, const std::vector<double>& c
     std::snprintf(text, sizeof text, " within %g s (%zu colour, %zu depth images, closest pair %.3g s apart)",
                   max_difference, colour.size(), depth.size(), closest);
     return "no image of " + topics.colour + " has one of " + topics.depth + text +
-           (std::isfinite(closest) ? ": see --max-dt" : "");
+           (std::isfinite(closest) ? ": see --max-dt of rgbd2rawlog" : "");
 }
 
 Pose findDepthColour(const BagFile& bag, const BagTopic& depth, const BagTopic& colour) {
@@ -155,12 +155,12 @@ Pose findDepthColour(const BagFile& bag, const BagTopic& depth, const BagTopic& 
 BagCameras readCameras(const BagFile& bag, const BagTopicNames& topics) {
     const BagTopic &colour = *bag.find(topics.colour), &depth = *bag.find(topics.depth);
     BagCameras out;
-    const auto use = [&](const std::string& info, const BagTopic& images) {
-        const BagCamera found = readCamera(bag, info, images);
+    const auto use = [&](const std::string& info, const BagTopic& images, bool of_depth) {
+        const BagCamera found = readCamera(bag, info, images, of_depth);
         if (!found.warning.empty()) out.notes.push_back("warning: " + found.warning);
         return found;
     };
-    const BagCamera colour_camera = use(topics.colour_info, colour);
+    const BagCamera colour_camera = use(topics.colour_info, colour, false);
     out.colour = out.depth = colour_camera.camera;
     out.source = colour_camera.source;
     const bool same_frame = depth.frame_id == colour.frame_id;
@@ -171,7 +171,7 @@ BagCameras readCameras(const BagFile& bag, const BagTopicNames& topics) {
                                      ", and has no camera_info: record it, "
                                      "choose it by --depth-info-topic, or record aligned depth");
     } else {
-        out.depth = use(topics.depth_info, depth).camera;
+        out.depth = use(topics.depth_info, depth, true).camera;
     }
     if (!same_frame) out.T_depth_colour = findDepthColour(bag, depth, colour);
     out.aligned = out.depth == out.colour && out.T_depth_colour.isApprox(Pose::Identity(), 1e-9);

@@ -83,6 +83,9 @@ CameraInfoMessage parseCameraInfo(const MessageBytes& message) {
     for (double& value : out.K) value = in.get<double>();
     for (int i = 0; i < 9; i++) in.get<double>();  // R, of stereo cameras
     for (double& value : out.P) value = in.get<double>();
+    for (std::uint32_t* value :
+         {&out.binning_x, &out.binning_y, &out.roi_x, &out.roi_y, &out.roi_height, &out.roi_width})
+        *value = in.get<std::uint32_t>();
     return out;
 }
 

@@ -48,6 +48,8 @@ struct CameraInfoMessage {
     std::vector<double> D;
     std::array<double, 9> K{};
     std::array<double, 12> P{};
+    std::uint32_t binning_x = 0, binning_y = 0;                         ///< 0 as 1
+    std::uint32_t roi_x = 0, roi_y = 0, roi_height = 0, roi_width = 0;  ///< of the sensor; no size: all of it
 };
 
 /// geometry_msgs/TransformStamped
