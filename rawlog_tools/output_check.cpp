@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "input/regular_file.h"
+#include "programs/program.h"
 #include "roevo_mrpt/rawlog_writer.h"
 
 namespace roevo {
@@ -37,10 +38,8 @@ void warnOfForeignGroundTruth(const std::string& program, const std::string& raw
 void warnOfForeignFile(const std::string& program, const std::string& file, const std::string& what) {
     std::error_code unreadable;
     if (!fs::exists(file, unreadable)) return;
-    std::fprintf(stderr,
-                 "%s: warning: %s was there before and is not from this recording, which has no %s; move it "
-                 "away\n",
-                 program.c_str(), file.c_str(), what.c_str());
+    printWarning(program.c_str(), file + " was there before and is not from this recording, which has no " +
+                                      what + "; move it away");
 }
 
 }  // namespace roevo

@@ -34,7 +34,6 @@ endif()
 
 add_executable(rawlog-simulate
   rawlog-simulate/folder_layouts.cpp
-  rawlog-simulate/folder_recording.cpp
   rawlog-simulate/layout.cpp
   rawlog-simulate/main.cpp
   rawlog-simulate/recording.cpp)

@@ -87,8 +87,7 @@ def run_engine(args, jobs, before, progress):
         told.append(True)
         os.killpg(process.pid, signal.SIGINT)
 
-    for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(each, stop)
+    before_this = {each: signal.signal(each, stop) for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
     with open("logs/engine.log", "a", encoding="utf-8") as log:
         for line in process.stdout:
             log.write(line)
@@ -97,4 +96,6 @@ def run_engine(args, jobs, before, progress):
             if steps:
                 progress.update(before + min(int(steps[1]), len(jobs)))
     process.wait()
+    for each, handler in before_this.items():
+        signal.signal(each, handler)
     return bool(told)

@@ -7,25 +7,29 @@ import re
 from messages import Fault, say
 
 ENDINGS = (".rawlog", ".bag", ".db3", ".mcap")
-PARTS_OF_A_RECORDING = ("rgb", "depth", "rgb.txt", "associations.txt", "metadata.yaml", "camera.txt")
+IMAGES = (".png", ".jpg", ".jpeg")
+PARTS_OF_A_RECORDING = ("rgb", "color", "colour", "image", "images", "depth", "depths", "aligned_depth", "rgb.txt",
+                        "associations.txt", "metadata.yaml", "camera.txt")
 
 
 def recording(path, name=None, **more):
     return {"input": os.path.abspath(path), "name": name, "skip": 0, "first": 0, **more}
 
 
-def recordings_in(folder):
+def recordings_in(folder, output):
     entries = sorted(os.listdir(folder))
-    if any(entry in PARTS_OF_A_RECORDING for entry in entries):
+    paths = [os.path.join(folder, e) for e in entries if not e.startswith(".") and not e.endswith("_Images")]
+    found = [path for path in paths if path.endswith(ENDINGS) or (os.path.isdir(path) and os.path.abspath(path) != output)]
+    is_one = not found and any(entry.lower().endswith(IMAGES) for entry in entries)
+    if is_one or any(entry in PARTS_OF_A_RECORDING for entry in entries):
         return [recording(folder)]
-    return [recording(os.path.join(folder, e)) for e in entries if not e.startswith(".") and (
-        e.endswith(ENDINGS) or (os.path.isdir(os.path.join(folder, e)) and not e.endswith("_Images")))]
+    return [recording(path) for path in found]
 
 
 def recordings_of_list(file):
     if os.path.basename(file) in PARTS_OF_A_RECORDING:
         raise Fault(f"{file} is a part of a recording: give its folder")
-    with open(file, encoding="utf-8", errors="surrogateescape") as lines:
+    with open(file, encoding="utf-8-sig", errors="surrogateescape") as lines:
         paths = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
     if any("\0" in path for path in paths):
         raise Fault(f"{file} is no list of recordings: it is no text")
@@ -58,7 +62,7 @@ def parts(entry, found, where):
 
 def recordings_of_json(file, data):
     """@return what is on this disk, and names of what is not"""
-    with open(file, encoding="utf-8") as text:
+    with open(file, encoding="utf-8-sig") as text:
         entries = json.load(text)["sequences"]
     made, missing = [], []
     for i, entry in enumerate(entries):
@@ -81,7 +85,7 @@ def recordings(args):
                 raise Fault(f"--data {args.data}: there is no such folder")
             found, missing = recordings_of_json(args.input, args.data)
         elif os.path.isdir(args.input):
-            found = recordings_in(args.input)
+            found = recordings_in(args.input, args.output)
         else:
             found = [recording(args.input)] if args.input.endswith(ENDINGS) else recordings_of_list(args.input)
     except OSError as e:

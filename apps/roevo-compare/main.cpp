@@ -20,6 +20,7 @@ namespace {
 
 constexpr char kName[] = "roevo-compare";
 constexpr double kTimeout = 7200;  // s
+constexpr char kForBatch[] = "For programs that start this one, as roevo-batch does";
 
 constexpr char kFooter[] =
     "Examples:\n"
@@ -68,14 +69,19 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--baseline", a.baseline, "With --report: rows of an earlier comparison, to compare with");
     app.add_flag("--rows-only", a.rows_only,
                  "Make the runs and their rows, but no report; several programs may do so in one folder, as "
-                 "roevo-batch has them");
+                 "roevo-batch has them")
+        ->group(kForBatch);
     app.add_option("--name", a.name, "Name of a single --input in tables (default: that of its file)");
-    app.add_option("--note", a.note, "What a reader must know of a single --input");
-    app.add_option("--paper-ate", a.paper_ate, "ATE of ROEVO-TR+BA on a single --input in the paper, cm");
-    app.add_option("--variant", a.variant, "Name of this configuration, behind the methods' names in tables");
-    app.add_option("--key", a.key, "Kept in each row: by it roevo-batch tells what a row was made of");
+    app.add_option("--note", a.note, "What a reader must know of a single --input")->group(kForBatch);
+    app.add_option("--paper-ate", a.paper_ate, "ATE of ROEVO-TR+BA on a single --input in the paper, cm")
+        ->group(kForBatch);
+    app.add_option("--variant", a.variant, "Name of this configuration, behind the methods' names in tables")
+        ->group(kForBatch);
+    app.add_option("--key", a.key, "Kept in each row: by it roevo-batch tells what a row was made of")
+        ->group(kForBatch);
     app.add_option("--command", a.command,
-                   "With --report: the command that it shows as its own (default: this)");
+                   "With --report: the command that it shows as its own (default: this)")
+        ->group(kForBatch);
     app.add_flag("--quiet", a.quiet, "Print errors only");
     app.add_option("--run-method", a.run_method)->group("");  // how this program starts itself for a run
     app.add_option("--run-folder", a.run_folder)->group("");
@@ -205,10 +211,8 @@ OdometryOptions methodOptions(const Arguments& a) {
     OdometryOptions options = collectOptions(a.config, a.sets, "");
     const Mode own = OdometryOptions().mode;
     if (options.mode != own && !a.quiet)
-        std::fprintf(stderr,
-                     "warning: mode = %s in %s has no effect here: each method has its own, choose by "
-                     "--methods\n",
-                     toString(options.mode), a.config.c_str());
+        printWarning(kName, std::string("mode = ") + toString(options.mode) + " in " + a.config +
+                                " has no effect here: each method has its own, choose by --methods");
     options.mode = own;
     return options;
 }

@@ -222,7 +222,7 @@ class RowCollector {
     void add(const std::string& file) {
         try {
             std::ifstream in(file);
-            if (!in) throw std::runtime_error("it cannot be opened");
+            if (!in) throw std::runtime_error("cannot read " + file);
             for (Json json; in >> std::ws && in.peek() != std::ifstream::traits_type::eof();) {
                 in >> json;
                 add(toRow(json), file);

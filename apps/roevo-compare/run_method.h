@@ -18,11 +18,11 @@ using RunProgress = std::function<void(std::size_t frames, double share)>;
 /// @param first   at most this many frames; 0: all
 /// @param folder  gets frames.csv and, where the method has one, map.3Dscene
 /// @throws std::runtime_error in one line that names the frame: what the method threw; a pose that is not
-/// finite or no rigid motion; no frame with a pose
+/// finite; no frame with a pose
 MethodRun runMethod(Method& method, const MethodInfo& info, FrameSource& source, std::size_t first,
                     const std::string& folder, const RunProgress& progress = {});
 
-/// Empty when the pose is finite and rigid, else what is wrong with it.
+/// Empty when the pose is finite, else what is wrong with it.
 std::string poseFault(const Pose& pose);
 
 }  // namespace roevo

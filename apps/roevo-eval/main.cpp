@@ -101,7 +101,8 @@ void writeJson(const std::vector<JudgedEstimate>& estimates, const Settings& set
         json.update(jsonOf(estimates.front()));
     else
         for (const JudgedEstimate& estimate : estimates) json["estimates"].push_back(jsonOf(estimate));
-    writeTextAtomically(settings.json, json.dump(2) + "\n");
+    writeTextAtomically(settings.json,
+                        json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 // Errors of a part and of the whole stand in one table.

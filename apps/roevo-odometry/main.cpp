@@ -36,13 +36,13 @@ void writeDefaultConfig(const std::string& path) {
 int run(int argc, char** argv) {
     RunSettings settings;
     settings.command.assign(argv, argv + argc);
-    std::string config_file, mode, default_config;
+    std::string mode, default_config;
     std::vector<std::string> sets;
     CLI::App app("RGB-D visual odometry from organized edges.", kName);
     app.add_option("--input", settings.input,
                    "A .rawlog file, a ROS bag or a dataset folder (layout detected)");
     app.add_option("--output", settings.output_dir, "Folder for the results; created when missing");
-    app.add_option("--config", config_file, "Options (.ini), see config_ini/roevo.ini");
+    app.add_option("--config", settings.config, "Options (.ini), see config_ini/roevo.ini");
     addSetOption(app, sets);
     app.add_option("--mode", mode,
                    "ct: coarse tracking only; tr: coarse and fine; ba: with local mapping (default)");
@@ -97,7 +97,7 @@ int run(int argc, char** argv) {
         throw UsageError("--localise-only leaves the map as it is: there is nothing to write by --map-out");
     if (settings.simple_map_images && settings.simple_map.empty())
         throw UsageError("--simplemap-images needs --simplemap");
-    settings.options = collectOptions(config_file, sets, mode);
+    settings.options = collectOptions(settings.config, sets, mode);
     if (threads_given->count() > 0) settings.options.threads = threads;
     if (!settings.options.loss.recognise && !(settings.map_in + settings.map_out).empty())
         throw UsageError("maps need loss.recognise=true: without, no places are remembered or looked for");

@@ -63,29 +63,9 @@ std::vector<PosedScan> posedScans(const RunReport& report, const Odometry& odome
     return scans;
 }
 
-void checkOutputs(const RunSettings& settings) {
-    const auto check = [](const char* option, const std::string& file,
-                          std::initializer_list<std::pair<const char*, const std::string&>> others) {
-        for (const auto& [other, name] : others)
-            if (isSameFile(file, name))
-                throw UsageError(std::string(option) + " " + file + " is what " + other +
-                                 " names; give another name");
-    };
-    check("--simplemap", settings.simple_map,
-          {{"--map-in", settings.map_in},
-           {"--map-out", settings.map_out},
-           {"--covariances", settings.covariances}});
-    check("--rawlog-with-poses", settings.rawlog_with_poses,
-          {{"--map-in", settings.map_in},
-           {"--map-out", settings.map_out},
-           {"--covariances", settings.covariances},
-           {"--simplemap", settings.simple_map}});
-}
-
 }  // namespace
 
 MrptOutputs::MrptOutputs(const RunSettings& settings, const FrameSource& source) : settings_(settings) {
-    checkOutputs(settings);
     if (!settings.simple_map.empty()) simple_map_.emplace(settings.simple_map).stream();
     const std::string& rawlog = settings.rawlog_with_poses;
     if (rawlog.empty()) return;

@@ -50,43 +50,42 @@ const std::vector<std::string> kResults = {
     "map_semi_dense.ply", "config_used.ini",     "frames.csv",
     "summary.json",       "trajectory_truth.txt"};
 
-// What is written besides the results must not take the place of what is read, or of a result.
+// What is written besides the results must not take the place of what is read, or of anything else written.
 void checkNames(const RunSettings& settings, const std::string& ground_truth) {
-    const auto check = [&](const char* option, const std::string& file) {
-        if (file.empty()) return;
-        const auto refuse = [&](const std::string& what) {
-            throw UsageError(std::string(option) + " " + file + " is " + what + "; give another name");
+    const auto isResult = [&](const std::string& file) {
+        return std::any_of(kResults.begin(), kResults.end(), [&](const std::string& name) {
+            return isSameFile(file, (fs::path(settings.output_dir) / name).string());
+        });
+    };
+    if (isResult(ground_truth))
+        throw UsageError("the ground truth " + ground_truth +
+                         " is what the run writes itself; give another --output");
+    const std::string& pairs = settings.choice.folder.associations;
+    const std::pair<const char*, std::string> named[] = {{"--map-in", settings.map_in},
+                                                         {"--map-out", settings.map_out},
+                                                         {"--covariances", settings.covariances},
+                                                         {"--simplemap", settings.simple_map},
+                                                         {"--rawlog-with-poses", settings.rawlog_with_poses}};
+    for (std::size_t i = 1; i < std::size(named); ++i) {
+        const auto& [option, file] = named[i];
+        const auto refuse = [&, option = option, &file = file](const std::string& what) {
+            throw UsageError(std::string(option) + " " + file + " is what " + what + "; give another name");
         };
-        keepInputs(option, file, {ground_truth, settings.choice.mask});
+        keepInputs(option, file,
+                   {ground_truth, settings.choice.mask, settings.config, pairs,
+                    (fs::path(settings.input) / pairs).string()});
         // Results may lie inside of the recording, and those of an earlier run be replaced
         if (!isWithin(file, settings.output_dir) || isSameFile(settings.output_dir, settings.input))
             keepInputs(option, file, {settings.input});
-        for (const std::string& name : kResults)
-            if (isSameFile(file, (fs::path(settings.output_dir) / name).string()))
-                refuse("what the run writes itself");
-    };
-    for (const std::string& name : kResults)
-        if (isSameFile(ground_truth, (fs::path(settings.output_dir) / name).string()))
-            throw UsageError("the ground truth " + ground_truth +
-                             " is what the run writes itself; give another --output");
-    check("--covariances", settings.covariances);
-    check("--map-out", settings.map_out);
-    check("--simplemap", settings.simple_map);
-    check("--rawlog-with-poses", settings.rawlog_with_poses);
-    if (settings.covariances.empty()) return;
-    for (const std::string& map : {settings.map_in, settings.map_out})
-        if (isSameFile(settings.covariances, map))
-            throw UsageError("--covariances " + settings.covariances + " is the map; give another name");
+        if (isResult(file)) refuse("the run writes itself");
+        for (std::size_t k = i == 1 ? 1 : 0; k < i; ++k)  // a map may be written over the one that was read
+            if (isSameFile(file, named[k].second)) refuse(std::string(named[k].first) + " names");
+    }
 }
 
 // There before any work is done, so that a wrong path costs none.
 void open(std::optional<AtomicFile>& file, const std::string& name) {
     if (!name.empty()) file.emplace(name).stream();
-}
-
-// Else the results would get their names, and this would not.
-void finish(std::optional<AtomicFile>& file, const std::string& name) {
-    if (file && !file->stream().flush()) throw std::runtime_error("cannot write " + name);
 }
 
 /// @return why there is none: the other results are kept all the same
@@ -324,8 +323,9 @@ RunReport runOdometry(const RunSettings& settings) {
     report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     writeTextAtomically(files.path("summary.json"), summaryJson(report));
     if (covariances) covariances->stream() << covariancesText(report);
-    finish(covariances, settings.covariances);
-    finish(map_file, settings.map_out);
+    for (auto* file :
+         {&covariances, &map_file})  // else the results would get their names, and these would not
+        if (*file) (*file)->close();
     files.commit();
     for_mrpt.commit();
     if (covariances && failure.empty()) covariances->commit();

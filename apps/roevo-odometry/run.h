@@ -13,6 +13,7 @@ namespace roevo {
 struct RunSettings {
     std::vector<std::string> command;  ///< the program and its arguments, for the record
     std::string input, output_dir;
+    std::string config;  ///< file of options; empty: none
     InputChoice choice;
     std::string map_in, map_out;                ///< files; empty: none
     bool localise_only = false;                 ///< the map stays as it is

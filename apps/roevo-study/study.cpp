@@ -18,12 +18,15 @@ StudyRun trackRecording(const StudyInput& input, const OdometryOptions& options,
     Odometry odometry(input.camera, options);
     StudyRun run;
     std::size_t processed = 0;
+    bool begun = false;
     const auto source = input.open();
     for (SourceFrame frame; source->next(frame);) {
         ++run.frames;
         if (!frame.fault.empty()) continue;
         const FrameResult result = odometry.processFrame(frame.frame);
-        run.tracked += result.status == FrameStatus::kOk || result.status == FrameStatus::kInitialised;
+        const bool first = result.status == FrameStatus::kInitialised && !begun;  // later ones: lost before
+        begun = begun || first;
+        run.tracked += result.status == FrameStatus::kOk || first;
         run.points += result.num_points;
         if (observe) observe(result, odometry);
         ++processed;

@@ -65,11 +65,14 @@ std::ostream& AtomicFile::stream() {
     return stream_;
 }
 
+void AtomicFile::close() {
+    if (!stream_.is_open()) return;
+    stream_.close();
+    if (!stream_) fail(path_, "not everything could be written; is the disk full?");
+}
+
 void AtomicFile::commit() {
-    if (stream_.is_open()) {
-        stream_.close();
-        if (!stream_) fail(path_, "not everything could be written; is the disk full?");
-    }
+    close();
     std::error_code error;
     if (!fs::exists(temporary_path_, error)) fail(path_, "the file could not be created there");
     fs::rename(temporary_path_, path_, error);

@@ -24,6 +24,10 @@ class AtomicFile {
     /// @throws std::runtime_error when it cannot be created
     std::ostream& stream();
 
+    /// Closes the temporary file: where several belong together, before the first of them gets its name.
+    /// @throws std::runtime_error when something was not written
+    void close();
+
     /// Closes and renames. @throws std::runtime_error when something was not written or the rename fails
     void commit();
 
@@ -42,7 +46,8 @@ void writeAtomically(const std::string& path,
 /// Same for text that is at hand. @throws std::runtime_error
 void writeTextAtomically(const std::string& path, const std::string& text);
 
-/// A folder that was made for outputs goes again when the program fails or is interrupted before there are any.
+/// A folder that was made for outputs goes again when the program fails or is interrupted before there are
+/// any.
 void removeIfLeftEmpty(const std::string& folder);
 
 /// Removes the temporary files of all AtomicFile objects alive, and such folders; safe in a signal handler.

@@ -1,11 +1,14 @@
 // Folders as the benchmarks pack them.
 #include <cmath>
 #include <cstdio>
+#include <opencv2/imgcodecs.hpp>
 
-#include "folder_recording.h"
 #include "layout.h"
 #include "programs/text.h"
+#include "programs/whole_folder.h"
+#include "recording.h"
 #include "recordings/camera_file.h"
+#include "roevo_mrpt/image_conversions.h"
 
 namespace roevo {
 namespace {
@@ -16,12 +19,30 @@ std::string cameraText(const PinholeCamera& camera) {
     return cameraFileText(camera, 5000, {"invalid_depth: 0", "note: simulated"}, allDigits);
 }
 
+class FolderRecording : public Recording {
+  public:
+    explicit FolderRecording(const std::string& path) : folder_(path) {}
+    void finish() final {
+        finishFiles();
+        folder_.commit();
+    }
+
+  protected:
+    /// Writes what comes after the last frame, such as lists.
+    virtual void finishFiles() {}
+    void writePng(const std::string& name, const cv::Mat& image) const {
+        writeImageFile((folder_ / name).string(), image, {cv::IMWRITE_PNG_COMPRESSION, 1});
+    }
+
+    WholeFolder folder_;
+};
+
 /// rgb/ and depth/ with one name per frame, and the lists that go with them.
 class PairsRecording : public FolderRecording {
   public:
     explicit PairsRecording(const std::string& path) : FolderRecording(path) {
-        makeFolder("rgb");
-        makeFolder("depth");
+        folder_.makeFolder("rgb");
+        folder_.makeFolder("depth");
     }
     void add(const SimulatedFrame& frame) override {
         addPair(frame, stampText(frame.timestamp), stampText(frame.timestamp));
@@ -48,22 +69,22 @@ class PairsRecording : public FolderRecording {
 class TumRecording : public PairsRecording {
   public:
     TumRecording(const std::string& path, const PinholeCamera& camera) : PairsRecording(path) {
-        writeText("camera.txt", cameraText(camera));
+        folder_.write("camera.txt", cameraText(camera));
     }
 
   private:
     void finishFiles() override {
-        writeText("rgb.txt", rgb_);
-        writeText("depth.txt", depth_);
-        writeText("associations.txt", rgb_first_);
-        writeText("groundtruth.txt", truth_);
+        folder_.write("rgb.txt", rgb_);
+        folder_.write("depth.txt", depth_);
+        folder_.write("associations.txt", rgb_first_);
+        folder_.write("groundtruth.txt", truth_);
     }
 };
 
 class PlainRecording : public PairsRecording {
   public:
     PlainRecording(const std::string& path, const PinholeCamera& camera) : PairsRecording(path) {
-        writeText("camera.txt", cameraText(camera));
+        folder_.write("camera.txt", cameraText(camera));
     }
     void add(const SimulatedFrame& frame) override {
         addPair(frame, "", stampText(frame.timestamp));
@@ -71,22 +92,22 @@ class PlainRecording : public PairsRecording {
     }
 
   private:
-    void finishFiles() override { writeText("groundtruth.txt", truth_); }
+    void finishFiles() override { folder_.write("groundtruth.txt", truth_); }
 };
 
 class Eth3dRecording : public PairsRecording {
   public:
     Eth3dRecording(const std::string& path, const PinholeCamera& camera) : PairsRecording(path) {
-        writeText("calibration.txt", allDigits(camera.fx) + " " + allDigits(camera.fy) + " " +
-                                         allDigits(camera.cx) + " " + allDigits(camera.cy) + "\n");
+        folder_.write("calibration.txt", allDigits(camera.fx) + " " + allDigits(camera.fy) + " " +
+                                             allDigits(camera.cx) + " " + allDigits(camera.cy) + "\n");
     }
 
   private:
     void finishFiles() override {
-        writeText("rgb.txt", rgb_);
-        writeText("depth.txt", depth_);
-        writeText("associated.txt", rgb_first_);
-        writeText("groundtruth.txt", truth_);
+        folder_.write("rgb.txt", rgb_);
+        folder_.write("depth.txt", depth_);
+        folder_.write("associated.txt", rgb_first_);
+        folder_.write("groundtruth.txt", truth_);
     }
 };
 
@@ -106,7 +127,7 @@ class IclRecording : public PairsRecording {
     IclRecording(const std::string& path, const PinholeCamera& camera) : PairsRecording(path) {
         // The dataset itself has no calibration file: everybody knows its one camera
         if (camera != iclCamera(camera.width, camera.height) || camera.width != 640 || camera.height != 480)
-            writeText("camera.txt", cameraText(camera));
+            folder_.write("camera.txt", cameraText(camera));
         truth_.clear();
     }
     void add(const SimulatedFrame& frame) override {
@@ -117,8 +138,8 @@ class IclRecording : public PairsRecording {
 
   private:
     void finishFiles() override {
-        writeText("associations.txt", depth_first_);
-        writeText("traj0.gt.freiburg", truth_);
+        folder_.write("associations.txt", depth_first_);
+        folder_.write("traj0.gt.freiburg", truth_);
     }
 };
 
@@ -140,7 +161,7 @@ class SevenScenesRecording : public FolderRecording {
                           pose(row, 2), pose(row, 3));
             text += line;
         }
-        writeText(std::string(name) + ".pose.txt", text);
+        folder_.write(std::string(name) + ".pose.txt", text);
     }
 
   private:

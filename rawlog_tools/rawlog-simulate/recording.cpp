@@ -2,7 +2,6 @@
 
 #include <filesystem>
 
-#include "folder_recording.h"
 #include "layout.h"
 #include "programs/atomic_file.h"
 #include "roevo_mrpt/rawlog_writer.h"
@@ -26,6 +25,7 @@ class RawlogRecording : public Recording {
         truth_.stream() << truthLine(frame.timestamp, frame.T_world_camera);
     }
     void finish() override {
+        truth_.close();
         writer_.finish();
         truth_.commit();
     }

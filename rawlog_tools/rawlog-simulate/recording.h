@@ -22,4 +22,9 @@ std::unique_ptr<Recording> openRecording(const std::string& layout, const std::s
                                          const simulator::SimulationOptions& options,
                                          const PinholeCamera& camera);
 
+/// The same for "tum", "icl", "eth3d", "7scenes" or "plain".
+std::unique_ptr<Recording> recordFolder(const std::string& layout, const std::string& path,
+                                        const simulator::SimulationOptions& options,
+                                        const PinholeCamera& camera);
+
 }  // namespace roevo

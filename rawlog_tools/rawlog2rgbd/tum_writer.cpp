@@ -1,8 +1,7 @@
 #include "rawlog2rgbd/tum_writer.h"
 
 #include <algorithm>
-#include <fstream>
-#include <stdexcept>
+#include <filesystem>
 
 #include "programs/text.h"
 #include "recordings/camera_file.h"
@@ -22,44 +21,19 @@ std::string numbersText(std::initializer_list<double> numbers) {
     return all;
 }
 
-[[noreturn]] void failToWrite(const fs::path& file) {
-    throw std::runtime_error("cannot write " + file.string() + ": disk full?");
-}
-
 }  // namespace
 
-TumWriter::TumWriter(const std::string& folder) : folder_(fs::path(folder).lexically_normal()) {
-    if (!folder_.has_filename()) folder_ = folder_.parent_path();  // "out/"
-    std::error_code fault;
-    const bool is_folder = fs::is_directory(folder_, fault);
-    const bool is_empty = is_folder && fs::is_empty(folder_, fault);
-    if (fault && fault != std::errc::no_such_file_or_directory)
-        throw std::runtime_error("cannot write " + folder + ": " + fault.message());
-    if (is_folder ? !is_empty : fs::exists(folder_, fault))
-        throw std::runtime_error("cannot write " + folder + ": it exists" +
-                                 (is_folder ? " and is not empty" : "") +
-                                 "; choose another output folder or move it away");
-    temporary_ = folder_.string() + ".part";
-    std::error_code error;
-    fs::remove_all(temporary_, error);  // of a run that was killed
-    fs::create_directory(temporary_, error);
-    for (const char* part : {"rgb", "depth"})
-        if (!error) fs::create_directory(temporary_ / part, error);
-    if (error) throw std::runtime_error("cannot create the folder " + folder + ": " + error.message());
-}
-
-TumWriter::~TumWriter() {
-    std::error_code ignored;
-    fs::remove_all(temporary_, ignored);
+TumWriter::TumWriter(const std::string& folder) : folder_(folder) {
+    for (const char* part : {"rgb", "depth"}) folder_.makeFolder(part);
 }
 
 void TumWriter::add(double timestamp, std::optional<double> depth_timestamp, const cv::Mat& depth_u16,
                     const cv::Mat& image, const std::string& image_file) {
     const std::string ending = image_file.empty() ? ".png" : fs::path(image_file).extension().string();
     std::string depth_name = "depth/" + stampText(depth_timestamp.value_or(timestamp));
-    while (fs::exists(temporary_ / (depth_name + ".png"))) depth_name += "_";  // stamps of a foreign file
+    while (fs::exists(folder_ / (depth_name + ".png"))) depth_name += "_";  // stamps of a foreign file
     const Row row{timestamp, depth_timestamp, "rgb/" + stampText(timestamp) + ending, depth_name + ".png"};
-    const fs::path image_target = temporary_ / row.image, depth_target = temporary_ / row.depth;
+    const fs::path image_target = folder_ / row.image, depth_target = folder_ / row.depth;
     if (image_file.empty()) {
         writeImageFile(image_target.string(), image);
     } else {
@@ -78,13 +52,6 @@ void TumWriter::addImu(double timestamp, const Eigen::Vector3d& acceleration,
     }
     const Eigen::Vector3d& w = *angular_velocity;
     imu_ += stampText(timestamp) + numbersText({w.x(), w.y(), w.z()}) + a + "\n";
-}
-
-void TumWriter::write(const std::string& name, const std::string& text) const {
-    std::ofstream out(temporary_ / name, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) failToWrite(temporary_ / name);
 }
 
 void TumWriter::sortRows() {
@@ -116,23 +83,21 @@ void TumWriter::writeLists(bool own_depth_times) {
         depth += of_depth + "\n";
         pairs += of_colour + " " + of_depth + "\n";
     }
-    write("rgb.txt", rgb);
-    write("depth.txt", depth);
-    write("associations.txt", pairs);
+    folder_.write("rgb.txt", rgb);
+    folder_.write("depth.txt", depth);
+    folder_.write("associations.txt", pairs);
 }
 
 void TumWriter::finish(const TumCamera& camera, const std::string& ground_truth_file, bool own_depth_times) {
     writeLists(own_depth_times);
-    write("camera.txt", cameraFileText(camera.camera, camera.depth_scale, camera.notes, plainNumber));
+    folder_.write("camera.txt", cameraFileText(camera.camera, camera.depth_scale, camera.notes, plainNumber));
     if (!accelerometer_.empty())
-        write("accelerometer.txt", "# accelerometer data, m/s^2\n# timestamp ax ay az\n" + accelerometer_);
+        folder_.write("accelerometer.txt",
+                      "# accelerometer data, m/s^2\n# timestamp ax ay az\n" + accelerometer_);
     if (!imu_.empty())
-        write("imu.txt", "# inertial data, rad/s and m/s^2\n# timestamp wx wy wz ax ay az\n" + imu_);
-    if (!ground_truth_file.empty()) copyFile(ground_truth_file, (temporary_ / "groundtruth.txt").string());
-    std::error_code error;
-    fs::remove(folder_, error);  // an empty one
-    fs::rename(temporary_, folder_, error);
-    if (error) throw std::runtime_error("cannot write " + folder_.string() + ": " + error.message());
+        folder_.write("imu.txt", "# inertial data, rad/s and m/s^2\n# timestamp wx wy wz ax ay az\n" + imu_);
+    if (!ground_truth_file.empty()) copyFile(ground_truth_file, (folder_ / "groundtruth.txt").string());
+    folder_.commit();
 }
 
 }  // namespace roevo

@@ -1,11 +1,11 @@
 #pragma once
 #include <Eigen/Core>
-#include <filesystem>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "programs/whole_folder.h"
 #include "roevo/camera/pinhole_camera.h"
 
 namespace roevo {
@@ -18,15 +18,11 @@ struct TumCamera {
 };
 
 /// Writes a folder in TUM RGB-D layout: rgb/, depth/, rgb.txt, depth.txt, associations.txt, camera.txt, and
-/// what there is of accelerometer.txt, imu.txt and groundtruth.txt. Until finish() everything is in
-/// "<folder>.part", which is removed without it.
+/// what there is of accelerometer.txt, imu.txt and groundtruth.txt.
 class TumWriter {
   public:
     /// @throws std::runtime_error when the folder exists and is not empty, or cannot be created
     explicit TumWriter(const std::string& folder);
-    ~TumWriter();
-    TumWriter(const TumWriter&) = delete;
-    TumWriter& operator=(const TumWriter&) = delete;
 
     /// @param timestamp        s, not used before
     /// @param depth_timestamp  s, where the depth image has one of its own
@@ -58,9 +54,8 @@ class TumWriter {
 
     void sortRows();
     void writeLists(bool own_depth_times);
-    void write(const std::string& name, const std::string& text) const;
 
-    std::filesystem::path folder_, temporary_;
+    WholeFolder folder_;
     std::vector<Row> rows_;
     std::string accelerometer_, imu_;
 };

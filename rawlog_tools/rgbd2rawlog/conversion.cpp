@@ -37,6 +37,7 @@ std::unique_ptr<AtomicFile> prepareGroundTruth(const GroundTruth& truth, const s
         return file;
     }
     for (const StampedPose& pose : truth.poses) file->stream() << exactTumLine(pose);
+    file->close();
     return file;
 }
 

@@ -218,6 +218,37 @@ TEST_F(Batch, KilledItGoesOn) {
             << readFile(runFolder(name, "roevo-tr") + "/run.json");
 }
 
+/// The names that a folder's or a list's recordings get.
+TEST_F(Batch, WhatIsARecording) {
+    const auto names = [&](const std::string& input, const std::string& output = "/nowhere") {
+        const std::string code =
+            "import sys; sys.path.insert(0, sys.argv[1]); import types, recordings; print(*[r['name'] for r "
+            "in "
+            "recordings.recordings(types.SimpleNamespace(input=sys.argv[2], output=sys.argv[3], "
+            "data=None))])";
+        const auto result = test::runProgram(
+            "/usr/bin/python3",
+            {"-B", "-c", code, std::string(ROEVO_BIN_DIR) + "/../share/roevo/batch", input, output});
+        EXPECT_EQ(result.exit_code, 0) << result.all();
+        return result.out;
+    };
+    clip("a"), clip("b");
+    EXPECT_EQ(names(data()), "a b\n");
+    fs::create_directories(data() + "/batch/runs");
+    EXPECT_EQ(names(data(), data() + "/batch"), "a b\n") << "and not what a batch wrote there before";
+    EXPECT_EQ(names(data() + "/a"), "a\n");
+    fs::create_directories(folder / "walk/image");
+    fs::create_directories(folder / "walk/depths");
+    EXPECT_EQ(names(folder / "walk"), "walk\n");
+    fs::create_directories(folder / "seq-01");
+    writeFile(folder / "seq-01/frame-000000.color.png", "");
+    EXPECT_EQ(names(folder / "seq-01"), "seq-01\n");
+    writeFile(folder / "list.txt",
+              "\xEF\xBB\xBF"
+              "data/b\n");
+    EXPECT_EQ(names(folder / "list.txt"), "b\n");
+}
+
 TEST_F(Batch, WrongUsage) {
     expectError(test::runProgram(kName, {"--input", data()}), 2, kName, {"--output is required"});
     expectError(run({"--jobs", "0"}), 2, kName, {"--jobs 0"});

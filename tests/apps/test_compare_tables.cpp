@@ -78,6 +78,8 @@ TEST(CompareTable, RanksWithTiesAndRunsThatLostFramesBehind) {
     EXPECT_EQ(out.row("s", "lost").at("status"), "incomplete");
     EXPECT_EQ(out.row("s", "f").at("status"), "failed");
     EXPECT_EQ(out.row("s", "f").at("reason"), "it threw");
+    for (const char* column : {"frames_tracked", "frames_rejected"})
+        EXPECT_EQ(out.row("s", "f").at(column), "") << "nobody counted";
     EXPECT_EQ(out.row("s", "l").at("status"), "skipped");
     EXPECT_EQ(out.row("s", "l").at("no_errors_because"), "skipped: no such library");
 

@@ -77,6 +77,17 @@ TEST(EvalProgram, FailuresAreOneLine) {
     }
 }
 
+TEST(EvalProgram, NamesNeedNotBeUtf8) {
+    const TemporaryFolder folder;
+    const std::string file = folder / "gt\xE9.txt";
+    writeFile(file, kReference);
+    const auto result = test::runProgram(kName, {"--reference", file, "--estimate", file, "--json",
+                                                 folder / "e.json", "--table", folder / "e.csv"});
+    EXPECT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_NE(test::readFile(folder / "e.json").find("gt\uFFFD.txt"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(folder / "e.csv"));
+}
+
 TEST(EvalProgram, FiguresThatCannotBePrintedAreAFailure) {
     const TemporaryFolder folder;
     writeFile(folder / "r.txt", kReference);

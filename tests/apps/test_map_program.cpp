@@ -129,7 +129,20 @@ TEST_F(MapProgram, AMapIsWrittenWholeOrNotAtAll) {
     expectError(run(recording(), {"--map-out", output() + "/trajectory.txt"}), 2, kName,
                 {"--map-out", "trajectory.txt", "the run writes itself"});
     expectError(run(recording(), {"--map-out", map(), "--covariances", map()}), 2, kName,
-                {"--covariances", "is the map"});
+                {"--covariances", "is what --map-out names"});
+    test::writeFile(folder_ / "own.ini", "[edges]\nmin_length = 8\n");
+    for (const char* option : {"--map-out", "--covariances", "--simplemap"})
+        expectError(run(recording(), {"--config", folder_ / "own.ini", option, folder_ / "own.ini"}), 2,
+                    kName, {option, "own.ini is an input"});
+    std::string pairs;
+    std::istringstream colours(readFile(recording() + "/rgb.txt")),
+        depths(readFile(recording() + "/depth.txt"));
+    for (std::string colour, depth; std::getline(colours, colour) && std::getline(depths, depth);)
+        pairs += colour + " " + depth + "\n";
+    test::writeFile(folder_ / "pairs.txt", pairs);
+    const std::vector<std::string> on_top{"--associations", folder_ / "pairs.txt", "--map-out",
+                                          folder_ / "pairs.txt"};
+    expectError(run(recording(), on_top), 2, kName, {"--map-out", "pairs.txt is an input"});
     EXPECT_FALSE(fs::exists(output())) << "refused before anything is begun";
     // A run that fails leaves what was there
     std::ofstream(map()) << "what was there";

@@ -125,6 +125,8 @@ TEST_F(RenderProgram, FailuresAreOneLine) {
     expectError(render({"--view", "inside"}), 2, kRenderProgram, {"--view"});
     expectError(render({"--view", "follow", "--trajectory", folder_ / "none.txt"}), 1, kRenderProgram,
                 {"none.txt"});
+    expectError(render({"--trajectory", folder_ / "none.txt"}), 2, kRenderProgram,
+                {"--trajectory", "follow"});
     // This scene has edges only
     EXPECT_EQ(render({"--layer", "all"}).exit_code, 0);
     for (const std::string layer : {"covisibility", "semi-dense", "pseudo-edges"})

@@ -261,6 +261,10 @@ TEST_F(ManyRows, OneThatIsDamagedCostsItselfAndIsSaid) {
         ASSERT_EQ(rows.notes.size(), 1u);
         EXPECT_NE(rows.notes[0].find(b + "/run.json"), std::string::npos) << rows.notes[0];
     }
+    fs::remove(b + "/run.json");
+    fs::create_symlink("nowhere", b + "/run.json");
+    EXPECT_NE(fault().find("cannot read " + b + "/run.json"), std::string::npos) << fault();
+    fs::remove(b + "/run.json");
     fs::remove_all(a);
     EXPECT_NE(fault().find("there is no row"), std::string::npos) << fault();
 }

@@ -119,6 +119,13 @@ TEST_F(SimulateProgram, AnInterruptionLeavesNothing) {
     EXPECT_FALSE(fs::exists(rawlog) || fs::exists(rawlog + ".part"));
 }
 
+TEST_F(SimulateProgram, AnEmptyFileIsNoEmptyFolder) {
+    std::ofstream(path("file")).flush();
+    EXPECT_EQ(run("--scene shadows --size 64x48 --frames 1 --layout tum --output " + path("file")), 1);
+    EXPECT_NE(errors_.find("it exists; choose another output folder"), std::string::npos) << errors_;
+    EXPECT_TRUE(fs::is_regular_file(path("file")));
+}
+
 TEST_F(SimulateProgram, LoopIsOfTheSceneBlockOnly) {
     EXPECT_EQ(run("--scene corridor --path loop --layout tum --output " + path("folder")), 1);
     EXPECT_EQ(

@@ -136,8 +136,9 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
                                                  : run->skipped);
     row.text("no_errors_because", run ? whyNoErrors(sequence, *run, *evaluated) : sequence.failure);
     row.count("frames", counted(&MethodRun::frames));
-    row.count("frames_rejected", counted(&MethodRun::rejected));
-    row.count("frames_tracked", counted(&MethodRun::tracked));
+    for (const auto& [column, count] :
+         {std::pair("frames_rejected", &MethodRun::rejected), {"frames_tracked", &MethodRun::tracked}})
+        row.count(column, run && run->ok() ? counted(count) : std::nullopt);
     row.number("tracked_share", run ? trackedShare(*run) : std::nullopt);
     row.count("poses", run && run->ok()
                            ? std::optional<std::size_t>(std::max(run->trajectory.size(), run->poses))

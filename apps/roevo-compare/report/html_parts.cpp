@@ -135,8 +135,9 @@ std::string stageLegend(const Figure& figure) {
 
 std::string PageFiles::add(const std::string& folder, const std::string& name, const std::string& extension,
                            std::string bytes) {
+    constexpr std::size_t kLongest = 120;  // a file system takes 255 bytes
     std::string plain;
-    for (const char c : name)
+    for (const char c : name.substr(0, kLongest))
         if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '.')
             plain += c;
         else if (!plain.empty() && plain.back() != '_')
