@@ -98,10 +98,10 @@ def recordings(args):
         say(args, f"skipped {line}")
     if not found:
         raise Fault(f"there is no recording in {args.input}" + (f"; e.g. {missing[0]}" if missing else ""))
-    return named(found)
+    return named(args, found)
 
 
-def named(found):
+def named(args, found):
     """Names that are unique and good for folders, whatever the files are called."""
     taken = set()
     for one in found:
@@ -112,5 +112,7 @@ def named(found):
         while unique in taken:
             unique, i = f"{name}_{i}", i + 1
         taken.add(unique)
+        if unique != name:
+            say(args, f"{one['input']} is called {unique}: another recording has the name {name}")
         one["name"] = unique
     return found

@@ -40,6 +40,8 @@ class Rows {
   public:
     explicit Rows(const std::string& path, std::optional<TrajectoryFormat> format = {}) : path_(path) {
         if (format) has_commas_ = *format == TrajectoryFormat::kEuroc;
+        if (format)
+            separators_ = " \t\r\f\v,";  // TUM's and KITTI's columns in whatever a table was exported with
         requireRegularInput(path);
         errno = 0;
         in_.open(path);
@@ -99,9 +101,10 @@ class Rows {
             words_.push_back(trimmed(content));
             return;
         }
-        for (content = trimmed(content); !content.empty();) {
-            words_.push_back(content.substr(0, content.find_first_of(kBlank)));
-            content = trimmed(content.substr(words_.back().size()));
+        for (std::size_t at = 0;
+             (at = content.find_first_not_of(separators_, at)) != std::string_view::npos;) {
+            words_.push_back(content.substr(at, content.find_first_of(separators_, at) - at));
+            at += words_.back().size();
         }
     }
 
@@ -109,6 +112,7 @@ class Rows {
     std::ifstream in_;
     std::size_t line_ = 0, columns_ = 0;
     std::optional<bool> has_commas_;
+    std::string_view separators_ = kBlank;  // where there are no commas
     std::vector<std::string_view> words_;
 };
 
@@ -127,7 +131,8 @@ std::string anyRow() {
 }
 
 double eurocStamp(const Rows& rows) {
-    const auto ns = rows.number<std::int64_t>(0, "time stamp in whole nanoseconds");
+    const auto ns = rows.number<std::int64_t>(
+        0, "time stamp in whole nanoseconds (EuRoC has commas; TUM's columns with commas: --format tum)");
     return static_cast<double>(ns / kNanoseconds) + 1e-9 * static_cast<double>(ns % kNanoseconds);
 }
 

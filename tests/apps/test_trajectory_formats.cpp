@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -194,6 +195,14 @@ TEST_F(TrajectoryFormats, FailuresOfThePrograms) {
     for (StampedPose& pose : late) pose.timestamp += 500;
     expectError(eval(truth(), {file("late.csv", test::eurocText(late))}), 1, kEval,
                 {"no pose has a reference", "--offset"});
+}
+
+TEST_F(TrajectoryFormats, CommasMayStandBetweenTumsColumns) {
+    std::string text = test::readFile(truth());
+    std::replace(text.begin(), text.end(), ' ', ',');
+    const std::string commas = file("commas.txt", text);
+    expectSame(readTrajectory(commas, TrajectoryFormat::kTum), helix());
+    EXPECT_THROW(readTrajectory(commas), std::runtime_error) << "EuRoC's, were it not told otherwise";
 }
 
 }  // namespace

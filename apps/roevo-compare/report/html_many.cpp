@@ -34,8 +34,9 @@ std::vector<std::string> countedRemarks(const std::vector<SequenceResults>& resu
     return sentences;
 }
 
+// @param sections  the page's others, to which it has links
 std::string header(const std::vector<SequenceResults>& results, const Legend& legend,
-                   const ComparisonInfo& info, bool changes) {
+                   const ComparisonInfo& info, const std::string& sections) {
     std::string html = "<header>\n<h1>Comparison of RGB-D odometries</h1>\n<p class=\"subtitle\">" +
                        counted(legend.methods.size(), "method") + " on " +
                        counted(results.size(), "recording") + " · " + htmlText(info.date) +
@@ -45,7 +46,7 @@ std::string header(const std::vector<SequenceResults>& results, const Legend& le
     html += "<nav>";
     for (const char* part :
          {"Changes", "Distributions", "Failures", "Worst", "Ranking", "Methods", "Protocol", "Repeating"})
-        if (changes || std::string(part) != "Changes")
+        if (sections.find(" id=\"" + std::string(part) + "\"") != std::string::npos)
             html += "<a href=\"#" + std::string(part) + "\">" + part + "</a> ";
     return html + "<a href=\"table.csv\">All figures of all recordings</a></nav>\n</header>\n";
 }
@@ -149,10 +150,12 @@ bool hasTrajectories(const SequenceComparison& sequence) {
 std::string htmlReportOfMany(const std::vector<SequenceResults>& results, const Legend& legend,
                              const ComparisonInfo& info, const std::string& folder, PageFiles& files,
                              const std::vector<SequenceResults>& baseline) {
-    return pageHead() + header(results, legend, info, !baseline.empty()) + "<main>\n" +
-           changesSection(results, baseline) + distributions(results, legend, files) + failures(results) +
-           worst(results, legend, folder) + rankingOfMany(results, legend) + methodList(legend) +
-           protocolSection(allPinned(results)) + repeating(info) + "</main>\n</body>\n</html>\n";
+    const std::string sections = changesSection(results, baseline) + distributions(results, legend, files) +
+                                 failures(results) + worst(results, legend, folder) +
+                                 rankingOfMany(results, legend) + methodList(legend) +
+                                 protocolSection(allPinned(results)) + repeating(info);
+    return pageHead() + header(results, legend, info, sections) + "<main>\n" + sections +
+           "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace roevo

@@ -161,7 +161,8 @@ std::string SequenceWriter::write(const SequenceResults& results, std::size_t nu
     html += view(results);
     if (with_table_) html += allFigures(results, id + "_figures", folder_);
     html += plots(results);
-    html += setTable(stageTable(results), id + "_stages");
+    if (const Table stages = stageTable(results); !stages.rows.empty())
+        html += setTable(stages, id + "_stages");
     return html + maps(results) + "</section>\n";
 }
 
