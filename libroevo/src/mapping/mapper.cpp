@@ -2,11 +2,11 @@
 
 #include <Eigen/LU>
 #include <condition_variable>
+#include <deque>
 #include <exception>
 #include <functional>
 #include <list>
 #include <mutex>
-#include <optional>
 #include <thread>
 
 #include "stopwatch.h"
@@ -37,7 +37,7 @@ class CollectingMapper : public Mapper {
                 for (Eigen::Vector3f& point : edge.points) point = found->second.cast<float>() * point;
     }
     std::vector<MapUpdate> due(double, double&) override { return {}; }
-    const std::deque<MapUpdate>& outstanding() override { return none_; }
+    const std::list<MapUpdate>& outstanding() override { return none_; }
     std::vector<MapUpdate> refineAll() override { return {}; }
     EdgeMap fusedMap() override { return map_; }
     EdgeMap keyframeEdges() override { return map_; }
@@ -60,7 +60,7 @@ class CollectingMapper : public Mapper {
     SensorOptions sensor_;
     EdgeMap map_;
     std::vector<KeptKeyframe> loaded_;
-    std::deque<MapUpdate> none_;
+    std::list<MapUpdate> none_;
 };
 
 void CollectingMapper::load(const std::vector<KeyframeInfo>& poses, std::vector<KeptKeyframe> keyframes) {
@@ -102,7 +102,7 @@ class RefiningMapper : public Mapper {
     void insert(NewKeyframe fresh, double timestamp) override;
     void correct(const Correction& correction) override;
     std::vector<MapUpdate> due(double timestamp, double& waited_ms) override;
-    const std::deque<MapUpdate>& outstanding() override;
+    const std::list<MapUpdate>& outstanding() override;
     std::vector<MapUpdate> refineAll() override;
     EdgeMap fusedMap() override { return finish().fusedMap(); }
     EdgeMap keyframeEdges() override { return finish().keyframeEdges(); }
@@ -120,17 +120,15 @@ class RefiningMapper : public Mapper {
     template <class Condition>
     void waitFor(Lock& lock, const Condition& condition);
     void push(Job job);
-    std::optional<MapUpdate> take();
-    bool ready() const;
+    bool isIdle() const { return jobs_.empty() && !busy_; }
     LocalMapper& finish();
 
     PinholeCamera camera_;
     MappingOptions options_;
-    std::deque<double> due_;       // times from which on the updates take effect, s, in order
-    std::deque<MapUpdate> taken_;  // updates that were taken ahead of their time
+    std::deque<double> due_;  // times from which on the updates take effect, s, in order
 
     LocalMapper mapper_;  // touched by the worker only, or by the caller while the worker is idle
-    mutable std::mutex mutex_;
+    std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Job> jobs_;
     std::list<MapUpdate> updates_;
@@ -183,38 +181,33 @@ void RefiningMapper::push(Job job) {
 
 std::vector<MapUpdate> RefiningMapper::due(double timestamp, double& waited_ms) {
     std::vector<MapUpdate> updates;
+    Lock lock(mutex_);
     while (!due_.empty()) {
-        if (options_.deterministic ? due_.front() > timestamp : taken_.empty() && !ready()) break;
-        if (taken_.empty()) {
-            const Stopwatch watch;
-            auto update = take();
-            if (!update && failure_) std::rethrow_exception(failure_);
-            if (!update) break;
-            taken_.push_back(std::move(*update));
-            waited_ms += watch.milliseconds();
-        }
+        if (options_.deterministic ? due_.front() > timestamp : updates_.empty()) break;
+        const Stopwatch watch;
+        // None comes where memory ran out between a promise and its job
+        waitFor(lock, [&] { return !updates_.empty() || isIdle(); });
+        waited_ms += watch.milliseconds();
+        if (failure_) std::rethrow_exception(failure_);
+        if (updates_.empty()) break;
         due_.pop_front();
-        updates.push_back(std::move(taken_.front()));
-        taken_.pop_front();
+        updates.push_back(std::move(updates_.front()));
+        updates_.pop_front();
     }
     return updates;
 }
 
-const std::deque<MapUpdate>& RefiningMapper::outstanding() {
-    while (taken_.size() < due_.size()) {
-        auto update = take();
-        if (!update) break;  // nothing more will take effect, as whoever goes on learns
-        taken_.push_back(std::move(*update));
-    }
-    return taken_;
+const std::list<MapUpdate>& RefiningMapper::outstanding() {
+    Lock lock(mutex_);
+    waitFor(lock, [&] { return isIdle(); });
+    return updates_;  // which the worker leaves alone until there is a job again
 }
 
 std::vector<MapUpdate> RefiningMapper::refineAll() {
     LocalMapper& mapper = finish();
-    (void)outstanding();
-    std::vector<MapUpdate> updates(std::make_move_iterator(taken_.begin()),
-                                   std::make_move_iterator(taken_.end()));
-    taken_.clear();
+    std::vector<MapUpdate> updates(std::make_move_iterator(updates_.begin()),
+                                   std::make_move_iterator(updates_.end()));
+    updates_.clear();
     due_.clear();
     updates.push_back(mapper.refineAll());
     return updates;
@@ -245,41 +238,24 @@ void RefiningMapper::runNext(Lock& lock) {
     Job job = std::move(jobs_.front());
     jobs_.pop_front();
     busy_ = true;
-    const bool failed = failure_ != nullptr;  // what it left half done is not gone on with
+    std::exception_ptr failure = failure_;  // what it left half done is not gone on with
     lock.unlock();
-    std::exception_ptr thrown;
     try {
         MapUpdate none;
-        if (!failed) job.run(job.update.empty() ? none : job.update.front());
+        if (!failure) job.run(job.update.empty() ? none : job.update.front());
     } catch (...) {
-        thrown = std::current_exception();
+        failure = std::current_exception();
     }
     lock.lock();
     busy_ = false;
-    if (thrown && !failure_) failure_ = thrown;
-    updates_.splice(updates_.end(), job.update);  // whoever waits for one learns of what was thrown
+    failure_ = failure;
+    if (!failure_) updates_.splice(updates_.end(), job.update);
     changed_.notify_all();
-}
-
-bool RefiningMapper::ready() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return !updates_.empty();
-}
-
-/// The next update, when it is there; none if mapping has failed.
-std::optional<MapUpdate> RefiningMapper::take() {
-    Lock lock(mutex_);
-    // None comes where memory ran out between a promise and its job, either
-    waitFor(lock, [&] { return !updates_.empty() || (jobs_.empty() && !busy_); });
-    if (failure_ || updates_.empty()) return std::nullopt;
-    MapUpdate update = std::move(updates_.front());
-    updates_.pop_front();
-    return update;
 }
 
 LocalMapper& RefiningMapper::finish() {
     Lock lock(mutex_);
-    waitFor(lock, [&] { return jobs_.empty() && !busy_; });
+    waitFor(lock, [&] { return isIdle(); });
     if (failure_) std::rethrow_exception(failure_);
     return mapper_;
 }

@@ -1,5 +1,5 @@
 #pragma once
-#include <deque>
+#include <list>
 #include <memory>
 #include <vector>
 
@@ -40,7 +40,7 @@ class Mapper {
     /// @param waited_ms  grows by the time that was waited for it
     [[nodiscard]] virtual std::vector<MapUpdate> due(double timestamp, double& waited_ms) = 0;
     /// What has not taken effect yet, and still will; waits for it.
-    [[nodiscard]] virtual const std::deque<MapUpdate>& outstanding() = 0;
+    [[nodiscard]] virtual const std::list<MapUpdate>& outstanding() = 0;
 
     /// What has not taken effect yet, and last what becomes of all keyframes when they are refined together;
     /// waits. From now on it has taken effect.

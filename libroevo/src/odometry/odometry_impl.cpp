@@ -210,7 +210,7 @@ std::optional<RelativePose> Odometry::Impl::trackFromPrevious() {
 /// last one that was tracked.
 std::optional<RelativePose> Odometry::Impl::trackFromHere() {
     if (!options.loss.recognise || !frame_before) return std::nullopt;
-    const auto here = world.outside(*frame, motion.stillRows(), *tracker);
+    const auto here = world.outside(*frame, motion.stillRows());
     if (!here) return std::nullopt;
     MotionModel backwards = startingHere(Pose::Identity());
     backwards.expect(-frame_before->timestamp());
@@ -347,8 +347,7 @@ void Odometry::Impl::trackBack(const Tracking& tracking) {
 }
 
 Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {
-    const Fault fault =
-        world.beginTrack(*frame, motion.stillRows(), *tracker, T_world_camera, covariance, lost_for);
+    const Fault fault = world.beginTrack(*frame, motion.stillRows(), T_world_camera, covariance, lost_for);
     if (fault) return fault;
     motion.begin(frame->timestamp());
     candidate.reset();
@@ -357,7 +356,7 @@ Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& cov
 
 Fault Odometry::Impl::promote(const Frame& promoted, const Tracking& tracked) {
     if (tracked.depth_fault && !tracked.doubtful) return tracked.depth_fault;
-    if (const Fault fault = world.addKeyframe(promoted, tracked, *tracker)) return fault;
+    if (const Fault fault = world.addKeyframe(promoted, tracked)) return fault;
     motion.changeReference(tracked.pose.T_keyframe_camera.inverse());
     candidate.reset();  // which `tracked` may be
     return {};

@@ -22,7 +22,7 @@ struct Odometry::Impl {
           preparer(raw, scaledTo(raw, opts)),
           tracker(std::move(own_tracker)),
           motion(opts.motion, opts.sensor, raw.height),
-          world(raw, opts) {}
+          world(raw, opts, *tracker) {}
 
     PinholeCamera camera;
     OdometryOptions options;  // as given

@@ -7,9 +7,9 @@
 namespace roevo {
 namespace {
 
-constexpr double kFarthest = 1e6;       // m; no map is as large
-constexpr double kMostUncertain = 1e9;  // m^2, rad^2; what is known so badly is not known
-constexpr float kMostOfPlace = 1e4F;    // m, px, rad
+constexpr double kFarthest = 1e6;        // m; no map is as large
+constexpr double kMostUncertain = 1e12;  // m^2, rad^2; what is known so badly is not known
+constexpr float kMostOfPlace = 1e4F;     // m, px, rad
 
 /// Leaves some.
 template <class T>

@@ -39,9 +39,10 @@ Matrix6d byScale(const Eigen::Vector3d& motion, double sigma) {
 
 }  // namespace
 
-World::World(const PinholeCamera& camera, const OdometryOptions& options)
+World::World(const PinholeCamera& camera, const OdometryOptions& options, const Tracker& tracker)
     : camera_(camera),
       options_(scaledTo(camera, options)),
+      tracker_(tracker),
       mapper_(makeMapper(camera.undistorted(), options_)),
       relocaliser_(camera, options),
       semi_dense_(camera, options) {}
@@ -133,22 +134,27 @@ void World::takeUpdate(const MapUpdate& update) {
         reference_->weaken(update.verdicts, options_.mapping.pseudo_weight);
 }
 
-std::unique_ptr<Keyframe> World::outside(const Frame& frame, const RowMotion& rows,
-                                         const Tracker& tracker) const {
+/// @param needed  points, at least. @return null, and why, where it cannot be a keyframe
+std::unique_ptr<Keyframe> World::make(const Frame& frame, const RowMotion& rows, int needed,
+                                      Fault& fault) const {
     auto fresh = std::make_unique<Keyframe>();
-    if (makeKeyframe(frame, rows, options_.fine.min_inliers, camera_, options_, tracker, *fresh))
-        return nullptr;
+    fault = makeKeyframe(frame, rows, needed, camera_, options_, tracker_, *fresh);
+    return fault ? nullptr : std::move(fresh);
+}
+
+std::unique_ptr<Keyframe> World::outside(const Frame& frame, const RowMotion& rows) const {
+    Fault ignored;
+    auto fresh = make(frame, rows, options_.fine.min_inliers, ignored);
     std::int32_t next = 0;
-    numberEdges(*fresh, nullptr, {}, next);
+    if (fresh) numberEdges(*fresh, nullptr, {}, next);
     return fresh;
 }
 
-Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker& tracker,
-                        const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {
-    auto fresh = std::make_unique<Keyframe>();
-    if (const Fault fault =
-            makeKeyframe(frame, rows, options_.fine.min_inliers, camera_, options_, tracker, *fresh))
-        return fault;
+Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Pose& T_world_camera,
+                        const Matrix6d& covariance, double lost_for) {
+    Fault fault;
+    auto fresh = make(frame, rows, options_.fine.min_inliers, fault);
+    if (!fresh) return fault;
     numberEdges(*fresh, nullptr, {}, next_cluster_);
     recognise();
     Reach misplaced;
@@ -164,15 +170,15 @@ Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Tracker
     return {};
 }
 
-Fault World::addKeyframe(const Frame& frame, const Tracking& tracked, const Tracker& tracker) {
+Fault World::addKeyframe(const Frame& frame, const Tracking& tracked) {
     // Where depth drops out, the reference is worth more than the scrap that would take its place. There is
     // none where the first frame was recognised in a map
     const double still_shown =
         reference_ ? tracked.matches.shownShare() * static_cast<double>(reference_->edges.size()) : 0;
     const int needed = std::max(options_.fine.min_inliers, static_cast<int>(kLeastOfShown * still_shown));
-    auto fresh = std::make_unique<Keyframe>();
-    if (const Fault fault = makeKeyframe(frame, tracked.rows, needed, camera_, options_, tracker, *fresh))
-        return fault;
+    Fault fault;
+    auto fresh = make(frame, tracked.rows, needed, fault);
+    if (!fresh) return fault;
     numberEdges(*fresh, reference_.get(), tracked.matches, next_cluster_);
     recognise();
     fresh->id = trajectory_.addKeyframe(frame.timestamp(), tracked.pose, fresh->clusters);

@@ -18,7 +18,8 @@ class World {
   public:
     /// @param camera   with its lens
     /// @param options  as given
-    World(const PinholeCamera& camera, const OdometryOptions& options);
+    /// @param tracker  chooses points of keyframes
+    World(const PinholeCamera& camera, const OdometryOptions& options, const Tracker& tracker);
 
     /// Begins with a map, before anything else.
     /// @param held  it stays as it is: nothing moves its keyframes
@@ -51,14 +52,13 @@ class World {
     FrameResult changes() { return std::exchange(change_, {}); }
 
     /// A frame as a keyframe of its own, which stays outside of the world. Null where it cannot be one.
-    [[nodiscard]] std::unique_ptr<Keyframe> outside(const Frame& frame, const RowMotion& rows,
-                                                    const Tracker& tracker) const;
+    [[nodiscard]] std::unique_ptr<Keyframe> outside(const Frame& frame, const RowMotion& rows) const;
     /// A frame becomes the reference: the first, or one after a loss.
     /// @param lost_for  s, since the camera's pose was known: so far may it have come
-    Fault beginTrack(const Frame& frame, const RowMotion& rows, const Tracker& tracker,
-                     const Pose& T_world_camera, const Matrix6d& covariance, double lost_for);
+    Fault beginTrack(const Frame& frame, const RowMotion& rows, const Pose& T_world_camera,
+                     const Matrix6d& covariance, double lost_for);
     /// A frame that was tracked, or recognised, becomes the reference.
-    Fault addKeyframe(const Frame& frame, const Tracking& tracked, const Tracker& tracker);
+    Fault addKeyframe(const Frame& frame, const Tracking& tracked);
 
     /// The keyframe that a lost frame shows, and its pose relative to that.
     /// @param last            where it was last; of no keyframe where that is not known
@@ -91,6 +91,7 @@ class World {
     }
 
   private:
+    std::unique_ptr<Keyframe> make(const Frame& frame, const RowMotion& rows, int needed, Fault& fault) const;
     void waitForNextLook();
     void adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked);
     void recognise();
@@ -120,6 +121,7 @@ class World {
 
     PinholeCamera camera_;
     OdometryOptions options_;  // scaled to the camera
+    const Tracker& tracker_;
     std::unique_ptr<Mapper> mapper_;
     Relocaliser relocaliser_;
     SemiDenseStore semi_dense_;
