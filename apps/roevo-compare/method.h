@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,16 +11,6 @@
 #include "roevo/types.h"
 
 namespace roevo {
-
-/// What a table has to say of a method.
-struct MethodInfo {
-    std::string name;          ///< as on the command line: "roevo-ba", "difodo-480", …
-    std::string label;         ///< as in tables: "ROEVO TR+BA", "DIFODO 480x640", …
-    std::string note;          ///< one sentence: what it is, and what is fair or weak about the comparison
-    std::string unavailable;   ///< why this build cannot run it (a library lacks it); empty when it can
-    bool ours = false;         ///< one of ROEVO's own modes
-    std::string trajectory{};  ///< file with poses that another program made: not to be run; else empty
-};
 
 /// What a method makes of one frame.
 struct MethodFrame {
@@ -56,10 +47,23 @@ class Method {
     virtual bool writeScene(const std::string& /*path*/) { return false; }
 };
 
+/// What a table has to say of a method, and how it is made.
+struct MethodInfo {
+    std::string name;          ///< as on the command line: "roevo-ba", "difodo-480", …
+    std::string label;         ///< as in tables: "ROEVO TR+BA", "DIFODO 480x640", …
+    std::string note;          ///< one sentence: what it is, and what is fair or weak about the comparison
+    std::string unavailable;   ///< why this build cannot run it (a library lacks it); empty when it can
+    bool ours = false;         ///< one of ROEVO's own modes
+    std::string trajectory{};  ///< file with poses that another program made: not to be run; else empty
+    /// @param options  of ROEVO, for its own modes and those that share its front end
+    /// @throws std::invalid_argument for a camera that it cannot use
+    std::function<std::unique_ptr<Method>(const PinholeCamera& camera, const OdometryOptions& options)>
+        make{};  ///< none where it cannot be run
+};
+
 /// All methods that this program knows, in the order of its tables.
 std::vector<MethodInfo> knownMethods();
 
-/// @param options  of ROEVO, for its own modes and those that share its front end
 /// @throws std::invalid_argument for an unknown or unavailable name, or a camera that it cannot use
 std::unique_ptr<Method> makeMethod(const std::string& name, const PinholeCamera& camera,
                                    const OdometryOptions& options);

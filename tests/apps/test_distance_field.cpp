@@ -9,7 +9,7 @@
 #include "core/support/simulated.h"
 #include "edges/edge_extractor.h"
 #include "methods/distance_field.h"
-#include "methods/distance_field_method.h"
+#include "methods/families.h"
 #include "roevo/odometry.h"
 #include "tracking/robust.h"
 #include "tracking/tracker.h"
@@ -213,7 +213,7 @@ TEST(DistanceFieldMethod, WithoutNoiseTheErrorIsAFewMillimetres) {
     ASSERT_GT(pathLength(sequence.truth), 1.0);
     std::vector<double> errors;  // m
     for (const MethodInfo& info : distanceFieldMethods()) {
-        const auto method = makeDistanceField(info.name, sequence.camera, OdometryOptions());
+        const auto method = makeMethod(info.name, sequence.camera, OdometryOptions());
         const Pose T_world_first = sequence.start();
         double squared = 0;
         for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
@@ -281,7 +281,7 @@ TEST(DistanceFieldMethod, WhereTheWorldBeginsDoesNotMatter) {
 
 TEST(DistanceFieldMethod, BadFramesComeBackWithAReason) {
     const testing::Sequence sequence = room(6);
-    const auto method = makeDistanceField("distance-field", sequence.camera, OdometryOptions());
+    const auto method = makeMethod("distance-field", sequence.camera, OdometryOptions());
     for (std::size_t i = 0; i < 3; ++i) ASSERT_TRUE(method->processFrame(sequence.frames[i]).tracked);
     RgbdFrame grey = sequence.frames[3];
     grey.grey = cv::Mat(grey.grey.size(), CV_8UC1, cv::Scalar(90));
@@ -300,8 +300,8 @@ TEST(DistanceFieldMethod, BadFramesComeBackWithAReason) {
 
 TEST(DistanceFieldMethod, NamesAndCamerasAreChecked) {
     const testing::Sequence sequence = room(1);
-    EXPECT_THROW(makeDistanceField("distance", sequence.camera, OdometryOptions()), std::invalid_argument);
-    EXPECT_THROW(makeDistanceField("distance-field", PinholeCamera(), OdometryOptions()),
+    EXPECT_THROW(makeMethod("distance", sequence.camera, OdometryOptions()), std::invalid_argument);
+    EXPECT_THROW(makeMethod("distance-field", PinholeCamera(), OdometryOptions()),
                  std::invalid_argument);
     for (const MethodInfo& info : distanceFieldMethods()) {
         EXPECT_NE(makeMethod(info.name, sequence.camera, OdometryOptions()), nullptr);

@@ -1,6 +1,4 @@
-#include "difodo.h"
-
-#include <stdexcept>
+#include "families.h"
 
 #ifdef ROEVO_HAVE_MRPT_VISION
 #include <mrpt/vision/CDifodo.h>
@@ -19,8 +17,6 @@ namespace roevo {
 namespace {
 
 #ifdef ROEVO_HAVE_MRPT_VISION
-
-constexpr char kDifodoUnavailable[] = "";
 
 /// Coarsest level of the pyramid, as in the authors' own programs.
 constexpr unsigned kCoarsestColumns = 20;
@@ -141,17 +137,18 @@ class Difodo : public RegistrationMethod {
     cv::Mat buffer_;
 };
 
-std::unique_ptr<Method> createDifodo(const PinholeCamera& camera, const OdometryOptions& options, int width,
-                                     int height) {
-    return std::make_unique<Difodo>(camera, options, width, height);
+MethodInfo infoFor(int width, int height) {
+    MethodInfo info;
+    info.make = makerOf<Difodo>(width, height);
+    return info;
 }
 
 #else
 
-constexpr char kDifodoUnavailable[] = "this MRPT has no vision module (package libmrpt-vision-dev)";
-
-std::unique_ptr<Method> createDifodo(const PinholeCamera&, const OdometryOptions&, int, int) {
-    throw std::invalid_argument(kDifodoUnavailable);
+MethodInfo infoFor(int, int) {
+    MethodInfo info;
+    info.unavailable = "this MRPT has no vision module (package libmrpt-vision-dev)";
+    return info;
 }
 
 #endif
@@ -159,8 +156,7 @@ std::unique_ptr<Method> createDifodo(const PinholeCamera&, const OdometryOptions
 }  // namespace
 
 std::vector<MethodInfo> difodoMethods() {
-    MethodInfo low, high;
-    low.unavailable = high.unavailable = kDifodoUnavailable;
+    MethodInfo low = infoFor(320, 240), high = infoFor(640, 480);
     low.name = "difodo-240";
     low.label = "DIFODO 240x320";
     high.name = "difodo-480";
@@ -169,13 +165,6 @@ std::vector<MethodInfo> difodoMethods() {
         "MRPT's CDifodo: range flow from frame to frame, depth only; depth resampled for it to a centred, "
         "undistorted camera, since it knows a field of view only";
     return {low, high};
-}
-
-std::unique_ptr<Method> makeDifodo(const std::string& name, const PinholeCamera& camera,
-                                   const OdometryOptions& options) {
-    if (name == "difodo-240") return createDifodo(camera, options, 320, 240);
-    if (name == "difodo-480") return createDifodo(camera, options, 640, 480);
-    throw std::invalid_argument("there is no method called '" + name + "' in the family of DIFODO");
 }
 
 }  // namespace roevo

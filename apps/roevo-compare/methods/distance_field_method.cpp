@@ -1,10 +1,8 @@
-#include "distance_field_method.h"
-
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 #include "distance_field.h"
+#include "families.h"
 #include "odometry_frame.h"
 #include "roevo/odometry.h"
 #include "tracking/tracker.h"
@@ -15,7 +13,6 @@ namespace {
 /// alpha^2 of the joined residual. Not ROEVO's own weight: the field agrees less well with itself than
 /// associated edges, and is better off with more help.
 constexpr double kPhotometricWeight = 0.3;
-constexpr char kAlone[] = "distance-field", kJoined[] = "distance-field-photometric";
 
 /// ROEVO's tracker with the field in place of fine tracking.
 class FieldTracker : public Tracker {
@@ -73,7 +70,7 @@ class DistanceFieldMethod : public Method {
 
 std::vector<MethodInfo> distanceFieldMethods() {
     MethodInfo alone, joined;
-    alone.name = kAlone;
+    alone.name = "distance-field";
     alone.label = "Distance field";
     alone.note =
         "exact Euclidean distance field of the edge mask in place of ROEVO's fine tracking; edges, lifting "
@@ -81,19 +78,14 @@ std::vector<MethodInfo> distanceFieldMethods() {
         "3-D, coarse tracking, choice of the start, motion model, keyframe rule and the test of being lost "
         "(which associate edges once more) are ROEVO's, so compare it with ROEVO TR; without association it "
         "has no residual in depth";
-    joined.name = kJoined;
+    joined.name = "distance-field-photometric";
     joined.label = "Distance field + photometric";
     joined.note =
         "the same, its residual joined with the photometric one as in ROEVO's fine tracking, which counts "
         "six times as much here as there";
+    alone.make = makerOf<DistanceFieldMethod>(false);
+    joined.make = makerOf<DistanceFieldMethod>(true);
     return {alone, joined};
-}
-
-std::unique_ptr<Method> makeDistanceField(const std::string& name, const PinholeCamera& camera,
-                                          const OdometryOptions& options) {
-    if (name != kAlone && name != kJoined)
-        throw std::invalid_argument("there is no distance field method called '" + name + "'");
-    return std::make_unique<DistanceFieldMethod>(camera, options, name == kJoined);
 }
 
 }  // namespace roevo

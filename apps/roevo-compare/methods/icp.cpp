@@ -1,6 +1,4 @@
-#include "icp.h"
-
-#include <stdexcept>
+#include "families.h"
 
 #ifdef ROEVO_HAVE_MRPT_SLAM
 #include <mrpt/maps/CSimplePointsMap.h>
@@ -21,8 +19,6 @@ namespace roevo {
 namespace {
 
 #ifdef ROEVO_HAVE_MRPT_SLAM
-
-constexpr char kIcpUnavailable[] = "";
 
 /// Grid on which the depth image of a reference is sampled, and that of a frame which is registered to it.
 /// They must not fit into each other: each point would find the one at its own pixel, and surfaces seem to
@@ -161,17 +157,18 @@ class Icp : public RegistrationMethod {
     Cloud reference_;
 };
 
-std::unique_ptr<Method> createIcp(const PinholeCamera& camera, const OdometryOptions& options,
-                                  bool keyframes) {
-    return std::make_unique<Icp>(camera, options, keyframes);
+MethodInfo infoFor(bool keyframes) {
+    MethodInfo info;
+    info.make = makerOf<Icp>(keyframes);
+    return info;
 }
 
 #else
 
-constexpr char kIcpUnavailable[] = "this MRPT has no slam module (package libmrpt-slam-dev)";
-
-std::unique_ptr<Method> createIcp(const PinholeCamera&, const OdometryOptions&, bool) {
-    throw std::invalid_argument(kIcpUnavailable);
+MethodInfo infoFor(bool) {
+    MethodInfo info;
+    info.unavailable = "this MRPT has no slam module (package libmrpt-slam-dev)";
+    return info;
 }
 
 #endif
@@ -179,8 +176,7 @@ std::unique_ptr<Method> createIcp(const PinholeCamera&, const OdometryOptions&, 
 }  // namespace
 
 std::vector<MethodInfo> icpMethods() {
-    MethodInfo frame, keyframe;
-    frame.unavailable = keyframe.unavailable = kIcpUnavailable;
+    MethodInfo frame = infoFor(false), keyframe = infoFor(true);
     frame.name = "icp-frame";
     frame.label = "MRPT ICP frame";
     frame.note =
@@ -191,13 +187,6 @@ std::vector<MethodInfo> icpMethods() {
         "weak on paper: MRPT's CICP, point to point, depth only; but each frame to the last keyframe, which "
         "keeps it from drifting";
     return {frame, keyframe};
-}
-
-std::unique_ptr<Method> makeIcp(const std::string& name, const PinholeCamera& camera,
-                                const OdometryOptions& options) {
-    if (name == "icp-frame") return createIcp(camera, options, false);
-    if (name == "icp-keyframe") return createIcp(camera, options, true);
-    throw std::invalid_argument("there is no method called '" + name + "' in the family of ICP");
 }
 
 }  // namespace roevo

@@ -1,6 +1,4 @@
-#include "opencv_rgbd.h"
-
-#include <stdexcept>
+#include "families.h"
 
 #ifdef ROEVO_HAVE_OPENCV_RGBD
 #include <limits>
@@ -17,8 +15,6 @@ namespace roevo {
 namespace {
 
 #ifdef ROEVO_HAVE_OPENCV_RGBD
-
-constexpr char kRgbdUnavailable[] = "";
 
 using cv::rgbd::Odometry;
 using cv::rgbd::OdometryFrame;
@@ -101,17 +97,18 @@ class OpencvRgbd : public RegistrationMethod {
     cv::Ptr<OdometryFrame> reference_;
 };
 
-std::unique_ptr<Method> createRgbd(const PinholeCamera& camera, const OdometryOptions& options,
-                                   bool with_icp) {
-    return std::make_unique<OpencvRgbd>(camera, options, with_icp);
+MethodInfo infoFor(bool with_icp) {
+    MethodInfo info;
+    info.make = makerOf<OpencvRgbd>(with_icp);
+    return info;
 }
 
 #else
 
-constexpr char kRgbdUnavailable[] = "this OpenCV has no rgbd module (package libopencv-contrib-dev)";
-
-std::unique_ptr<Method> createRgbd(const PinholeCamera&, const OdometryOptions&, bool) {
-    throw std::invalid_argument(kRgbdUnavailable);
+MethodInfo infoFor(bool) {
+    MethodInfo info;
+    info.unavailable = "this OpenCV has no rgbd module (package libopencv-contrib-dev)";
+    return info;
 }
 
 #endif
@@ -119,8 +116,7 @@ std::unique_ptr<Method> createRgbd(const PinholeCamera&, const OdometryOptions&,
 }  // namespace
 
 std::vector<MethodInfo> opencvRgbdMethods() {
-    MethodInfo rgbd, icp;
-    rgbd.unavailable = icp.unavailable = kRgbdUnavailable;
+    MethodInfo rgbd = infoFor(false), icp = infoFor(true);
     rgbd.name = "opencv-rgbd";
     rgbd.label = "OpenCV RGB-D";
     rgbd.note =
@@ -132,13 +128,6 @@ std::vector<MethodInfo> opencvRgbdMethods() {
         "OpenCV contrib's RgbdICPOdometry: dense photometric and point-to-plane registration from frame to "
         "frame, each started at no motion";
     return {rgbd, icp};
-}
-
-std::unique_ptr<Method> makeOpencvRgbd(const std::string& name, const PinholeCamera& camera,
-                                       const OdometryOptions& options) {
-    if (name == "opencv-rgbd") return createRgbd(camera, options, false);
-    if (name == "opencv-rgbd-icp") return createRgbd(camera, options, true);
-    throw std::invalid_argument("there is no method called '" + name + "' in the family of OpenCV");
 }
 
 }  // namespace roevo

@@ -1,11 +1,9 @@
-#include "roevo_method.h"
-
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <utility>
 
 #include "evaluation/trajectory_io.h"
+#include "families.h"
 #include "odometry_frame.h"
 #include "programs/atomic_file.h"
 #include "roevo/odometry.h"
@@ -14,12 +12,11 @@
 namespace roevo {
 namespace {
 
-constexpr std::pair<const char*, Mode> kModes[] = {
-    {"roevo-ct", Mode::kCoarse}, {"roevo-tr", Mode::kTracking}, {"roevo-ba", Mode::kBundleAdjustment}};
-
 class RoevoMethod : public Method {
   public:
-    RoevoMethod(const PinholeCamera& camera, const OdometryOptions& options) : odometry_(camera, options) {}
+    /// @param options  but for the mode
+    RoevoMethod(const PinholeCamera& camera, OdometryOptions options, Mode own_mode)
+        : odometry_(camera, (options.mode = own_mode, options)) {}
 
     std::vector<std::string> stages() const override {
         std::vector<std::string> names{"edges", "coarse"};
@@ -107,19 +104,11 @@ std::vector<MethodInfo> roevoMethods() {
     ba.note =
         "tracking with local mapping in a second thread, which shares the one core; its trajectory is the "
         "refined one, as known at the end";
+    ct.make = makerOf<RoevoMethod>(Mode::kCoarse);
+    tr.make = makerOf<RoevoMethod>(Mode::kTracking);
+    ba.make = makerOf<RoevoMethod>(Mode::kBundleAdjustment);
     for (MethodInfo* info : {&ct, &tr, &ba}) info->ours = true;
     return {ct, tr, ba};
-}
-
-std::unique_ptr<Method> makeRoevo(const std::string& name, const PinholeCamera& camera,
-                                  const OdometryOptions& options) {
-    for (const auto& [known, mode] : kModes)
-        if (name == known) {
-            OdometryOptions own = options;
-            own.mode = mode;
-            return std::make_unique<RoevoMethod>(camera, own);
-        }
-    throw std::invalid_argument("there is no mode of ROEVO called '" + name + "'");
 }
 
 }  // namespace roevo
