@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "evaluation/association.h"
 #include "programs/program.h"
 #include "programs/text.h"
 #include "recordings/bags/bag_dataset.h"
@@ -188,12 +189,8 @@ void DatasetReader::settleDepthScale(const cv::Mat& first, const std::string& fi
 }
 
 void DatasetReader::noteFacts(const cv::Mat& depth, double median_depth) {
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < size(); i++) steps.push_back(entry(i).timestamp - entry(i - 1).timestamp);
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
     description_.notes.push_back(
-        factsText(size(), camera(), depth.size(), steps.empty() ? 0 : *middle, median_depth));
+        factsText(size(), camera(), depth.size(), medianStep(stampsOf(description_.frames)), median_depth));
 }
 
 void DatasetReader::checkSize(const cv::Mat& image, const PinholeCamera& camera,

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <vector>
 
+#include "tracking/robust.h"
+
 namespace roevo {
 namespace {
 
@@ -20,21 +22,19 @@ double distanceFromTypical(double median) {
 }
 
 template <class Value>
-double medianOf(const cv::Mat& depth, Value invalid) {
+double medianOfKnown(const cv::Mat& depth, Value invalid) {
     std::vector<Value> values;
     for (int row = 0; row < depth.rows; ++row)
         std::copy_if(depth.ptr<Value>(row), depth.ptr<Value>(row) + depth.cols, std::back_inserter(values),
                      [=](Value d) { return d > 0 && d != invalid && std::isfinite(static_cast<double>(d)); });
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return values.empty() ? 0 : medianOf(values);
 }
 
 }  // namespace
 
 double medianDepth(const cv::Mat& depth, std::uint16_t invalid) {
-    return depth.depth() == CV_16U ? medianOf<std::uint16_t>(depth, invalid) : medianOf<float>(depth, 0);
+    return depth.depth() == CV_16U ? medianOfKnown<std::uint16_t>(depth, invalid)
+                                   : medianOfKnown<float>(depth, 0);
 }
 
 bool isPlausibleMedianDepth(double metres) {

@@ -86,13 +86,7 @@ std::map<long long, StampedPose> readOdometry(const std::string& file) {
 }
 
 CameraDescription readCameraMatrix(const std::string& file) {
-    std::vector<double> m;
-    for (const TextLine& line : readTextLines(file))
-        for (const std::string& word : line.words)
-            m.push_back(parseNumber(word, file + ":" + std::to_string(line.number)));
-    if (m.size() != 9)
-        throw std::runtime_error(file + ": expected a 3x3 matrix, found " + std::to_string(m.size()) +
-                                 " numbers");
+    const auto m = readNumbers(file, 9, "a 3x3 matrix");
     CameraDescription out;
     out.camera = {0, 0, m[0], m[4], m[2], m[5], {}};
     out.depth_scale = 1000;

@@ -12,14 +12,9 @@ namespace roevo {
 
 Pose readPoseFile(const std::string& file) {
     constexpr double kRotationTolerance = 0.01;
-    std::vector<double> values;
-    for (const TextLine& line : readTextLines(file))
-        for (const std::string& word : line.words)
-            values.push_back(parseNumber(word, file + ":" + std::to_string(line.number)));
-    if (values.size() != 16)
-        throw std::runtime_error(file + ": expected a 4x4 matrix, found " + std::to_string(values.size()) +
-                                 " numbers");
-    const Eigen::Matrix4d matrix = Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
+    const auto values = readNumbers(file, 16, "a 4x4 matrix");
+    const Eigen::Matrix4d matrix =
+        Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
     const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
     if (!(rotation * rotation.transpose()).isApprox(Eigen::Matrix3d::Identity(), kRotationTolerance) ||
         rotation.determinant() < 0)

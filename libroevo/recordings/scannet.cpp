@@ -21,13 +21,7 @@ constexpr double kScanNetUnitsPerMetre = 1000;
 
 /// The camera in the corner of a 4x4 matrix, without its size.
 PinholeCamera readIntrinsic(const fs::path& file) {
-    std::vector<double> m;
-    for (const TextLine& line : readTextLines(file.string()))
-        for (const std::string& word : line.words)
-            m.push_back(parseNumber(word, file.string() + ":" + std::to_string(line.number)));
-    if (m.size() != 16)
-        throw std::runtime_error(file.string() + ": expected a 4x4 matrix, found " +
-                                 std::to_string(m.size()) + " numbers");
+    const auto m = readNumbers(file.string(), 16, "a 4x4 matrix");
     return {0, 0, m[0], m[5], m[2], m[6], {}};
 }
 

@@ -7,6 +7,7 @@
 #include "evaluation/trajectory_io.h"
 #include "programs/text.h"
 #include "recordings/text_list.h"
+#include "tracking/robust.h"
 
 namespace fs = std::filesystem;
 
@@ -67,9 +68,7 @@ double medianNorm(const std::vector<std::vector<double>>& rows, std::size_t colu
     if (rows.empty()) return 0;
     std::vector<double> norms;
     for (const auto& row : rows) norms.push_back(vectorAt(row, column).norm());
-    const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
-    std::nth_element(norms.begin(), middle, norms.end());
-    return *middle;
+    return medianOf(norms);
 }
 
 }  // namespace

@@ -65,6 +65,17 @@ std::string readHeaderComments(const std::string& file) {
     return comments;
 }
 
+std::vector<double> readNumbers(const std::string& file, std::size_t count, const std::string& what) {
+    std::vector<double> numbers;
+    for (const TextLine& line : readTextLines(file))
+        for (const std::string& word : line.words)
+            numbers.push_back(parseNumber(word, file + ":" + std::to_string(line.number)));
+    if (numbers.size() != count)
+        throw std::runtime_error(file + ": expected " + what + ", found " + std::to_string(numbers.size()) +
+                                 " numbers");
+    return numbers;
+}
+
 const std::string& parseFileName(const std::string& word, const std::string& where) {
     constexpr std::size_t kLongest = 1024;  // bytes; Linux takes 4095 of a whole path
     if (word.size() > kLongest || excerpt(word, kLongest) != word)

@@ -28,6 +28,10 @@ std::string readHeaderComments(const std::string& file);
 /// A finite number that fills the whole word. @throws std::runtime_error naming `where`.
 double parseNumber(const std::string& word, const std::string& where);
 
+/// All numbers of a text file, which must be `count`. @param what  they are, for the error: "a 4x4 matrix"
+/// @throws std::runtime_error naming the file
+std::vector<double> readNumbers(const std::string& file, std::size_t count, const std::string& what);
+
 /// The word, when it can be a file's name: printable, and no longer than names are.
 /// @throws std::runtime_error naming `where`.
 const std::string& parseFileName(const std::string& word, const std::string& where);

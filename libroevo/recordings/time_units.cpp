@@ -8,6 +8,7 @@
 #include "evaluation/trajectory_io.h"
 #include "recordings/image_lists.h"
 #include "roevo_mrpt/time_conversions.h"
+#include "tracking/robust.h"
 
 namespace roevo {
 namespace {
@@ -15,15 +16,6 @@ namespace {
 constexpr double kYear2100 = 4.1e9;  // s
 constexpr double kLongestStep = 10;  // s
 constexpr double kMostlyShared = 0.5;
-
-double medianStep(const std::vector<double>& ascending) {
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < ascending.size(); i++) steps.push_back(ascending[i] - ascending[i - 1]);
-    if (steps.empty()) return 0;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return *middle;
-}
 
 /// Times of frames or poses, in some unit.
 struct Span {
@@ -67,6 +59,12 @@ bool countsFrames(const GroundTruth& truth) {
 }
 
 }  // namespace
+
+double medianStep(const std::vector<double>& ascending) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < ascending.size(); i++) steps.push_back(ascending[i] - ascending[i - 1]);
+    return steps.empty() ? 0 : medianOf(steps);
+}
 
 bool isFrameNumber(double stamp) {
     return stamp >= 0 && stamp == std::floor(stamp);

@@ -15,6 +15,9 @@ double unitOfStamps(std::vector<double> stamps);
 /// @return the unit: "ms", "us" or "ns"; empty: s, or not told
 std::string toSeconds(GroundTruth& truth);
 
+/// Median of the steps between stamps; 0 for fewer than two.
+double medianStep(const std::vector<double>& ascending);
+
 /// Whether it may be the number of a frame: whole, and not below 0.
 bool isFrameNumber(double stamp);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "roevo_mrpt/scene_objects.h"
+#include "tracking/robust.h"
 
 namespace roevo {
 namespace {
@@ -22,10 +23,7 @@ constexpr Rgb kSpreadColour{240, 140, 30}, kVanishingColour{225, 60, 200}, kSing
 float medianGap(const std::vector<Eigen::Vector3f>& points) {
     std::vector<float> gaps;
     for (std::size_t i = 1; i < points.size(); i++) gaps.push_back((points[i] - points[i - 1]).norm());
-    if (gaps.empty()) return 0;
-    const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-    std::nth_element(gaps.begin(), middle, gaps.end());
-    return *middle;
+    return gaps.empty() ? 0 : medianOf(gaps);
 }
 
 Rgb between(const Rgb& a, const Rgb& b, float share) {
