@@ -45,26 +45,29 @@ struct World {
     }
 };
 
+/// The term's normal equations at a pose.
+PoseSystem linearised(PhotometricTerm& term, const Pose& pose) {
+    PoseSystem system;
+    EXPECT_TRUE(term.linearise({pose, RowMotion(), 0}, system));
+    return system;
+}
+
 TEST(Photometric, SameImageAtIdentityHasNoResidualOnAnyLevel) {
     const World world;
     ASSERT_GT(world.points.size(), 500U);
     for (int level = 0; level < 3; ++level) {
-        PhotometricResiduals residuals;
+        PhotometricTerm term;
         const PinholeCamera camera = kHalfCamera.atPyramidLevel(level);
-        residuals.evaluate(world.points, level, world.pyramid.level(level), camera, Pose::Identity(),
-                           RowMotion(), {});
-        EXPECT_GT(residuals.numVisible(), static_cast<int>(world.points.size()) * 9 / 10);
+        term.start(world.points, level, world.pyramid.level(level), camera, {});
+        const PoseSystem system = linearised(term, Pose::Identity());
+        EXPECT_GT(term.numVisible(), static_cast<int>(world.points.size()) * 9 / 10);
         // The points come back to their pixels up to single precision
-        EXPECT_LT(residuals.cost(), 0.02) << "level " << level;
-        kernels::NormalEquations equations;
-        residuals.accumulate(world.points, level, camera, 1, equations);
-        PoseSystem system;
-        system.add(equations);
+        EXPECT_LT(term.cost(), 0.02) << "level " << level;
         EXPECT_LT(system.solve().norm(), 1e-5);
     }
 }
 
-// The gradient that accumulate() gives is the derivative of the weighted cost: checked along each axis of the
+// The gradient that linearise() gives is the derivative of the weighted cost: checked along each axis of the
 // pose by differencing the pose itself, with the weights held, on the current image's own slopes.
 TEST(Photometric, GradientPredictsHowThePoseErrorShows) {
     const World world;
@@ -74,16 +77,11 @@ TEST(Photometric, GradientPredictsHowThePoseErrorShows) {
         for (int k = 0; k < 12; ++k) {
             Vector6d xi = Vector6d::Zero();
             xi[k / 2] = (k % 2 == 0 ? 1 : -1) * (k / 2 < 3 ? 0.003 : 0.002);
-            PhotometricResiduals residuals;
-            residuals.evaluate(world.points, level, world.pyramid.level(level), camera, poseIncrement(xi),
-                               RowMotion(), {});
-            kernels::NormalEquations equations;
-            residuals.accumulate(world.points, level, camera, 1, equations);
-            PoseSystem system;
-            system.add(equations);
+            PhotometricTerm term;
+            term.start(world.points, level, world.pyramid.level(level), camera, {});
             // One Gauss-Newton step undoes a small error nearly wholly; a wrong sign or scale in any column
             // does not
-            const Vector6d left = xi + system.solve();
+            const Vector6d left = xi + linearised(term, poseIncrement(xi)).solve();
             EXPECT_LT(left.head<3>().norm() / 2 + left.tail<3>().norm(),
                       0.15 * (xi.head<3>().norm() / 2 + xi.tail<3>().norm()))
                 << "level " << level << " axis " << k / 2;
@@ -112,15 +110,16 @@ class Gains : public ::testing::TestWithParam<double> {
     const World world_{kContrast, kDark};
 };
 
-/// The cost that accumulate() differentiates, with the weights held that it has at one pose.
+/// The cost that linearise() differentiates, with the weights held that it has at one pose.
 class HeldCost {
   public:
     HeldCost(const PhotometricPoints& points, const cv::Mat& image, const Pose& pose,
              const Brightness& brightness)
         : points_(points), image_(image), brightness_(brightness) {
-        PhotometricResiduals residuals;
-        residuals.evaluate(points, 0, image, kHalfCamera, pose, RowMotion(), brightness);
-        const double scale = std::max(1.0, residuals.cost());  // grey levels
+        PhotometricTerm term;
+        term.start(points, 0, image, kHalfCamera, brightness);
+        term.evaluate(pose, RowMotion());
+        const double scale = std::max(1.0, term.cost());  // grey levels
         const double information = 1 / (scale * scale);
         for (const kernels::PatchResidual& patch : patchesAt(pose)) {
             const double squared = static_cast<double>(patch.squared) * information / kernels::kPatchSize;
@@ -171,13 +170,9 @@ Pose moved(const Pose& pose, int axis, double by) {
 
 PoseSystem accumulated(const World& world, const cv::Mat& image, const Pose& pose,
                        const Brightness& brightness) {
-    PhotometricResiduals residuals;
-    residuals.evaluate(world.points, 0, image, kHalfCamera, pose, RowMotion(), brightness);
-    kernels::NormalEquations equations;
-    residuals.accumulate(world.points, 0, kHalfCamera, 1, equations);
-    PoseSystem system;
-    system.add(equations);
-    return system;
+    PhotometricTerm term;
+    term.start(world.points, 0, image, kHalfCamera, brightness);
+    return linearised(term, pose);
 }
 
 // The residual is I_c - gain I_r - offset, and I_c is differentiated by the reference's slopes times the
@@ -233,9 +228,9 @@ TEST_P(Gains, AFewStepsFindThePoseAndTheBrightness) {
     for (int repeat = 0; repeat < 3; ++repeat) {
         const Pose T_world_camera = testing::randomPose(random, 0.01, 0.005);
         const cv::Mat image = seenFrom(T_world_camera);
-        PhotometricResiduals residuals;
-        PhotometricTerm photometric(residuals, world_.points, 0, image, kHalfCamera,
-                                    {0.97 * GetParam(), brightness().offset});  // of the frame before
+        PhotometricTerm photometric;
+        photometric.start(world_.points, 0, image, kHalfCamera,
+                          {0.97 * GetParam(), brightness().offset});  // of the frame before
         DampingTerm damping(0.4, 0.2);
         const GaussNewtonOptions options{12, kHalfCamera.fx, 2};
         const GaussNewtonResult found =
@@ -245,8 +240,8 @@ TEST_P(Gains, AFewStepsFindThePoseAndTheBrightness) {
         const Pose error = found.T_current_keyframe * T_world_camera;
         EXPECT_LT(error.translation().norm(), 2e-3);
         EXPECT_LT(rotationAngle(error), 1e-3);
-        EXPECT_NEAR(photometric.brightness().gain, GetParam(), 0.015 * GetParam());
-        EXPECT_NEAR(photometric.brightness().offset, brightness().offset, 4);
+        EXPECT_NEAR(photometric.bestBrightness().gain, GetParam(), 0.015 * GetParam());
+        EXPECT_NEAR(photometric.bestBrightness().offset, brightness().offset, 4);
     }
 }
 
@@ -260,15 +255,9 @@ TEST(Photometric, RepeatedStepsFindTheTruthFromANewView) {
         const cv::Mat image = world.plane.grey(kHalfCamera, T_world_camera);
         const Pose truth = T_world_camera.inverse();
         Pose pose = Pose::Identity();
-        PhotometricResiduals residuals;
-        for (int i = 0; i < 12; ++i) {
-            residuals.evaluate(world.points, 0, image, kHalfCamera, pose, RowMotion(), {});
-            kernels::NormalEquations equations;
-            residuals.accumulate(world.points, 0, kHalfCamera, 1, equations);
-            PoseSystem system;
-            system.add(equations);
-            pose = poseIncrement(system.solve()) * pose;
-        }
+        PhotometricTerm term;
+        term.start(world.points, 0, image, kHalfCamera, {});
+        for (int i = 0; i < 12; ++i) pose = poseIncrement(linearised(term, pose).solve()) * pose;
         const Pose error = pose * truth.inverse();
         EXPECT_LT(error.translation().norm(), 1e-3);
         EXPECT_LT(rotationAngle(error), 5e-4);
@@ -280,14 +269,15 @@ TEST(Photometric, BrightnessFitRecoversGainAndOffset) {
     for (const auto& [gain, offset] : {std::pair(0.7, 20.0), {1.0, -15.0}, {0.5, 60.0}, {1.0, 0.0}}) {
         cv::Mat image;
         world.pyramid.level(0).convertTo(image, CV_8U, gain, offset);
-        PhotometricResiduals residuals;
-        Brightness fitted;
+        PhotometricTerm term;
+        term.start(world.points, 0, image, kHalfCamera, {});
         for (int i = 0; i < 3; ++i) {
-            residuals.evaluate(world.points, 0, image, kHalfCamera, Pose::Identity(), RowMotion(), fitted);
-            fitted = residuals.fitBrightness(world.points, 0, fitted);
+            term.evaluate(Pose::Identity(), RowMotion());
+            term.update();
         }
-        EXPECT_NEAR(fitted.gain, gain, 0.01);
-        EXPECT_NEAR(fitted.offset, offset, 1);
+        term.keep();
+        EXPECT_NEAR(term.bestBrightness().gain, gain, 0.01);
+        EXPECT_NEAR(term.bestBrightness().offset, offset, 1);
     }
 }
 
@@ -298,25 +288,25 @@ TEST(Photometric, WithoutContrastTheBrightnessStaysAsItWas) {
         patch.sum = 800;
         patch.sum_squared = 80000;
     }
-    PhotometricResiduals residuals;
-    residuals.evaluate(world.points, 0, world.pyramid.level(0), kHalfCamera, Pose::Identity(), RowMotion(),
-                       {1.3, 7});
-    const Brightness fitted = residuals.fitBrightness(world.points, 0, {1.3, 7});
-    EXPECT_EQ(fitted.gain, 1.3);
-    EXPECT_EQ(fitted.offset, 7);
+    PhotometricTerm term;
+    term.start(world.points, 0, world.pyramid.level(0), kHalfCamera, {1.3, 7});
+    term.evaluate(Pose::Identity(), RowMotion());
+    term.update();
+    term.keep();
+    EXPECT_EQ(term.bestBrightness().gain, 1.3);
+    EXPECT_EQ(term.bestBrightness().offset, 7);
 }
 
 TEST(Photometric, NothingVisibleCarriesNoInformation) {
     const World world;
     Pose away = Pose::Identity();
     away.translation().x() = 50;
-    PhotometricResiduals residuals;
-    residuals.evaluate(world.points, 0, world.pyramid.level(0), kHalfCamera, away, RowMotion(), {});
-    EXPECT_EQ(residuals.numVisible(), 0);
-    kernels::NormalEquations equations;
-    residuals.accumulate(world.points, 0, kHalfCamera, 1, equations);
-    for (const double value : equations.hessian) EXPECT_EQ(value, 0);
-    for (const double value : equations.gradient) EXPECT_EQ(value, 0);
+    PhotometricTerm term;
+    term.start(world.points, 0, world.pyramid.level(0), kHalfCamera, {});
+    const PoseSystem system = linearised(term, away);
+    EXPECT_EQ(term.numVisible(), 0);
+    EXPECT_EQ(system.hessian.norm(), 0);
+    EXPECT_EQ(system.gradient.norm(), 0);
 }
 
 TEST(Photometric, SamplingSpreadsOverTheEdgesAndKeepsItsLimit) {

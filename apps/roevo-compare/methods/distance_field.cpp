@@ -152,12 +152,11 @@ FineResult DistanceFieldTracker::track(const Keyframe& keyframe, const Frame& fr
     prepare(frame);
     const Clock::time_point begin = Clock::now();
     FieldTerm field(*this, keyframe, field_, ideal_, options_);
-    PhotometricTerm photometric(photometric_, keyframe.photometric, 0, frame.pyramid.level(0), ideal_,
-                                brightness);
-    photometric.balance(photometric_weight_, [this] { return near_.size(); });
+    photometric_.start(keyframe.photometric, 0, frame.pyramid.level(0), ideal_, brightness);
+    photometric_.balance(photometric_weight_, [this] { return near_.size(); });
     PriorTerm likely(prior);
     std::vector<ResidualTerm*> terms{&field, &likely};
-    if (photometric_weight_ > 0 && keyframe.photometric.size() > 0) terms.push_back(&photometric);
+    if (photometric_weight_ > 0 && keyframe.photometric.size() > 0) terms.push_back(&photometric_);
     GaussNewtonOptions loop{options_.max_iterations, ideal_.fx, keyframe.typicalDepth()};
     loop.settled_from = field.narrowed();
     const GaussNewtonResult found = minimise(T_start, shutter, terms, loop);

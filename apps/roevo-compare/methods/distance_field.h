@@ -69,7 +69,7 @@ class DistanceFieldTracker {
     double photometric_weight_;
     DistanceField field_;
     double field_timestamp_ = std::numeric_limits<double>::quiet_NaN();  ///< s, frame of the field; NaN: none
-    PhotometricResiduals photometric_;
+    PhotometricTerm photometric_;
     ProjectedPoints3 projected_;     // all keyframe points
     std::vector<std::size_t> near_;  // points that count
     std::vector<float> gradient_u_, gradient_v_, residual_, magnitudes_;

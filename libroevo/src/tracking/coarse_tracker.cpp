@@ -19,17 +19,17 @@ double CoarseTracker::alignLevel(const Keyframe& keyframe, const cv::Mat& image,
                                  const PinholeCamera& camera, const RollingShutter& shutter,
                                  CoarseResult& state) {
     const double depth = keyframe.typicalDepth();
-    PhotometricTerm photometric(residuals_, keyframe.photometric, level, image, camera, state.brightness);
-    photometric.require(options_.min_points);
+    photometric_.start(keyframe.photometric, level, image, camera, state.brightness);
+    photometric_.require(options_.min_points);
     DampingTerm damping(kDampingTranslation * depth, kDampingRotation);
     GaussNewtonOptions loop{options_.max_iterations + 1, camera.fx, depth};
     loop.keep_best = true;
     if (level > 0) loop.still = kCoarseStill;
     const GaussNewtonResult found =
-        minimise(state.T_current_keyframe, shutter, {&photometric, &damping}, loop);
+        minimise(state.T_current_keyframe, shutter, {&photometric_, &damping}, loop);
     state.T_current_keyframe = found.T_current_keyframe;
-    state.brightness = photometric.brightness();
-    state.num_visible = photometric.numVisible();
+    state.brightness = photometric_.bestBrightness();
+    state.num_visible = photometric_.bestVisible();
     return found.cost;
 }
 
@@ -42,11 +42,12 @@ std::vector<std::size_t> CoarseTracker::mostSimilar(const Keyframe& keyframe, co
     std::iota(order.begin(), order.end(), std::size_t{0});
     if (guesses.size() <= kTried) return order;
     std::vector<double> cost;
+    photometric_.start(keyframe.photometric, level, image, camera, brightness);
     for (const Pose& guess : guesses) {
-        residuals_.evaluate(keyframe.photometric, level, image, camera, guess, RowMotion(), brightness);
+        photometric_.evaluate(guess, RowMotion());
         // A guess that puts most points outside the image is no good however well the rest fits
-        const double visible = residuals_.numVisible() / static_cast<double>(keyframe.photometric.size());
-        cost.push_back(residuals_.cost() / std::max(0.1, std::min(1.0, 2 * visible)));
+        const double visible = photometric_.numVisible() / static_cast<double>(keyframe.photometric.size());
+        cost.push_back(photometric_.cost() / std::max(0.1, std::min(1.0, 2 * visible)));
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return cost[a] < cost[b]; });

@@ -35,7 +35,7 @@ class CoarseTracker {
                       const RollingShutter& shutter, CoarseResult& state);
 
     CoarseOptions options_;
-    PhotometricResiduals residuals_;
+    PhotometricTerm photometric_;
 };
 
 }  // namespace roevo

@@ -59,13 +59,12 @@ FineResult FineTracker::track(const Keyframe& keyframe, const Frame& frame, cons
                               const PosePrior& prior, const RollingShutter& shutter,
                               const Brightness& brightness) {
     edges_.start(keyframe, frame);
-    PhotometricTerm photometric(photometric_, keyframe.photometric, 0, frame.pyramid.level(0), ideal_,
-                                brightness);
+    photometric_.start(keyframe.photometric, 0, frame.pyramid.level(0), ideal_, brightness);
     // alpha: both kinds of residual count as many points as the edges have, whatever the sample's size
-    photometric.balance(options_.photometric_weight, [this] { return edges_.matches().size(); });
+    photometric_.balance(options_.photometric_weight, [this] { return edges_.matches().size(); });
     PriorTerm likely(prior);
     std::vector<ResidualTerm*> terms{&edges_, &likely};
-    if (options_.photometric_weight > 0 && keyframe.photometric.size() > 0) terms.push_back(&photometric);
+    if (options_.photometric_weight > 0 && keyframe.photometric.size() > 0) terms.push_back(&photometric_);
     GaussNewtonOptions loop{options_.max_iterations, ideal_.fx, keyframe.typicalDepth()};
     loop.settled_from = edges_.narrowed();
     loop.relaxation = kOverRelaxation;

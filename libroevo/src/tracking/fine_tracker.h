@@ -64,7 +64,7 @@ class FineTracker {
     FineOptions options_;
     PinholeCamera ideal_;
     EdgeTerm edges_;
-    PhotometricResiduals photometric_;
+    PhotometricTerm photometric_;
     EdgeClusters clusters_;
 };
 

@@ -57,12 +57,22 @@ PhotometricPoints samplePhotometricPoints(const EdgePoints3D& edges, const Image
     return points;
 }
 
-void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, const cv::Mat& image,
-                                    const PinholeCamera& camera, const Pose& T, const RowMotion& rows,
-                                    const Brightness& brightness) {
-    gain_ = static_cast<float>(brightness.gain);
+void PhotometricTerm::start(const PhotometricPoints& points, int level, const cv::Mat& image,
+                            const PinholeCamera& camera, const Brightness& brightness) {
+    points_ = &points;
+    image_ = &image;
+    camera_ = &camera;
+    level_ = level;
+    brightness_ = best_brightness_ = brightness;
+    best_visible_ = -1;
+    require(0);
+    balance(1, nullptr);
+}
+
+void PhotometricTerm::evaluate(const Pose& T, const RowMotion& rows) {
+    const PhotometricPoints& points = *points_;
     const std::size_t n = points.size(), padded = kernels::paddedSize(n);
-    project(points.points, T, camera, rows, projected_);
+    project(points.points, T, *camera_, rows, projected_);
     axis_x_.resize(padded);
     axis_y_.resize(padded);
     weight_.resize(padded);
@@ -74,11 +84,11 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
         axis_x_[i] = turn.x() * points.axis_x[i] - turn.y() * points.axis_y[i];
         axis_y_[i] = turn.y() * points.axis_x[i] + turn.x() * points.axis_y[i];
     }
-    const auto& patches = at(points.patches, level);
+    const auto& patches = at(points.patches, level_);
     const auto& kernels = kernels::best();
-    kernels.patches(viewOf(image), patches.data(), projected_.u.data(), projected_.v.data(), axis_x_.data(),
-                    axis_y_.data(), n, static_cast<float>(brightness.gain),
-                    static_cast<float>(brightness.offset), residuals_.data());
+    kernels.patches(viewOf(*image_), patches.data(), projected_.u.data(), projected_.v.data(), axis_x_.data(),
+                    axis_y_.data(), n, static_cast<float>(brightness_.gain),
+                    static_cast<float>(brightness_.offset), residuals_.data());
     scratch_.resize(n);
     std::size_t visible = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -104,10 +114,10 @@ void PhotometricResiduals::evaluate(const PhotometricPoints& points, int level, 
     slope_ = meanSlope(fit.slopes, fit.weights);
 }
 
-kernels::PatchPoints PhotometricResiduals::view(const PhotometricPoints& points, int level) const {
-    return {at(points.patches, level).data(),
+kernels::PatchPoints PhotometricTerm::view() const {
+    return {at(points_->patches, level_).data(),
             residuals_.data(),
-            points.size(),
+            points_->size(),
             projected_.x.data(),
             projected_.y.data(),
             projected_.z.data(),
@@ -116,49 +126,36 @@ kernels::PatchPoints PhotometricResiduals::view(const PhotometricPoints& points,
             weight_.data()};
 }
 
-Brightness PhotometricResiduals::fitBrightness(const PhotometricPoints& points, int level,
-                                               const Brightness& current) const {
-    if (points.size() == 0) return current;
-    kernels::PatchSums sums;
-    kernels::best().sumPatches(view(points, level), weight_.size(), sums);
-    const double w = sums.weight * kernels::kPatchSize, reference = sums.reference, image = sums.image;
-    const double spread = sums.reference_squared - reference * reference / std::max(w, 1e-9);
-    if (!(spread > 25 * w) || w <= 0) return current;  // less than five grey levels of contrast fix no gain
-    Brightness fitted;
-    fitted.gain = std::clamp((sums.cross - reference * image / w) / spread, 0.3, 3.0);
-    fitted.offset = (image - fitted.gain * reference) / w;
-    return fitted;
-}
-
-void PhotometricResiduals::accumulate(const PhotometricPoints& points, int level, const PinholeCamera& camera,
-                                      double factor, kernels::NormalEquations& out) {
-    const kernels::InformationArrays rows = rows_.arrays(points.size());
-    if (points.size() > 0)
-        kernels::best().liftPatches(view(points, level), weight_.size(), static_cast<float>(camera.fx),
-                                    static_cast<float>(camera.fy),
-                                    static_cast<float>(factor / (scale_ * scale_)), gain_, rows);
-    out = rows_.sum();
-}
-
 bool PhotometricTerm::linearise(const Linearisation& at, PoseSystem& system) {
-    residuals_.evaluate(points_, level_, image_, camera_, at.T_current_keyframe,
-                        at.rows.atPyramidLevel(level_), brightness_);
-    if (num_visible_ < 0) num_visible_ = residuals_.numVisible();
-    if (residuals_.numVisible() < needed_) return false;
-    double factor = weight_;
-    if (counted_) {
-        factor *= static_cast<double>(counted_()) /
-                  std::max<double>(1, residuals_.numVisible() * kernels::kPatchSize);
-    }
-    kernels::NormalEquations equations;
-    residuals_.accumulate(points_, level_, camera_, factor, equations);
-    system.add(equations);
+    evaluate(at.T_current_keyframe, at.rows.atPyramidLevel(level_));
+    if (best_visible_ < 0) best_visible_ = num_visible_;
+    if (num_visible_ < needed_) return false;
+    double factor = weight_of_all_;
+    if (counted_)
+        factor *= static_cast<double>(counted_()) / std::max<double>(1, num_visible_ * kernels::kPatchSize);
+    const kernels::InformationArrays rows = rows_.arrays(points_->size());
+    if (points_->size() > 0)
+        kernels::best().liftPatches(
+            view(), weight_.size(), static_cast<float>(camera_->fx), static_cast<float>(camera_->fy),
+            static_cast<float>(factor / (scale_ * scale_)), static_cast<float>(brightness_.gain), rows);
+    system.add(rows_.sum());
     return true;
 }
 
 void PhotometricTerm::keep() {
     best_brightness_ = brightness_;
-    num_visible_ = residuals_.numVisible();
+    best_visible_ = num_visible_;
+}
+
+void PhotometricTerm::update() {
+    if (points_->size() == 0) return;
+    kernels::PatchSums sums;
+    kernels::best().sumPatches(view(), weight_.size(), sums);
+    const double w = sums.weight * kernels::kPatchSize, reference = sums.reference, image = sums.image;
+    const double spread = sums.reference_squared - reference * reference / std::max(w, 1e-9);
+    if (!(spread > 25 * w) || w <= 0) return;  // less than five grey levels of contrast fix no gain
+    brightness_.gain = std::clamp((sums.cross - reference * image / w) / spread, 0.3, 3.0);
+    brightness_.offset = (image - brightness_.gain * reference) / w;
 }
 
 }  // namespace roevo

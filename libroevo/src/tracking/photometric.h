@@ -34,88 +34,59 @@ struct Brightness {
     double gain = 1, offset = 0;
 };
 
-/// Residuals of one set of photometric points at one pose and level, and the weights that follow from them.
-/// Keeps its buffers.
-class PhotometricResiduals {
+/// The photometric residual of Eq. (2), with the brightness that it estimates along with the pose. Keeps its
+/// buffers.
+class PhotometricTerm : public ResidualTerm {
   public:
-    /// Projects the points by T_current_keyframe, compares patches, and estimates the spread of the
-    /// residuals.
+    /// What is compared, all of which must outlive the use of the term. Nothing is required or balanced.
     /// @param camera  ideal camera of the level
-    void evaluate(const PhotometricPoints& points, int level, const cv::Mat& image,
-                  const PinholeCamera& camera, const Pose& T_current_keyframe, const RowMotion& rows,
-                  const Brightness& brightness);
-
-    int numVisible() const { return num_visible_; }
-    double slope() const { return slope_; }  ///< see meanSlope(): of the points
-    double cost() const { return cost_; }    ///< median, comparable between poses at one level
-
-    /// The brightness that fits the present alignment best (weighted linear regression).
-    Brightness fitBrightness(const PhotometricPoints& points, int level, const Brightness& current) const;
-
-    /// The normal equations of all points, their information scaled by `factor`.
-    void accumulate(const PhotometricPoints& points, int level, const PinholeCamera& camera, double factor,
-                    kernels::NormalEquations& out);
-    /// Adds the points of the last normal equations to their edges.
-    void addTo(EdgeClusters& clusters, const PhotometricPoints& points) const {
-        rows_.addTo(clusters, points.size(), [&](std::size_t i) { return points.edge_of[i]; });
+    void start(const PhotometricPoints& points, int level, const cv::Mat& image, const PinholeCamera& camera,
+               const Brightness& brightness);
+    /// Too few visible points end the minimisation; 0: they never do.
+    void require(int points) { needed_ = points; }
+    /// Weighs all residuals together as `weight` times `points()` points (alpha of Eq. (9)); else each counts
+    /// alone.
+    void balance(double weight, std::function<std::size_t()> points) {
+        weight_of_all_ = weight;
+        counted_ = std::move(points);
     }
 
+    /// Projects the points, compares patches, and estimates the spread of the residuals and the weights that
+    /// follow from it.
+    /// @param rows  of the level
+    void evaluate(const Pose& T_current_keyframe, const RowMotion& rows);
+    int numVisible() const { return num_visible_; }
+    double slope() const { return slope_; }         ///< see meanSlope(): of the points
+    double cost() const override { return cost_; }  ///< median, comparable between poses at one level
+
+    bool linearise(const Linearisation& at, PoseSystem& system) override;
+    void addTo(EdgeClusters& clusters) const override {
+        rows_.addTo(clusters, points_->size(), [&](std::size_t i) { return points_->edge_of[i]; });
+    }
+    void keep() override;
+    /// To the brightness that fits the present alignment best (weighted linear regression).
+    void update() override;
+
+    // Of the best pose
+    const Brightness& bestBrightness() const { return best_brightness_; }
+    int bestVisible() const { return best_visible_; }  ///< where nothing was kept: of the first
+
   private:
-    kernels::PatchPoints view(const PhotometricPoints& points, int level) const;
+    kernels::PatchPoints view() const;
+
+    const PhotometricPoints* points_ = nullptr;
+    const cv::Mat* image_ = nullptr;
+    const PinholeCamera* camera_ = nullptr;
+    int level_ = 0, needed_ = 0, num_visible_ = 0, best_visible_ = -1;
+    Brightness brightness_, best_brightness_;
+    double weight_of_all_ = 1, scale_ = 1, cost_ = 0, slope_ = 1;
+    std::function<std::size_t()> counted_;
 
     ProjectedPoints3 projected_;
     std::vector<float> axis_x_, axis_y_, prior_, weight_;  // of the points, padded
     InformationRows rows_;
     std::vector<kernels::PatchResidual> residuals_;
     std::vector<float> scratch_;
-    int num_visible_ = 0;
-    float gain_ = 1;
-    double scale_ = 0, cost_ = 0, slope_ = 1;
-};
-
-/// The photometric residual of Eq. (2), with the brightness that it estimates along with the pose.
-class PhotometricTerm : public ResidualTerm {
-  public:
-    /// @param residuals  buffers
-    /// @param camera     ideal camera of the level
-    PhotometricTerm(PhotometricResiduals& residuals, const PhotometricPoints& points, int level,
-                    const cv::Mat& image, const PinholeCamera& camera, const Brightness& start)
-        : residuals_(residuals),
-          points_(points),
-          image_(image),
-          camera_(camera),
-          level_(level),
-          brightness_(start),
-          best_brightness_(start) {}
-
-    /// Too few visible points end the minimisation; 0: they never do.
-    void require(int points) { needed_ = points; }
-    /// Weighs all residuals together as `weight` times `points()` points (alpha of Eq. (9)); else each counts
-    /// alone.
-    void balance(double weight, std::function<std::size_t()> points) {
-        weight_ = weight;
-        counted_ = std::move(points);
-    }
-
-    bool linearise(const Linearisation& at, PoseSystem& system) override;
-    double cost() const override { return residuals_.cost(); }
-    void addTo(EdgeClusters& clusters) const override { residuals_.addTo(clusters, points_); }
-    void keep() override;
-    void update() override { brightness_ = residuals_.fitBrightness(points_, level_, brightness_); }
-
-    // Of the best pose
-    const Brightness& brightness() const { return best_brightness_; }
-    int numVisible() const { return num_visible_; }  ///< where nothing was kept: of the first
-
-  private:
-    PhotometricResiduals& residuals_;
-    const PhotometricPoints& points_;
-    const cv::Mat& image_;
-    const PinholeCamera& camera_;
-    int level_, needed_ = 0, num_visible_ = -1;
-    Brightness brightness_, best_brightness_;
-    double weight_ = 1;
-    std::function<std::size_t()> counted_;
 };
 
 }  // namespace roevo

@@ -38,9 +38,8 @@ Fault describeFailure(const FineResult& refined, const FineOptions& options) {
 PoseUncertainty photometricUncertainty(const Keyframe& reference, const Frame& frame,
                                        const PinholeCamera& camera, const RowMotion& rows,
                                        const CoarseResult& aligned) {
-    PhotometricResiduals residuals;
-    PhotometricTerm term(residuals, reference.photometric, 0, frame.pyramid.level(0), camera,
-                         aligned.brightness);
+    PhotometricTerm term;
+    term.start(reference.photometric, 0, frame.pyramid.level(0), camera, aligned.brightness);
     DampingTerm unknown(kNothingKnown, kNothingKnown);
     PoseSystem system;
     const Linearisation at{aligned.T_current_keyframe, rows, 0};
@@ -48,7 +47,7 @@ PoseUncertainty photometricUncertainty(const Keyframe& reference, const Frame& f
     EdgeClusters clusters;
     clusters.start(reference.clusters);
     term.addTo(clusters);
-    return clusters.uncertainty(system, residuals.slope());
+    return clusters.uncertainty(system, term.slope());
 }
 
 /// Rotations about the camera's x and y axes, up to 18 degrees each by 3: T_current_keyframe of each.
