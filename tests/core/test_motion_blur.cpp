@@ -42,7 +42,7 @@ double varianceOf(const RowMotion& rows, const Eigen::Vector3d& p, const Eigen::
     const Eigen::Vector3f q = p.cast<float>();
     const Eigen::Vector2f n = normal.cast<float>();
     return static_cast<double>(
-        MotionBlur(rows, kTallCamera, seconds).variance(q.x(), q.y(), q.z(), n.x(), n.y()));
+        blurVariance(cameraMotion(rows, kTallCamera, seconds), q.x(), q.y(), q.z(), n.x(), n.y()));
 }
 
 TEST(MotionBlur, IsTheSameInALargerImageOfTheSameScene) {
@@ -52,8 +52,10 @@ TEST(MotionBlur, IsTheSameInALargerImageOfTheSameScene) {
     std::mt19937 random(18);
     const RowMotion rows = randomRows(random);
     const Eigen::Vector3f p = randomPoint(random).cast<float>();
-    EXPECT_NEAR(MotionBlur(rows, large, kSeconds).variance(p.x(), p.y(), p.z(), 0.6F, 0.8F),
-                MotionBlur(rows, kTallCamera, kSeconds).variance(p.x(), p.y(), p.z(), 0.6F, 0.8F), 1e-5F);
+    const auto variance = [&](const PinholeCamera& camera) {
+        return blurVariance(cameraMotion(rows, camera, kSeconds), p.x(), p.y(), p.z(), 0.6F, 0.8F);
+    };
+    EXPECT_NEAR(variance(large), variance(kTallCamera), 1e-5F);
 }
 
 TEST(MotionBlur, IsHowFarTheEdgeMovesAcrossItselfInThatTime) {
@@ -65,8 +67,7 @@ TEST(MotionBlur, IsHowFarTheEdgeMovesAcrossItselfInThatTime) {
         const Eigen::Vector2d velocity = imageVelocity(rows, point);
         const double angle = uniform(random, 0, 2 * M_PI);
         const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
-        const double expected =
-            std::pow(normal.dot(velocity) * kSeconds / MotionBlur::atRest(kTallCamera), 2);
+        const double expected = std::pow(normal.dot(velocity) * kSeconds / sigmaAtRest(kTallCamera), 2);
         EXPECT_NEAR(varianceOf(rows, point, normal), expected, 1e-3 * expected + 1e-3);
         largest = std::max(largest, expected);
         const Eigen::Vector2d along = velocity.normalized();

@@ -148,12 +148,11 @@ TEST_P(ResidualKernels, TangentResidualsAndWhatMotionTakesOfThem) {
     PinholeCamera camera;
     camera.fx = static_cast<double>(s.motion.to_sigmas_x) / 3;  // with a second, in units of what is at rest
     camera.fy = static_cast<double>(s.motion.to_sigmas_y) / 3;
-    const MotionBlur blur(rows, camera, 1);
+    const CameraMotion motion = cameraMotion(rows, camera, 1);
     Floats nx(kPadded), ny(kPadded), variance(kPadded);
     table().pick(s.normal_x.data(), s.current.data(), kPadded, nx.data());
     table().pick(s.normal_y.data(), s.current.data(), kPadded, ny.data());
-    table().blur(blur.motion(), s.x.data(), s.y.data(), s.z.data(), nx.data(), ny.data(), kPadded,
-                 variance.data());
+    table().blur(motion, s.x.data(), s.y.data(), s.z.data(), nx.data(), ny.data(), kPadded, variance.data());
     for (std::size_t i = 0; i < kPadded; ++i) {
         const auto p = static_cast<std::size_t>(s.current[i]);
         const Eigen::Vector2d n = s.normal(i);
@@ -163,7 +162,7 @@ TEST_P(ResidualKernels, TangentResidualsAndWhatMotionTakesOfThem) {
         EXPECT_NEAR(static_cast<double>(found.residual[i]), residual, 1e-3);
         ASSERT_TRUE(std::isfinite(found.sharpness[i])) << i;
         if (!s.ahead(i)) continue;
-        const float now = blur.variance(s.x[i], s.y[i], s.z[i], nx[i], ny[i]);
+        const float now = blurVariance(motion, s.x[i], s.y[i], s.z[i], nx[i], ny[i]);
         EXPECT_NEAR(variance[i], now, 1e-4F * (1 + now)) << i;
         EXPECT_NEAR(found.sharpness[i], 1 / (1 + now + s.keyframe_blur[i]), 1e-4F) << i;
         EXPECT_NEAR(found.magnitude[i], std::abs(found.residual[i]) * std::sqrt(found.sharpness[i]), 1e-4F);

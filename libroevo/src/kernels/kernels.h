@@ -303,7 +303,7 @@ struct Table {
     /// towards the end, or else towards the beginning.
     void (*follow)(const float* u, const float* v, const ImageEdges& edges, std::size_t n,
                    std::int32_t* current);
-    /// Variances across edges that motion adds, relative to those at rest (see MotionBlur).
+    /// Variances across edges that motion adds, relative to those at rest (see blurVariance()).
     void (*blur)(const CameraMotion& motion, const float* x, const float* y, const float* z, const float* nx,
                  const float* ny, std::size_t n, float* out);
     /// Point-to-tangent residuals (px), the information across each edge as a share of what it is at rest,

@@ -33,9 +33,9 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
     edge_of_.clear();
     begin_.assign(1, 0);
     observations_.clear();
-    std::vector<MotionBlur> blurs;  // of each slot
+    std::vector<kernels::CameraMotion> motions;  // of each slot
     for (const WindowKeyframe& view : window)
-        blurs.emplace_back(view.keyframe->row_motion, camera_, sensor_.blur_time);
+        motions.push_back(cameraMotion(view.keyframe->row_motion, camera_, sensor_.blur_time));
     for (std::size_t edge = 0; edge < edges.views.size(); ++edge) {
         if (edges.verdicts[edge] != EdgeVerdict::kTrue) continue;
         const IndexRange own = edges.pointsOf(edge);
@@ -50,9 +50,9 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
                 const auto ny = static_cast<double>(keyframe.image.normal_y[i]);
                 const double x = static_cast<double>(keyframe.image.x[i]) - camera_.cx;
                 const double y = static_cast<double>(keyframe.image.y[i]) - camera_.cy;
-                const float blur = blurs[static_cast<std::size_t>(slot)].variance(
-                    keyframe.points.x[i], keyframe.points.y[i], keyframe.points.z[i],
-                    keyframe.image.normal_x[i], keyframe.image.normal_y[i]);
+                const float blur = blurVariance(at(motions, slot), keyframe.points.x[i], keyframe.points.y[i],
+                                                keyframe.points.z[i], keyframe.image.normal_x[i],
+                                                keyframe.image.normal_y[i]);
                 const auto trust = static_cast<double>(keyframe.weight[i] / (1 + blur));
                 if (!(trust > 0)) continue;  // it would tell nothing, and of nothing nothing can be solved
                 const auto depth = static_cast<double>(keyframe.points.z[i]);

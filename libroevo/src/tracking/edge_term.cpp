@@ -144,9 +144,9 @@ void EdgeTerm::gather() {
     pick(edges.image.normal_x, residual_);  // buffers
     pick(edges.image.normal_y, sharpness_);
     matched_.blur.resize(padded);
-    kernels.blur(MotionBlur(keyframe_->row_motion, ideal_, sensor_.blur_time).motion(),
-                 matched_.points.x.data(), matched_.points.y.data(), matched_.points.z.data(),
-                 residual_.data(), sharpness_.data(), padded, matched_.blur.data());
+    kernels.blur(cameraMotion(keyframe_->row_motion, ideal_, sensor_.blur_time), matched_.points.x.data(),
+                 matched_.points.y.data(), matched_.points.z.data(), residual_.data(), sharpness_.data(),
+                 padded, matched_.blur.data());
 }
 
 void EdgeTerm::projectMatched(const Pose& pose, const RowMotion& rows) {
@@ -182,8 +182,8 @@ void EdgeTerm::tangentResiduals(const RowMotion& rows) {
     for (auto* array : {&residual_, &sharpness_, &scratch_}) array->resize(padded);
     if (padded == 0) return;
     kernels::best().edgeResiduals(matchedPoints(), imageEdges(),
-                                  MotionBlur(rows, ideal_, sensor_.blur_time).motion(), matched_.blur.data(),
-                                  padded, residual_.data(), sharpness_.data(), scratch_.data());
+                                  cameraMotion(rows, ideal_, sensor_.blur_time), matched_.blur.data(), padded,
+                                  residual_.data(), sharpness_.data(), scratch_.data());
     scratch_.resize(matches_.size());
     scale_ = robustScale(scratch_);
 }
@@ -286,10 +286,10 @@ void EdgeTerm::accumulateReadout(const Linearisation& at, PoseSystem& system) {
         for (int c = 0; c < 3; ++c) readout.turn[3 * r + c] = static_cast<float>(turn(r, c));
     }
     kernels::ReadoutSums sums;
-    kernels::best().liftReadout(
-        matchedPoints(), imageEdges(), MotionBlur(at.rows, ideal_, sensor_.blur_time).motion(), readout,
-        weight_.data(), residual_.data(), weight_.size(), static_cast<float>(ideal_.fx),
-        static_cast<float>(ideal_.fy), rows_.arrays(matches_.size()), sums);
+    kernels::best().liftReadout(matchedPoints(), imageEdges(),
+                                cameraMotion(at.rows, ideal_, sensor_.blur_time), readout, weight_.data(),
+                                residual_.data(), weight_.size(), static_cast<float>(ideal_.fx),
+                                static_cast<float>(ideal_.fy), rows_.arrays(matches_.size()), sums);
     system.add(rows_.sum());
     system.readout_mixed += Eigen::Map<const Vector6d>(sums.mixed);
     system.readout_hessian += sums.own;
