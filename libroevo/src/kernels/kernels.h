@@ -10,6 +10,7 @@ namespace roevo::kernels {
 
 constexpr int kLanes = 8;      ///< points per block; all arrays of points are padded to a multiple of it
 constexpr int kPatchSize = 8;  ///< pixels of a patch
+inline constexpr float kStudentNu = 5;  ///< degrees of freedom of the t-distribution of residuals
 
 constexpr std::size_t paddedSize(std::size_t n) {
     return (n + kLanes - 1) / kLanes * kLanes;

@@ -1,7 +1,5 @@
 // Residuals, weights and information of both trackers; what lanes_impl.h says of itself holds here.
 
-constexpr float kNu = 5;  // degrees of freedom, as kStudentNu
-
 /// Depths to divide by: of what is not ahead of the camera, which counts for nothing, any.
 inline Lanes ahead(Lanes z) {
     return z > 1e-3F ? z : Lanes{} + 1;
@@ -25,10 +23,10 @@ void weighPatches(const PatchResidual* residuals, const float* prior, std::size_
     Lanes weights{}, slopes{};
     for (std::size_t i = 0; i < n; i += kLanes) {
         const Lanes value = member<kResidualFloats>(&residuals[i].squared), squared = value * inverse;
-        const Lanes w = value >= 0 ? load(prior + i) * (kNu + 1) / (kNu + squared) : Lanes{};
+        const Lanes w = value >= 0 ? load(prior + i) * (kStudentNu + 1) / (kStudentNu + squared) : Lanes{};
         store(weight + i, w);
         weights += w;
-        slopes += w * ((kNu - squared) / (kNu + squared));
+        slopes += w * ((kStudentNu - squared) / (kStudentNu + squared));
     }
     fit = {total(weights), total(slopes)};
 }
@@ -168,10 +166,10 @@ int weighEdges(const float* residual, const float* sharpness, const float* prior
         const Lanes information = load(sharpness + i) * inverse, r = load(residual + i), w = load(prior + i);
         const Lanes squared = r * r * information;
         const IntLanes fits = (squared <= chi2) & (w > 0);
-        const Lanes robust = fits ? w * information * (kNu + 1) / (kNu + squared) : Lanes{};
+        const Lanes robust = fits ? w * information * (kStudentNu + 1) / (kStudentNu + squared) : Lanes{};
         store(weight + i, robust);
         weights += robust;
-        slopes += fits ? robust * ((kNu - squared) / (kNu + squared)) : Lanes{};
+        slopes += fits ? robust * ((kStudentNu - squared) / (kStudentNu + squared)) : Lanes{};
         inliers -= fits;
     }
     fit = {total(weights), total(slopes)};

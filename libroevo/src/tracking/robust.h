@@ -6,9 +6,11 @@
 #include <cstring>
 #include <vector>
 
+#include "kernels/kernels.h"
+
 namespace roevo {
 
-inline constexpr float kStudentNu = 5;  ///< degrees of freedom of the t-distribution of residuals
+using kernels::kStudentNu;
 
 /// @param values  not empty; are put in another order
 template <typename Scalar>
