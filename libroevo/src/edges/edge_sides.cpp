@@ -80,7 +80,7 @@ Meeting fit(const kernels::SideSums& from, const kernels::SideSums& to) {
     return {true, mean_q - slope * mean_s, variance * (1 / count + mean_s * mean_s / ss)};
 }
 
-double correction(const Meeting& plus, const Meeting& minus) {
+double correctionByBoth(const Meeting& plus, const Meeting& minus) {
     // Without depth on the other side, nothing tells whether this one ends here
     if (!plus.known || !minus.known) return 0;
     const double variance = plus.variance + minus.variance;
@@ -91,7 +91,7 @@ double correction(const Meeting& plus, const Meeting& minus) {
     return step_belief * nearer + (1 - step_belief) * bend_belief * bend;
 }
 
-double correction(const Side& from, const Side& to) {
+double correctionByOne(const Side& from, const Side& to) {
     const Meeting close = fit(from.close, to.close);
     if (!close.known) return 0;
     const Meeting wide = fit(from.wide, to.wide);
@@ -104,8 +104,9 @@ double correction(const Side& from, const Side& to) {
 double correction(const Strip& from, const Strip& to) {
     const bool plus = isBackground(from.minus.close, to.minus.close, kMinSeen),
                minus = isBackground(from.plus.close, to.plus.close, kMinSeen);
-    if (plus != minus) return plus ? correction(from.plus, to.plus) : correction(from.minus, to.minus);
-    return correction(fit(from.plus.close, to.plus.close), fit(from.minus.close, to.minus.close));
+    if (plus != minus)
+        return plus ? correctionByOne(from.plus, to.plus) : correctionByOne(from.minus, to.minus);
+    return correctionByBoth(fit(from.plus.close, to.plus.close), fit(from.minus.close, to.minus.close));
 }
 
 }  // namespace
