@@ -57,7 +57,7 @@ class WindowEquations {
     void addDamping(double damping);
     /// Dense. Upper triangle, the rest is not set.
     Eigen::MatrixXd hessian() const;
-    /// -H^-1 g, of rows(); not finite where there is none.
+    /// -H^-1 g, of numRows(); not finite where there is none.
     Eigen::VectorXd step() const;
 
     /// The part of the gradient that one edge makes of one keyframe.

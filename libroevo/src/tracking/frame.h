@@ -15,7 +15,7 @@ struct Frame {
     Frame(const Frame&) = delete;  // images would be shared
     Frame& operator=(const Frame&) = delete;
 
-    RgbdFrame images;      ///< copies: the caller's buffers may be used again
+    RgbdFrame images;      ///< that nobody else writes to
     cv::Mat ideal_grey;    ///< without the lens's distortion
     OrganizedEdges edges;  ///< ideal px
     EdgeMask mask;         ///< pixels that the edges were made of
