@@ -2,15 +2,24 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <utility>
 
 namespace roevo {
+namespace {
+
+/// Information and gradient that the pose leaves to the read-out time; none where it is not known itself.
+std::pair<double, double> withoutPose(const PoseSystem& evidence) {
+    const Eigen::LDLT<Matrix6d> factor(evidence.hessian);
+    if (factor.info() != Eigen::Success || !factor.isPositive()) return {};
+    const Vector6d eliminated = factor.solve(evidence.readout_mixed);
+    return {evidence.readout_hessian - evidence.readout_mixed.dot(eliminated),
+            evidence.readout_gradient - eliminated.dot(evidence.gradient)};
+}
+
+}  // namespace
 
 void ReadoutEstimator::add(const PoseSystem& evidence, double frames) {
-    const Eigen::LDLT<Matrix6d> factor(evidence.hessian);
-    if (factor.info() != Eigen::Success || !factor.isPositive()) return;
-    const Vector6d eliminated = factor.solve(evidence.readout_mixed);
-    const double information = evidence.readout_hessian - evidence.readout_mixed.dot(eliminated);
-    const double gradient = evidence.readout_gradient - eliminated.dot(evidence.gradient);
+    const auto [information, gradient] = withoutPose(evidence);
     if (!(information > 0) || !std::isfinite(gradient)) return;
     const double kept = std::pow(memory_, frames);
     information_ = kept * information_ + information;
@@ -18,10 +27,7 @@ void ReadoutEstimator::add(const PoseSystem& evidence, double frames) {
 }
 
 double ReadoutEstimator::worth(const PoseSystem& evidence) const {
-    const Eigen::LDLT<Matrix6d> factor(evidence.hessian);
-    if (factor.info() != Eigen::Success || !factor.isPositive()) return 0;
-    const Vector6d eliminated = factor.solve(evidence.readout_mixed);
-    return (evidence.readout_hessian - evidence.readout_mixed.dot(eliminated)) / (prior_ + information_);
+    return withoutPose(evidence).first / (prior_ + information_);
 }
 
 }  // namespace roevo
