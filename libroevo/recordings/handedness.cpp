@@ -87,7 +87,7 @@ double predictionError(const cv::Mat& from, const cv::Mat& to, const PinholeCame
     const int step = std::max(1, camera.width / kColumns);
     for (int v = step / 2; v < from.rows; v += step)
         for (int u = step / 2; u < from.cols; u += step) {
-            const double depth = static_cast<double>(from.at<float>(v, u));
+            const double depth = from.at<float>(v, u);
             if (depth <= 0) continue;
             all++;
             const Eigen::Vector3d point = T_to_from * camera.backProject(u, v, depth);
@@ -95,8 +95,8 @@ double predictionError(const cv::Mat& from, const cv::Mat& to, const PinholeCame
             const Eigen::Vector2d pixel = camera.project(point);
             if (!(pixel.x() > 0 && pixel.x() < to.cols - 1 && pixel.y() > 0 && pixel.y() < to.rows - 1))
                 continue;
-            const double seen = static_cast<double>(to.at<float>(static_cast<int>(std::lround(pixel.y())),
-                                                                 static_cast<int>(std::lround(pixel.x()))));
+            const double seen = to.at<float>(static_cast<int>(std::lround(pixel.y())),
+                                             static_cast<int>(std::lround(pixel.x())));
             if (seen <= 0) continue;
             sum += std::min(kCut, std::abs(point.z() - seen) / seen);
             count++;

@@ -45,12 +45,10 @@ cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
     cv::Mat registered(colour_camera.height, colour_camera.width, CV_32FC1, cv::Scalar(0));
     for (int v = 0; v < depth.rows; ++v) {
         for (int u = 0; u < depth.cols; ++u) {
-            const double z = static_cast<double>(depth.at<float>(v, u));
+            const double z = depth.at<float>(v, u);
             if (!(z > 0) || !std::isfinite(z)) continue;
             const cv::Vec2f& ray = rays.at<cv::Vec2f>(v, u);
-            const Eigen::Vector3d point =
-                T_colour_depth *
-                Eigen::Vector3d(static_cast<double>(ray[0]) * z, static_cast<double>(ray[1]) * z, z);
+            const Eigen::Vector3d point = T_colour_depth * Eigen::Vector3d(ray[0] * z, ray[1] * z, z);
             // Written so that a ray that is not a number, from a lens that cannot be inverted there, is left
             // out as well
             if (!(point.z() > 0 && point.head<2>().squaredNorm() <= farthest * point.z() * point.z()))
@@ -73,8 +71,7 @@ cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
             for (int y = y0; y <= y1; ++y) {
                 for (int x = x0; x <= x1; ++x) {
                     float& nearest = registered.at<float>(y, x);
-                    if (nearest == 0 || point.z() < static_cast<double>(nearest))
-                        nearest = static_cast<float>(point.z());
+                    if (nearest == 0 || point.z() < nearest) nearest = static_cast<float>(point.z());
                 }
             }
         }

@@ -134,7 +134,7 @@ kernels::DepthSquare ForegroundDepth::copy(int x, int y, Copy& to) const {
 
 float ForegroundDepth::at(float u, float v) const {
     if (depth_.empty()) return 0;
-    const int x = nearestInteger(static_cast<double>(u)), y = nearestInteger(static_cast<double>(v));
+    const int x = nearestInteger(u), y = nearestInteger(v);
     const int size = 2 * radius_ + 1, left = x - radius_, top = y - radius_;
     const bool is_inside = left >= 0 && top >= 0 && left + kMost < depth_.cols && top + size <= depth_.rows;
     kernels::DepthPatch patch;

@@ -123,12 +123,11 @@ void correctBySides(const OrganizedEdges& edges, std::size_t first,
     for (std::size_t k = 0; k < count; ++k) {
         strips.push_back(strips.back());
         if (!(z[k] > 0)) continue;
-        const kernels::EdgePoint point{positions[k].x(), positions[k].y(),
-                                       static_cast<double>(edges.normal_x[first + k]),
-                                       static_cast<double>(edges.normal_y[first + k]), z[k]};
+        const kernels::EdgePoint point{positions[k].x(), positions[k].y(), edges.normal_x[first + k],
+                                       edges.normal_y[first + k], z[k]};
         sample(view, point, jump, scale, strips.back());
     }
-    const auto most = static_cast<double>(jump);
+    const double most = jump;
     const auto window = static_cast<std::size_t>(std::lround(scale * kWindow));
     const auto least = static_cast<std::size_t>(std::lround(scale * kLeast));
     for (std::size_t k = 0; k < count; ++k) {
@@ -137,7 +136,7 @@ void correctBySides(const OrganizedEdges& edges, std::size_t first,
         const std::size_t reach = std::min({window, std::max(k, least), std::max(count - 1 - k, least)});
         const std::size_t from = k > reach ? k - reach : 0, to = std::min(count, k + reach + 1);
         const double value = std::clamp(correction(strips[from], strips[to]), -most, most);
-        z[k] = static_cast<float>(static_cast<double>(z[k]) / (1 + value));
+        z[k] = static_cast<float>(z[k] / (1 + value));
     }
 }
 

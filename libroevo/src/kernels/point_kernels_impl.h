@@ -192,7 +192,7 @@ void accumulate(const InformationArrays& p, std::size_t n, NormalEquations& out)
             g[4] += z * vx - x * vz;
             g[5] += x * vy - y * vx;
         }
-        for (int k = 0; k < 21; ++k) out.hessian[k] += static_cast<double>(sumLanes(h[k]));
-        for (int k = 0; k < 6; ++k) out.gradient[k] += static_cast<double>(sumLanes(g[k]));
+        for (int k = 0; k < 21; ++k) out.hessian[k] += sumLanes(h[k]);
+        for (int k = 0; k < 6; ++k) out.gradient[k] += sumLanes(g[k]);
     }
 }

@@ -5,10 +5,6 @@ inline Lanes ahead(Lanes z) {
     return z > 1e-3F ? z : Lanes{} + 1;
 }
 
-inline double total(Lanes v) {
-    return static_cast<double>(sumLanes(v));
-}
-
 /// A member of eight neighbouring structures of floats, the first of which is at `first`.
 template <int kFloats>
 inline Lanes member(const float* first) {
@@ -28,7 +24,7 @@ void weighPatches(const PatchResidual* residuals, const float* prior, std::size_
         weights += w;
         slopes += w * ((kStudentNu - squared) / (kStudentNu + squared));
     }
-    fit = {total(weights), total(slopes)};
+    fit = {sumLanes(weights), sumLanes(slopes)};
 }
 
 /// Members of the patches of eight points; past the last one those of the last one.
@@ -57,7 +53,7 @@ void sumPatches(const PatchPoints& p, std::size_t n, PatchSums& out) {
         image += w * member<kResidualFloats>(&p.residuals[i].current);
         cross += w * member<kResidualFloats>(&p.residuals[i].cross);
     }
-    out = {total(weight), total(reference), total(squared), total(image), total(cross)};
+    out = {sumLanes(weight), sumLanes(reference), sumLanes(squared), sumLanes(image), sumLanes(cross)};
 }
 
 void liftPatches(const PatchPoints& p, std::size_t n, float fx, float fy, float scale, float gain,
@@ -172,7 +168,7 @@ int weighEdges(const float* residual, const float* sharpness, const float* prior
         slopes += fits ? robust * ((kStudentNu - squared) / (kStudentNu + squared)) : Lanes{};
         inliers -= fits;
     }
-    fit = {total(weights), total(slopes)};
+    fit = {sumLanes(weights), sumLanes(slopes)};
     int sum = 0;
     for (int l = 0; l < kLanes; ++l) sum += inliers[l];
     return sum;
@@ -254,7 +250,7 @@ void liftReadout(const MatchedPoints& m, const ImageEdges& edges, const CameraMo
         own += wb * by_readout;
         gradient += wb * r;
     }
-    for (int k = 0; k < 6; ++k) sums.mixed[k] = total(mixed[k]);
-    sums.own = total(own);
-    sums.gradient = total(gradient);
+    for (int k = 0; k < 6; ++k) sums.mixed[k] = sumLanes(mixed[k]);
+    sums.own = sumLanes(own);
+    sums.gradient = sumLanes(gradient);
 }

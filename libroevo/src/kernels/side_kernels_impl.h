@@ -65,7 +65,7 @@ void sumSide(const DepthView& depth, const EdgePoint& at, const SideReach& reach
     const Lanes totals = sumsOf(sum);
     double* const targets = &sums.count;
     static_assert(sizeof(SideSums) == kLanes * sizeof(double));
-    for (int l = 0; l < kLanes; ++l) targets[l] += static_cast<double>(totals[l]);
+    for (int l = 0; l < kLanes; ++l) targets[l] += totals[l];
 }
 
 void side(const DepthView& depth, const EdgePoint& at, const SideReach& reach, SideSums& sums) {

@@ -48,7 +48,7 @@ void PackedKeyframe::unpackInto(MapKeyframe& keyframe, const PinholeCamera& came
         keyframe.points.add((image.x[i] - static_cast<float>(camera.cx)) / static_cast<float>(camera.fx) * z,
                             (image.y[i] - static_cast<float>(camera.cy)) / static_cast<float>(camera.fy) * z,
                             z);
-        keyframe.weight[i] = static_cast<float>(depthWeight(static_cast<double>(z), sensor));
+        keyframe.weight[i] = static_cast<float>(depthWeight(z, sensor));
     }
     keyframe.points.pad();
     image.begin = begin_;

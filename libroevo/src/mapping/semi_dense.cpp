@@ -52,7 +52,7 @@ std::optional<ColouredPoint> pointAt(const RgbdFrame& frame, const PinholeCamera
         return std::nullopt;
     const cv::Point real(nearestInteger(seen.x()), nearestInteger(seen.y()));
     if (!isSurface(frame.depth, real, limits)) return std::nullopt;
-    const auto z = static_cast<double>(frame.depth.at<float>(real));
+    const double z = frame.depth.at<float>(real);
     return ColouredPoint{camera.backProject(ideal.x, ideal.y, z).cast<float>(),
                          colourAt(frame, real.x, real.y)};
 }
@@ -82,8 +82,7 @@ std::vector<ColouredPoint> sampleSemiDense(const OrganizedEdges& edges, const Rg
         const std::size_t asked = std::min(edges.size(), wanted - points.size());
         for (std::size_t k = 0; k < asked; ++k) {
             const std::size_t i = k * edges.size() / asked;
-            const cv::Point centre(nearestInteger(static_cast<double>(edges.x[i])),
-                                   nearestInteger(static_cast<double>(edges.y[i])));
+            const cv::Point centre(nearestInteger(edges.x[i]), nearestInteger(edges.y[i]));
             const cv::Point pixel = centre + around[(kScatter * i + round) % around.size()];
             if (!isInside(tried, pixel) || tried(pixel) != 0) continue;
             tried(pixel) = 1;

@@ -46,21 +46,20 @@ void WindowEquations::gather(const std::vector<WindowKeyframe>& window, const Fu
                 const std::int32_t slot = edges.observations[k].slot;
                 const MapKeyframe& keyframe = *at(window, slot).keyframe;
                 const auto i = static_cast<std::size_t>(edges.observations[k].point);
-                const auto nx = static_cast<double>(keyframe.image.normal_x[i]);
-                const auto ny = static_cast<double>(keyframe.image.normal_y[i]);
-                const double x = static_cast<double>(keyframe.image.x[i]) - camera_.cx;
-                const double y = static_cast<double>(keyframe.image.y[i]) - camera_.cy;
+                const double nx = keyframe.image.normal_x[i];
+                const double ny = keyframe.image.normal_y[i];
+                const double x = keyframe.image.x[i] - camera_.cx;
+                const double y = keyframe.image.y[i] - camera_.cy;
                 const float blur = blurVariance(at(motions, slot), keyframe.points.x[i], keyframe.points.y[i],
                                                 keyframe.points.z[i], keyframe.image.normal_x[i],
                                                 keyframe.image.normal_y[i]);
-                const auto trust = static_cast<double>(keyframe.weight[i] / (1 + blur));
+                const double trust = keyframe.weight[i] / (1 + blur);
                 if (!(trust > 0)) continue;  // it would tell nothing, and of nothing nothing can be solved
-                const auto depth = static_cast<double>(keyframe.points.z[i]);
+                const double depth = keyframe.points.z[i];
                 const double sigma = sensor_.depthSigma(depth);
                 observations_.push_back({camera_.fx * nx, camera_.fy * ny, nx * x + ny * y, -camera_.fx * ny,
-                                         camera_.fy * nx, nx * y - ny * x, depth,
-                                         static_cast<double>(keyframe.slope[i]), trust, 1 / (sigma * sigma),
-                                         slot});
+                                         camera_.fy * nx, nx * y - ny * x, depth, keyframe.slope[i], trust,
+                                         1 / (sigma * sigma), slot});
             }
             if (observations_.size() == static_cast<std::size_t>(begin_.back())) continue;
             points_.push_back(static_cast<std::int32_t>(p));

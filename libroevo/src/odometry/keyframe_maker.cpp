@@ -22,7 +22,7 @@ std::string wrongUnit(const cv::Mat& depth, const SensorOptions& sensor) {
     if (known.empty()) return "";
     const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
     std::nth_element(known.begin(), middle, known.end());
-    const auto median = static_cast<double>(*middle);
+    const double median = *middle;
     if (median >= sensor.min_depth / kFarOff && median <= sensor.depth_limit * kFarOff) return "";
     std::ostringstream text;
     text << "; its depths are about " << *middle << " m: are they in metres?";
@@ -49,7 +49,7 @@ Fault makeKeyframe(const Frame& frame, const RowMotion& rows, int needed, const 
     keyframe.timestamp = frame.timestamp();
     keyframe.row_motion = rows;
     keyframe.photometric = tracker.choosePoints(keyframe.edges, frame, rows);
-    keyframe.median_depth = static_cast<double>(keyframe.edges.medianDepth());
+    keyframe.median_depth = keyframe.edges.medianDepth();
     return {};
 }
 

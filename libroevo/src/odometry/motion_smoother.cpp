@@ -161,7 +161,6 @@ void MotionSmoother::learnNoise(double factor) {
 
 /// Where the velocity changed more than elsewhere, the noise was stronger.
 void MotionSmoother::learnTails() {
-    constexpr double kNu = static_cast<double>(kStudentNu);
     smooth();
     for (std::size_t k = 1; k < samples_.size(); ++k) {
         const double dt = samples_[k].timestamp - samples_[k - 1].timestamp;
@@ -173,7 +172,7 @@ void MotionSmoother::learnTails() {
             squared += (12 * moved * moved - 12 * moved * faster + 4 * faster * faster) /
                        (noise_[i < 3 ? 0 : 1] * dt);
         }
-        tails_[k] = (kNu + squared) / (kNu + 12);
+        tails_[k] = (kStudentNu + squared) / (kStudentNu + 12);
     }
 }
 

@@ -86,9 +86,7 @@ void EdgeRegistrar::lookBack(const Keyframe& keyframe, const EdgePoints3D& frame
     for (std::size_t k = 0; k < matches_.size(); ++k) {
         const auto i = static_cast<std::size_t>(matches_.reference[k]),
                    j = static_cast<std::size_t>(matches_.current[k]);
-        if (depthsAgree(static_cast<double>(projected_.z[i]), static_cast<double>(keyframe.edges.points.z[j]),
-                        options_.sensor))
-            ++agreed;
+        if (depthsAgree(projected_.z[i], keyframe.edges.points.z[j], options_.sensor)) ++agreed;
     }
     out.depth_agreement =
         matches_.size() > 0 ? static_cast<double>(agreed) / static_cast<double>(matches_.size()) : 0;

@@ -41,7 +41,7 @@ float cornerStrength(const cv::Mat& grey, int u, int v) {
         }
     }
     const double mean = 0.5 * (xx + yy), difference = 0.5 * (xx - yy);
-    return static_cast<float>(mean - std::hypot(difference, static_cast<double>(xy)));
+    return static_cast<float>(mean - std::hypot(difference, xy));
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ PlacePoints PlaceDescriber::describe(const EdgePoints3D& edges, const cv::Mat& g
         const float u = edges.image.x[i], v = edges.image.y[i];
         const Eigen::Vector2d normal(edges.image.normal_x[i], edges.image.normal_y[i]);
         out.push_back({x[i], y[i], z[i], u, v, static_cast<float>(std::atan2(normal.y(), normal.x())),
-                       describePatch({u, v}, normal, patchRadius(static_cast<double>(z[i])))});
+                       describePatch({u, v}, normal, patchRadius(z[i]))});
     }
     return out;
 }
@@ -85,11 +85,11 @@ Likeness PlaceDescriber::compare(const PlacePoints& place, const Pose& T_frame_p
         const Eigen::Vector2d seen = lens_.distortPixel(pixel);
         const int u = std::clamp(nearestInteger(seen.x()), 0, depth.cols - 1),
                   v = std::clamp(nearestInteger(seen.y()), 0, depth.rows - 1);
-        const auto there = static_cast<double>(depth.at<float>(v, u));
+        const double there = depth.at<float>(v, u);
         if (there > 0 && there < kHidden * p.z()) continue;
         if (!mask.empty() && mask.at<std::uint8_t>(v, u) == 0) continue;
         ++out.visible;
-        const double angle = static_cast<double>(point.normal_angle) + roll;
+        const double angle = point.normal_angle + roll;
         const Descriptor found = describePatch(pixel, {std::cos(angle), std::sin(angle)}, radius);
         if (hammingDistance(found, point.descriptor) <= kAlikeBits) ++out.alike;
     }
@@ -103,8 +103,7 @@ void PlaceDescriber::findCorners(const OrganizedEdges& edges, const cv::Mat& gre
         const auto [first, end] = edges.pointsOf(e);
         strengths.clear();
         for (std::size_t i = first; i < end; i += kCornerStep) {
-            strengths.push_back(cornerStrength(grey, nearestInteger(static_cast<double>(edges.x[i])),
-                                               nearestInteger(static_cast<double>(edges.y[i]))));
+            strengths.push_back(cornerStrength(grey, nearestInteger(edges.x[i]), nearestInteger(edges.y[i])));
         }
         const int count = static_cast<int>(strengths.size());
         for (int k = 0; k < count; ++k) {
@@ -131,9 +130,8 @@ void PlaceDescriber::chooseCorners(const OrganizedEdges& edges) {
     std::sort(corners_.begin(), corners_.end(), stronger);
     for (Corner& corner : corners_) {
         const auto i = static_cast<std::size_t>(corner.point);
-        const int column =
-            std::clamp(static_cast<int>(static_cast<double>(edges.x[i]) / cell), 0, columns - 1);
-        const int row = std::clamp(static_cast<int>(static_cast<double>(edges.y[i]) / cell), 0, rows - 1);
+        const int column = std::clamp(static_cast<int>(edges.x[i] / cell), 0, columns - 1);
+        const int row = std::clamp(static_cast<int>(edges.y[i] / cell), 0, rows - 1);
         corner.rank = at(corners_of_cell, row * columns + column)++;
     }
     std::sort(corners_.begin(), corners_.end(), [&](const Corner& a, const Corner& b) {
@@ -166,7 +164,7 @@ Descriptor PlaceDescriber::describePatch(const Eigen::Vector2d& centre, const Ei
         const SamplingPattern::Site& site = pattern.sites[s];
         grey[s] = boxMean(centre + radius * (static_cast<double>(site.along_normal) * normal +
                                              static_cast<double>(site.along_edge) * along),
-                          radius * static_cast<double>(site.half_width));
+                          radius * site.half_width);
     }
     Descriptor descriptor;
     for (std::size_t k = 0; k < pattern.comparisons.size(); ++k) {

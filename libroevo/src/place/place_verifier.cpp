@@ -69,12 +69,11 @@ void PlaceVerifier::collect(const PlacePoints& query, const PlacePoints& candida
     pairs_.clear();
     for (const PlaceMatch& match : matchPlaces(query, candidate)) {
         const PlacePoint &q = at(query, match.query), &c = at(candidate, match.candidate);
-        const double of_query = sensor_.depthSigma(static_cast<double>(q.z)),
-                     of_candidate = sensor_.depthSigma(static_cast<double>(c.z));
+        const double of_query = sensor_.depthSigma(q.z), of_candidate = sensor_.depthSigma(c.z);
         const double variance = of_query * of_query + of_candidate * of_candidate + kPlaceNoise * kPlaceNoise;
         pairs_.push_back({{q.x, q.y, q.z},
                           {c.x, c.y, c.z},
-                          static_cast<double>(c.normal_angle) - static_cast<double>(q.normal_angle),
+                          static_cast<double>(c.normal_angle) - q.normal_angle,
                           1 / variance});
     }
 }

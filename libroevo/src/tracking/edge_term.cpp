@@ -194,10 +194,10 @@ double EdgeTerm::depthAgreement() {
     const std::size_t stride = matches_.size() < kTellingDepths * kDepthStride ? 1 : kDepthStride;
     for (std::size_t k = 0; k < matches_.size(); k += stride) {
         if (weight_[k] <= 0) continue;
-        const double seen = static_cast<double>(currentDepth(static_cast<std::size_t>(matches_.current[k])));
+        const double seen = currentDepth(static_cast<std::size_t>(matches_.current[k]));
         if (seen <= 0) continue;
         ++known;
-        if (depthsAgree(static_cast<double>(matched_.projected.z[k]), seen, sensor_)) ++agreed;
+        if (depthsAgree(matched_.projected.z[k], seen, sensor_)) ++agreed;
     }
     return known >= static_cast<int>(kTellingDepths) ? static_cast<double>(agreed) / known : 1;
 }
@@ -208,8 +208,8 @@ Matrix6d EdgeTerm::movedByVelocity(const RowMotion& rows, const Matrix6d& prior_
     system.add(rows_.sum());
     scratch_.resize(matched_.projected.v.size());
     for (std::size_t i = 0; i < scratch_.size(); ++i)
-        scratch_[i] = static_cast<float>(rows.seconds_per_row *
-                                         (static_cast<double>(matched_.projected.v[i]) - rows.reference_row));
+        scratch_[i] =
+            static_cast<float>(rows.seconds_per_row * (matched_.projected.v[i] - rows.reference_row));
     rows_.scale(scratch_);
     times_time.add(rows_.sum());
     return system.hessian.ldlt().solve(times_time.hessian);

@@ -12,9 +12,7 @@ struct Points3 {
     std::vector<float> x, y, z;
 
     std::size_t size() const { return x.size(); }  ///< with the padding, if there is one
-    Eigen::Vector3d at(std::size_t i) const {
-        return {static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
-    }
+    Eigen::Vector3d at(std::size_t i) const { return {x[i], y[i], z[i]}; }
     void add(float px, float py, float pz) {
         x.push_back(px);
         y.push_back(py);

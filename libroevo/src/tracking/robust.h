@@ -51,7 +51,7 @@ inline float medianOfMagnitudes(std::vector<float>& magnitudes) {
 /// @param magnitudes  are put in another order, and are fewer afterwards
 inline double robustScale(std::vector<float>& magnitudes) {
     constexpr double kMinScale = 0.1, kMaxScale = 2.0;  // px
-    return std::clamp(1.4826 * static_cast<double>(medianOfMagnitudes(magnitudes)), kMinScale, kMaxScale);
+    return std::clamp(1.4826 * medianOfMagnitudes(magnitudes), kMinScale, kMaxScale);
 }
 
 /// `weight` times what iteratively reweighted least squares gives a residual of the t-distribution.
