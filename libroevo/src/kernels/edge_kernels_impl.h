@@ -1,15 +1,10 @@
 // Loops over the pixels and points of edges; what lanes_impl.h says of itself holds here.
 
-/// Values at these indices, none of which is the last one.
+/// Values at these indices.
 inline IntLanes gather(const std::int16_t* data, IntLanes index) {
-#ifdef __AVX2__
-    const __m256i pairs = _mm256_i32gather_epi32(reinterpret_cast<const int*>(data), (__m256i)index, 2);
-    return (IntLanes)_mm256_srai_epi32(_mm256_slli_epi32(pairs, 16), 16);
-#else
     IntLanes values;
     for (int l = 0; l < kLanes; ++l) values[l] = data[index[l]];
     return values;
-#endif
 }
 
 /// Logarithm of (value + floor) / (here + floor), to 4e-6 of itself where value <= here <= 3 floor: twice the
@@ -102,19 +97,11 @@ void normals(const float* u, const float* v, const float* gradient_x, const floa
 }
 
 inline Lanes lesserOf(Lanes a, Lanes b) {
-#ifdef __AVX2__
-    return (Lanes)_mm256_min_ps((__m256)a, (__m256)b);
-#else
     return a < b ? a : b;
-#endif
 }
 
 inline Lanes greaterOf(Lanes a, Lanes b) {
-#ifdef __AVX2__
-    return (Lanes)_mm256_max_ps((__m256)a, (__m256)b);
-#else
     return a > b ? a : b;
-#endif
 }
 
 /// What `choose` leaves of all lanes, in each.

@@ -58,15 +58,19 @@ inline IntLanes gather(const std::uint8_t* data, IntLanes index) {
 #endif
 }
 
-/// Whether any lane is true.
-inline bool any(IntLanes condition) {
+/// One bit for each lane that is true.
+inline std::uint64_t bitsOf(IntLanes condition) {
 #ifdef __AVX2__
-    return _mm256_movemask_ps((__m256)condition) != 0;
+    return static_cast<std::uint64_t>(_mm256_movemask_ps((__m256)condition));
 #else
-    int all = 0;
-    for (int l = 0; l < kLanes; ++l) all |= condition[l];
-    return all != 0;
+    std::uint64_t bits = 0;
+    for (int l = 0; l < kLanes; ++l) bits |= static_cast<std::uint64_t>(condition[l] & 1) << l;
+    return bits;
 #endif
+}
+
+inline bool any(IntLanes condition) {
+    return bitsOf(condition) != 0;
 }
 
 inline Lanes squareRoot(Lanes v) {

@@ -5,17 +5,6 @@ typedef std::int16_t ShortLanes __attribute__((vector_size(2 * kLanes)));
 typedef std::int16_t WideShorts __attribute__((vector_size(4 * kLanes)));  ///< twice as many
 typedef std::uint8_t WideBytes __attribute__((vector_size(2 * kLanes)));
 
-/// One bit for each lane that is true.
-inline std::uint64_t bitsOf(IntLanes condition) {
-#ifdef __AVX2__
-    return static_cast<std::uint64_t>(_mm256_movemask_ps((__m256)condition));
-#else
-    std::uint64_t bits = 0;
-    for (int l = 0; l < kLanes; ++l) bits |= static_cast<std::uint64_t>(condition[l] & 1) << l;
-    return bits;
-#endif
-}
-
 /// Of one pixel; `l` and `r` are the columns to the left and right.
 inline void sobelAndNorm(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below,
                          int l, int x, int r, std::int16_t* gx, std::int16_t* gy, float* magnitude) {
@@ -194,21 +183,7 @@ void remap(const std::uint8_t* image, const std::uint8_t* end, std::ptrdiff_t st
 }
 
 void halve(const std::uint8_t* upper, const std::uint8_t* lower, int count, std::uint8_t* out) {
-    int i = 0;
-#ifdef __AVX2__
-    const __m256i one = _mm256_set1_epi8(1), half = _mm256_set1_epi16(2);
-    for (; i + 2 * kLanes <= count; i += 2 * kLanes) {
-        const auto pairs = [&](const std::uint8_t* row) {
-            return _mm256_maddubs_epi16(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + 2 * i)),
-                                        one);
-        };
-        const __m256i sum = _mm256_add_epi16(_mm256_add_epi16(pairs(upper), pairs(lower)), half);
-        const __m256i mean = _mm256_srli_epi16(sum, 2);
-        const __m256i bytes = _mm256_permute4x64_epi64(_mm256_packus_epi16(mean, mean), 0x08);
-        _mm_storeu_si128(reinterpret_cast<__m128i*>(out + i), _mm256_castsi256_si128(bytes));
-    }
-#endif
-    for (; i < count; ++i)
+    for (int i = 0; i < count; ++i)
         out[i] = static_cast<std::uint8_t>(
             (upper[2 * i] + upper[2 * i + 1] + lower[2 * i] + lower[2 * i + 1] + 2) >> 2);
 }

@@ -1,12 +1,8 @@
 // The surface on one side of an edge's point; what lanes_impl.h says of itself holds here.
 
 inline Lanes floorOf(Lanes v) {
-#ifdef __AVX2__
-    return (Lanes)_mm256_floor_ps((__m256)v);
-#else
     const Lanes whole = __builtin_convertvector(__builtin_convertvector(v, IntLanes), Lanes);
     return whole > v ? whole - 1 : whole;
-#endif
 }
 
 /// 0 where the condition is false.
