@@ -146,14 +146,11 @@ void patches(const ImageView& image, const Patch* patch, const float* u, const f
 }
 
 void accumulate(const InformationArrays& p, std::size_t n, NormalEquations& out) {
-    for (double& value : out.hessian) value = 0;
-    for (double& value : out.gradient) value = 0;
+    out = {};
     constexpr std::size_t kChunk = 256;  // summed in single precision, chunks in double
     for (std::size_t begin = 0; begin < n; begin += kChunk) {
         const std::size_t end = begin + kChunk < n ? begin + kChunk : n;
-        Lanes h[21], g[6];
-        for (Lanes& value : h) value = splat(0);
-        for (Lanes& value : g) value = splat(0);
+        Lanes sums[27] = {};
         for (std::size_t i = begin; i < end; i += kLanes) {
             const Lanes x = load(p.x + i), y = load(p.y + i), z = load(p.z + i);
             const Lanes xx = load(p.matrix[0] + i), xy = load(p.matrix[1] + i), xz = load(p.matrix[2] + i);
@@ -163,36 +160,16 @@ void accumulate(const InformationArrays& p, std::size_t n, NormalEquations& out)
             const Lanes a00 = y * xz - z * xy, a01 = z * xx - x * xz, a02 = x * xy - y * xx;
             const Lanes a10 = y * yz - z * yy, a11 = z * xy - x * yz, a12 = x * yy - y * xy;
             const Lanes a20 = y * zz - z * yz, a21 = z * xz - x * zz, a22 = x * yz - y * xz;
-            h[0] += xx;
-            h[1] += xy;
-            h[2] += xz;
-            h[3] += a00;
-            h[4] += a01;
-            h[5] += a02;
-            h[6] += yy;
-            h[7] += yz;
-            h[8] += a10;
-            h[9] += a11;
-            h[10] += a12;
-            h[11] += zz;
-            h[12] += a20;
-            h[13] += a21;
-            h[14] += a22;
-            // (-point^)^T A, rows (0 -z y), (z 0 -x), (-y x 0)
-            h[15] += y * a20 - z * a10;
-            h[16] += y * a21 - z * a11;
-            h[17] += y * a22 - z * a12;
-            h[18] += z * a01 - x * a21;
-            h[19] += z * a02 - x * a22;
-            h[20] += x * a12 - y * a02;
-            g[0] += vx;
-            g[1] += vy;
-            g[2] += vz;
-            g[3] += y * vz - z * vy;
-            g[4] += z * vx - x * vz;
-            g[5] += x * vy - y * vx;
+            // B = (-point^)^T A, rows (0 -z y), (z 0 -x), (-y x 0)
+            const Lanes b00 = y * a20 - z * a10, b01 = y * a21 - z * a11, b02 = y * a22 - z * a12;
+            const Lanes b11 = z * a01 - x * a21, b12 = z * a02 - x * a22, b22 = x * a12 - y * a02;
+            const Lanes wx = y * vz - z * vy, wy = z * vx - x * vz, wz = x * vy - y * vx;
+            const Lanes terms[27] = {xx,  xy,  xz,  a00, a01, a02, yy,  yz, a10, a11, a12, zz, a20, a21,
+                                     a22, b00, b01, b02, b11, b12, b22, vx, vy,  vz,  wx,  wy, wz};
+#pragma GCC unroll 27  // else the terms go through memory
+            for (int k = 0; k < 27; ++k) sums[k] += terms[k];
         }
-        for (int k = 0; k < 21; ++k) out.hessian[k] += sumLanes(h[k]);
-        for (int k = 0; k < 6; ++k) out.gradient[k] += sumLanes(g[k]);
+        for (int k = 0; k < 21; ++k) out.hessian[k] += sumLanes(sums[k]);
+        for (int k = 0; k < 6; ++k) out.gradient[k] += sumLanes(sums[21 + k]);
     }
 }

@@ -56,6 +56,16 @@ void sumPatches(const PatchPoints& p, std::size_t n, PatchSums& out) {
     out = {sumLanes(weight), sumLanes(reference), sumLanes(squared), sumLanes(image), sumLanes(cross)};
 }
 
+/// Writes points, and of their information the matrix (xx xy xz yy yz zz) and then the vector.
+inline void storeInformation(const InformationArrays& out, std::size_t i, Lanes x, Lanes y, Lanes z,
+                             const Lanes (&information)[9]) {
+    store(out.x + i, x);
+    store(out.y + i, y);
+    store(out.z + i, z);
+    for (int k = 0; k < 6; ++k) store(out.matrix[k] + i, information[k]);
+    for (int k = 0; k < 3; ++k) store(out.vector[k] + i, information[6 + k]);
+}
+
 void liftPatches(const PatchPoints& p, std::size_t n, float fx, float fy, float scale, float gain,
                  const InformationArrays& out) {
     constexpr std::size_t kGram = __builtin_offsetof(Patch, gram);
@@ -78,13 +88,9 @@ void liftPatches(const PatchPoints& p, std::size_t n, float fx, float fy, float 
         const Lanes inverse = 1 / ahead(z), a = fx * inverse, b = fy * inverse, e = -a * x * inverse,
                     d = -b * y * inverse;
         const Lanes t0 = m00 * e + m01 * d, t1 = m01 * e + m11 * d;
-        const Lanes rows[9] = {a * a * m00,     a * b * m01, a * t0, b * b * m11,    b * t1,
-                               e * t0 + d * t1, a * v0,      b * v1, e * v0 + d * v1};
-        store(out.x + i, x);
-        store(out.y + i, y);
-        store(out.z + i, z);
-        for (int k = 0; k < 6; ++k) store(out.matrix[k] + i, rows[k]);
-        for (int k = 0; k < 3; ++k) store(out.vector[k] + i, rows[6 + k]);
+        storeInformation(out, i, x, y, z,
+                         {a * a * m00, a * b * m01, a * t0, b * b * m11, b * t1, e * t0 + d * t1, a * v0,
+                          b * v1, e * v0 + d * v1});
     }
 }
 
@@ -191,18 +197,9 @@ struct ByPoint {
 /// Writes the point, the information w j j^T of a residual with derivative j by it, and the vector w r j.
 inline void storeRank1(const InformationArrays& out, std::size_t i, Lanes w, Lanes r, const ByPoint& by) {
     const Lanes w0 = w * by.j0, w1 = w * by.j1, w2 = w * by.j2;
-    store(out.x + i, by.x);
-    store(out.y + i, by.y);
-    store(out.z + i, by.z);
-    store(out.matrix[0] + i, w0 * by.j0);
-    store(out.matrix[1] + i, w0 * by.j1);
-    store(out.matrix[2] + i, w0 * by.j2);
-    store(out.matrix[3] + i, w1 * by.j1);
-    store(out.matrix[4] + i, w1 * by.j2);
-    store(out.matrix[5] + i, w2 * by.j2);
-    store(out.vector[0] + i, w0 * r);
-    store(out.vector[1] + i, w1 * r);
-    store(out.vector[2] + i, w2 * r);
+    storeInformation(
+        out, i, by.x, by.y, by.z,
+        {w0 * by.j0, w0 * by.j1, w0 * by.j2, w1 * by.j1, w1 * by.j2, w2 * by.j2, w0 * r, w1 * r, w2 * r});
 }
 
 void liftEdges(const MatchedPoints& m, const ImageEdges& edges, const float* weight, const float* residual,
