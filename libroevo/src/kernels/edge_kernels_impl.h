@@ -16,84 +16,61 @@ inline Lanes logRatio(Lanes value, Lanes here, Lanes floor) {
     return 2 * s * series;
 }
 
-/// Of eight pixels.
-inline void refineBlock(const GradientView& g, IntLanes p, const EdgePointArrays& out, std::size_t i) {
-    const float rows_per_pixel = 1 / static_cast<float>(g.width);
-    IntLanes row =
-        __builtin_convertvector((__builtin_convertvector(p, Lanes) + 0.5F) * rows_per_pixel, IntLanes);
-    IntLanes column = p - row * g.width;
-    const IntLanes before = column < 0, beyond = column >= g.width;  // rounding; -1 where it is true
-    row += before - beyond;
-    column += (beyond - before) * g.width;
-    const IntLanes gx = gather(g.gx, p), gy = gather(g.gy, p);
-    const IntLanes by_column = (gx < 0 ? -gx : gx) >= (gy < 0 ? -gy : gy);
-    // Magnitudes one step along the gradient, between the two neighbours that its line passes
-    const Lanes large = __builtin_convertvector(by_column ? gx : gy, Lanes);
-    const Lanes slope = __builtin_convertvector(by_column ? gy : gx, Lanes) / large;
-    const Lanes share = magnitudeOf(slope);
-    const IntLanes across = by_column ? IntLanes{} + g.width : IntLanes{} + 1;
-    const IntLanes step = by_column ? IntLanes{} + 1 : IntLanes{} + g.width;
-    const IntLanes side = slope >= 0 ? across : -across;
-    const Lanes here = pickLanes(g.magnitude, p);
-    const Lanes next = pickLanes(g.magnitude, p + step), last = pickLanes(g.magnitude, p - step);
-    const Lanes after = next + share * (pickLanes(g.magnitude, p + step + side) - next);
-    const Lanes ahead = last + share * (pickLanes(g.magnitude, p - step - side) - last);
-    // A blurred step has a Gaussian ridge, whose logarithm is a parabola; the floor, because where a
-    // sharp ridge ends the logarithm would run away
-    const Lanes floor = 0.33F * here;
-    const Lanes rise = logRatio(ahead, here, floor), fall = logRatio(after, here, floor);
-    const IntLanes curved = rise + fall < 0;
-    Lanes vertex = 0.5F * (rise - fall) / (curved ? rise + fall : Lanes{} - 1);
-    vertex = vertex < -0.5F ? Lanes{} - 0.5F : vertex;
-    vertex = vertex > 0.5F ? Lanes{} + 0.5F : vertex;
-    vertex = curved ? vertex : Lanes{};
-    const Lanes by_slope = vertex * slope;
-    store(out.x + i, __builtin_convertvector(column, Lanes) + (by_column ? vertex : by_slope));
-    store(out.y + i, __builtin_convertvector(row, Lanes) + (by_column ? by_slope : vertex));
-    store(out.gradient_x + i, __builtin_convertvector(gx, Lanes) / here);
-    store(out.gradient_y + i, __builtin_convertvector(gy, Lanes) / here);
-    store(out.strength + i, here / 8);
-}
-
 void refine(const GradientView& g, const std::int32_t* pixel, std::size_t count, const EdgePointArrays& out) {
-    std::size_t i = 0;
-    for (; i + kLanes <= count; i += kLanes) refineBlock(g, load<IntLanes>(pixel + i), out, i);
-    if (i == count) return;
-    const std::size_t bytes = (count - i) * sizeof(float);
-    IntLanes rest = IntLanes{} + pixel[i];
-    __builtin_memcpy(&rest, pixel + i, bytes);
-    float values[5][kLanes];
-    refineBlock(g, rest, {values[0], values[1], values[2], values[3], values[4]}, 0);
-    float* const arrays[5] = {out.x, out.y, out.gradient_x, out.gradient_y, out.strength};
-    for (int k = 0; k < 5; ++k) __builtin_memcpy(arrays[k] + i, values[k], bytes);
-}
-
-/// Of eight chords.
-inline void normalsBlock(const float* u, const float* v, const float* gradient_x, const float* gradient_y,
-                         float* nx, float* ny) {
-    const Lanes du = load<Lanes>(u), dv = load<Lanes>(v);
-    const Lanes gx = load<Lanes>(gradient_x), gy = load<Lanes>(gradient_y);
-    const Lanes length = squareRoot(du * du + dv * dv);
-    const IntLanes known = length > 0;
-    const Lanes x = -dv / length, y = du / length;  // Eq. (4)
-    const IntLanes wrong = x * gx + y * gy < 0;     // Eqs. (5), (6)
-    store(nx, known ? (wrong ? -x : x) : gx);
-    store(ny, known ? (wrong ? -y : y) : gy);
+    const float rows_per_pixel = 1 / static_cast<float>(g.width);
+    for (std::size_t i = 0; i < count; i += kLanes) {
+        const std::size_t rest = count - i;
+        const IntLanes p = loadSome<IntLanes>(pixel + i, rest);
+        IntLanes row =
+            __builtin_convertvector((__builtin_convertvector(p, Lanes) + 0.5F) * rows_per_pixel, IntLanes);
+        IntLanes column = p - row * g.width;
+        const IntLanes before = column < 0, beyond = column >= g.width;  // rounding; -1 where it is true
+        row += before - beyond;
+        column += (beyond - before) * g.width;
+        const IntLanes gx = gather(g.gx, p), gy = gather(g.gy, p);
+        const IntLanes by_column = (gx < 0 ? -gx : gx) >= (gy < 0 ? -gy : gy);
+        // Magnitudes one step along the gradient, between the two neighbours that its line passes
+        const Lanes large = __builtin_convertvector(by_column ? gx : gy, Lanes);
+        const Lanes slope = __builtin_convertvector(by_column ? gy : gx, Lanes) / large;
+        const Lanes share = magnitudeOf(slope);
+        const IntLanes across = by_column ? IntLanes{} + g.width : IntLanes{} + 1;
+        const IntLanes step = by_column ? IntLanes{} + 1 : IntLanes{} + g.width;
+        const IntLanes side = slope >= 0 ? across : -across;
+        const Lanes here = pickLanes(g.magnitude, p);
+        const Lanes next = pickLanes(g.magnitude, p + step), last = pickLanes(g.magnitude, p - step);
+        const Lanes after = next + share * (pickLanes(g.magnitude, p + step + side) - next);
+        const Lanes ahead = last + share * (pickLanes(g.magnitude, p - step - side) - last);
+        // A blurred step has a Gaussian ridge, whose logarithm is a parabola; the floor, because where a
+        // sharp ridge ends the logarithm would run away
+        const Lanes floor = 0.33F * here;
+        const Lanes rise = logRatio(ahead, here, floor), fall = logRatio(after, here, floor);
+        const IntLanes curved = rise + fall < 0;
+        Lanes vertex = 0.5F * (rise - fall) / (curved ? rise + fall : Lanes{} - 1);
+        vertex = vertex < -0.5F ? Lanes{} - 0.5F : vertex;
+        vertex = vertex > 0.5F ? Lanes{} + 0.5F : vertex;
+        vertex = curved ? vertex : Lanes{};
+        const Lanes by_slope = vertex * slope;
+        storeSome(out.x + i, __builtin_convertvector(column, Lanes) + (by_column ? vertex : by_slope), rest);
+        storeSome(out.y + i, __builtin_convertvector(row, Lanes) + (by_column ? by_slope : vertex), rest);
+        storeSome(out.gradient_x + i, __builtin_convertvector(gx, Lanes) / here, rest);
+        storeSome(out.gradient_y + i, __builtin_convertvector(gy, Lanes) / here, rest);
+        storeSome(out.strength + i, here / 8, rest);
+    }
 }
 
 void normals(const float* u, const float* v, const float* gradient_x, const float* gradient_y,
              std::size_t count, float* nx, float* ny) {
-    std::size_t i = 0;
-    for (; i + kLanes <= count; i += kLanes)
-        normalsBlock(u + i, v + i, gradient_x + i, gradient_y + i, nx + i, ny + i);
-    if (i == count) return;
-    const std::size_t bytes = (count - i) * sizeof(float);
-    float values[6][kLanes] = {};
-    const float* const inputs[4] = {u, v, gradient_x, gradient_y};
-    for (int k = 0; k < 4; ++k) __builtin_memcpy(values[k], inputs[k] + i, bytes);
-    normalsBlock(values[0], values[1], values[2], values[3], values[4], values[5]);
-    __builtin_memcpy(nx + i, values[4], bytes);
-    __builtin_memcpy(ny + i, values[5], bytes);
+    for (std::size_t i = 0; i < count; i += kLanes) {
+        const std::size_t rest = count - i;
+        const Lanes du = loadSome(u + i, rest), dv = loadSome(v + i, rest);
+        const Lanes gx = loadSome(gradient_x + i, rest), gy = loadSome(gradient_y + i, rest);
+        const Lanes length = squareRoot(du * du + dv * dv);
+        const IntLanes known = length > 0;
+        const Lanes x = -dv / length, y = du / length;  // Eq. (4)
+        const IntLanes wrong = x * gx + y * gy < 0;     // Eqs. (5), (6)
+        storeSome(nx + i, known ? (wrong ? -x : x) : gx, rest);
+        storeSome(ny + i, known ? (wrong ? -y : y) : gy, rest);
+    }
 }
 
 inline Lanes lesserOf(Lanes a, Lanes b) {

@@ -18,6 +18,24 @@ inline void store(Scalar* p, Vector v) {
     __builtin_memcpy(p, &v, sizeof v);
 }
 
+/// A block that ends after `count` values or is whole; the first value stands in for those that are not
+/// there.
+template <class Vector = Lanes, class Scalar>
+inline Vector loadSome(const Scalar* p, std::size_t count) {
+    if (count >= kLanes) return load<Vector>(p);
+    Vector v = Vector{} + *p;
+    __builtin_memcpy(&v, p, count * sizeof *p);
+    return v;
+}
+
+template <class Vector, class Scalar>
+inline void storeSome(Scalar* p, Vector v, std::size_t count) {
+    if (count >= kLanes)
+        store(p, v);
+    else
+        __builtin_memcpy(p, &v, count * sizeof *p);
+}
+
 inline Lanes splat(float value) {
     return Lanes{} + value;
 }

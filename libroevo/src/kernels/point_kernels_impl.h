@@ -34,32 +34,21 @@ void project(const Projection& m, const float* px, const float* py, const float*
 void exchangeMotion(const RowSpeed& from, const RowSpeed& to, const float* row, std::size_t n, float* px,
                     float* py, float* pz) {
     constexpr float kNearest = 0.05F;  // m
-    const auto move = [&](const float* rows, float* xs, float* ys, float* zs) {
-        const Lanes x = load(xs), y = load(ys), z = load(zs);
-        const Lanes a = load(rows) - from.reference_row, b = load(rows) - to.reference_row;
+    for (std::size_t i = 0; i < n; i += kLanes) {
+        const std::size_t rest = n - i;
+        const Lanes x = loadSome(px + i, rest), y = loadSome(py + i, rest), z = loadSome(pz + i, rest);
+        const Lanes rows = loadSome(row + i, rest), a = rows - from.reference_row,
+                    b = rows - to.reference_row;
         const Lanes t0 = b * to.turn[0] - a * from.turn[0], t1 = b * to.turn[1] - a * from.turn[1],
                     t2 = b * to.turn[2] - a * from.turn[2];
         const Lanes moved_x = x + (b * to.velocity[0] - a * from.velocity[0]) + (t1 * z - t2 * y);
         const Lanes moved_y = y + (b * to.velocity[1] - a * from.velocity[1]) + (t2 * x - t0 * z);
         const Lanes moved_z = z + (b * to.velocity[2] - a * from.velocity[2]) + (t0 * y - t1 * x);
         const IntLanes moves = moved_z > splat(kNearest);
-        store(xs, moves ? moved_x : x);
-        store(ys, moves ? moved_y : y);
-        store(zs, moves ? moved_z : z);
-    };
-    std::size_t i = 0;
-    for (; i + kLanes <= n; i += kLanes) move(row + i, px + i, py + i, pz + i);
-    if (i == n) return;
-    const std::size_t rest = (n - i) * sizeof(float);
-    float rows[kLanes] = {}, x[kLanes] = {}, y[kLanes] = {}, z[kLanes] = {};
-    __builtin_memcpy(rows, row + i, rest);
-    __builtin_memcpy(x, px + i, rest);
-    __builtin_memcpy(y, py + i, rest);
-    __builtin_memcpy(z, pz + i, rest);
-    move(rows, x, y, z);
-    __builtin_memcpy(px + i, x, rest);
-    __builtin_memcpy(py + i, y, rest);
-    __builtin_memcpy(pz + i, z, rest);
+        storeSome(px + i, moves ? moved_x : x, rest);
+        storeSome(py + i, moves ? moved_y : y, rest);
+        storeSome(pz + i, moves ? moved_z : z, rest);
+    }
 }
 
 /// Bilinear samples.
