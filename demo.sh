@@ -26,6 +26,8 @@ say "Rendering the map"
 roevo-render --scene "$out/odometry/map.3Dscene" --output "$out/map.png" --size 1600x1000 --view iso
 roevo-render --input "$out/odometry" --output "$out/view.html"
 
+build release rgbd2rawlog rawlog2rgbd bag2rawlog roevo-eval roevo-compare roevo-study
+
 say "Done"
 cat <<END
 picture     $out/map.png

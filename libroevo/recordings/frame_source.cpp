@@ -89,6 +89,7 @@ class RawlogSource : public FrameSource {
         : reader_(path, sensor_label), scan_(reader_.next()), truth_(std::move(truth)) {
         // next() throws by itself when there is no scan at all.
         if (!scan_) return;
+        startWithImage(path);
         camera_ = colourCameraOf(*scan_);
         following_ = reader_.next();
         noteFacts();
@@ -100,7 +101,7 @@ class RawlogSource : public FrameSource {
         frame.timestamp = fromMrptTime(scan_->timestamp);
         decodeInto(frame, [&] {
             RgbdFrame decoded = toRgbdFrame(*scan_);
-            if (colourCameraOf(*scan_) != camera_)
+            if (!colourCameraOf(*scan_).seesAs(camera_))
                 throw std::runtime_error(
                     "the camera is not the one of the first frame (size or intrinsics changed)");
             return decoded;
@@ -135,6 +136,27 @@ class RawlogSource : public FrameSource {
     void advance() {
         scan_ = std::move(following_);
         following_ = scan_ ? reader_.next() : nullptr;
+    }
+
+    /// Passes over scans that have neither image nor camera of one.
+    void startWithImage(const std::string& path) {
+        std::size_t without = 0;
+        const auto hasNone = [&] {
+            return !scan_->hasIntensityImage && scan_->cameraParamsIntensity.fx() == 0;
+        };
+        for (; scan_ && hasNone(); ++without) scan_ = reader_.next();
+        if (!scan_) {
+            const auto& classes = reader_.report().classes;
+            const auto images = classes.find("mrpt::obs::CObservationImage");
+            throw std::runtime_error(
+                path + ": none of its " + counted(without, "scan") + " has a colour image" +
+                (images == classes.end() ? ""
+                                         : "; its " + counted(images->second, "CObservationImage") +
+                                               " are not paired with them") +
+                "; rosbag2rawlog writes such, bag2rawlog does not");
+        }
+        if (without > 0)
+            notes_.push_back("without a colour image: the first " + counted(without, "scan") + ", left out");
     }
 
     /// Of the first frame, if that can be read.

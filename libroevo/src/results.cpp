@@ -1,8 +1,8 @@
-#include "roevo/frame_result.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include "roevo/frame_result.h"
 
 namespace roevo {
 

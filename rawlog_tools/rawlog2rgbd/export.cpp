@@ -67,7 +67,7 @@ class Exporter {
         if (stamps_.count(timestamp) > 0) return "its time stamp was there before";
         if (result_.frames == 0)
             describeCamera(scan);
-        else if (colourCameraOf(scan) != camera_.camera || scan.rangeUnits != range_units_)
+        else if (!colourCameraOf(scan).seesAs(camera_.camera) || scan.rangeUnits != range_units_)
             return "its intrinsics, size or range units are not those of the first frame, and a folder has "
                    "one camera.txt";
         const auto& range = scan.rangeImage;

@@ -1,8 +1,26 @@
 #include "roevo_mrpt/camera_conversions.h"
 
+#include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace roevo {
+namespace {
+
+/// MRPT's converters of TUM's sequences and its demo of OpenNI2 wrote rows for columns: the principal point
+/// is in the middle of the image that the size would be of the other way round, and not of this one.
+bool isTransposed(const PinholeCamera& camera) {
+    constexpr double kNearMiddle = 0.1;  // of the side
+    const auto isNear = [](double centre, int side) {
+        return std::abs((centre + 0.5) / side - 0.5) <= kNearMiddle;
+    };
+    const auto fits = [&](int width, int height) {
+        return isNear(camera.cx, width) && isNear(camera.cy, height);
+    };
+    return !fits(camera.width, camera.height) && fits(camera.height, camera.width);
+}
+
+}  // namespace
 
 mrpt::img::TCamera toMrptCamera(const PinholeCamera& camera, const std::string& name) {
     mrpt::img::TCamera out;
@@ -35,6 +53,7 @@ PinholeCamera fromMrptCamera(const mrpt::img::TCamera& camera, const std::string
     out.fy = camera.fy();
     out.cx = camera.cx();
     out.cy = camera.cy();
+    if (isTransposed(out)) std::swap(out.width, out.height);
     using mrpt::img::DistortionModel;
     if (camera.distortion == DistortionModel::plumb_bob) {
         out.distortion = {camera.k1(), camera.k2(), camera.p1(), camera.p2(), camera.k3()};

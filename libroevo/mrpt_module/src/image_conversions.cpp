@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <new>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -82,7 +83,18 @@ cv::Mat asAnyDepth(const Bytes& bytes, const std::string& file) {
 
 cv::Mat asColour(const Bytes& bytes, const std::string& file) {
     // Not turned as a camera was held: depth and intrinsics are of the pixels as they are stored
-    return decode(bytes, file, cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION);
+    constexpr int kAsStored = cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION;
+    const cv::Mat image = decode(bytes, file, kAsStored | cv::IMREAD_ANYDEPTH);
+    if (image.depth() != CV_16U) return image.depth() == CV_8U ? image : decode(bytes, file, kAsStored);
+    // Of 10, 12 or 16 bits, which need not fill the 16
+    double most = 0;
+    cv::minMaxLoc(image.reshape(1), nullptr, &most);
+    double times = 1;
+    for (const double bits : {4., 16., 256.})
+        if (most >= 256 * times) times = bits;
+    cv::Mat out;
+    image.convertTo(out, CV_8U, 1 / times);
+    return out;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -90,9 +91,46 @@ void checkRigid(const mrpt::poses::CPose3D& pose, const char* name) {
                                  " is not rigid (a rotation and a translation): damaged recording");
 }
 
+/// Which would turn the colour camera away from the depth camera: it stands for no difference between the
+/// two. So some programs write it, and so MRPT reads old recordings.
+bool hasNoColourPose(const CObservation3DRangeScan& scan) {
+    return scan.relativePoseIntensityWRTDepth == mrpt::poses::CPose3D();
+}
+
+/// Where the colour camera is on the sensor, whose x axis is the depth camera's view.
+mrpt::poses::CPose3D colourOnSensor(const CObservation3DRangeScan& scan) {
+    return hasNoColourPose(scan) ? relativePoseOfColour(Pose::Identity())
+                                 : scan.relativePoseIntensityWRTDepth;
+}
+
+void checkColourPose(const CObservation3DRangeScan& scan) {
+    checkRigid(scan.relativePoseIntensityWRTDepth, "pose of the colour camera");
+    constexpr double kLeastCosine = 0.5;  // of 60 degrees
+    const double cosine = colourOnSensor(scan).getRotationMatrix()(0, 2);
+    if (cosine < kLeastCosine)
+        throw std::runtime_error(
+            "the observation's relativePoseIntensityWRTDepth turns the colour camera " +
+            std::to_string(std::lround(std::acos(std::max(cosine, -1.0)) * 180 / M_PI)) +
+            " degrees away from the depth camera; of cameras that look alike it is (0, 0, 0, "
+            "-90, 0, -90 degrees)");
+}
+
 bool camerasCoincide(const CObservation3DRangeScan& scan, const PinholeCamera& depth_camera,
                      const PinholeCamera& colour_camera) {
-    return depth_camera == colour_camera && scan.doDepthAndIntensityCamerasCoincide();
+    return depth_camera == colour_camera &&
+           (hasNoColourPose(scan) || scan.doDepthAndIntensityCamerasCoincide());
+}
+
+/// MRPT takes the size of the range image for that of its camera, whatever was stored, and leaves the rest.
+void checkIsOfThisSize(const PinholeCamera& depth_camera, const PinholeCamera& colour_camera) {
+    constexpr double kMostOff = 0.25;  // of the image, from its middle
+    const auto isOff = [&](double centre, int size) { return std::abs(centre / size - 0.5) > kMostOff; };
+    if (depth_camera == colour_camera) return;  // which is warned of
+    if (isOff(depth_camera.cx, depth_camera.width) || isOff(depth_camera.cy, depth_camera.height))
+        throw std::runtime_error("the depth camera's principal point is far from the middle of its " +
+                                 std::to_string(depth_camera.width) + "x" +
+                                 std::to_string(depth_camera.height) +
+                                 " pixels: its intrinsics are those of another image size");
 }
 
 }  // namespace
@@ -125,7 +163,7 @@ bool isMountedOnRobot(const CObservation3DRangeScan& scan) {
 }
 
 Pose cameraOnRobot(const CObservation3DRangeScan& scan) {
-    return toEigen(scan.sensorPose) * toEigen(scan.relativePoseIntensityWRTDepth);
+    return toEigen(scan.sensorPose) * toEigen(colourOnSensor(scan));
 }
 
 std::vector<StampedPose> robotTrajectory(const std::vector<StampedPose>& camera_trajectory,
@@ -145,7 +183,7 @@ RgbdFrame toRgbdFrame(const CObservation3DRangeScan& scan) {
     const PinholeCamera depth_camera = depthCameraOf(scan);
 
     checkRigid(scan.sensorPose, "sensor pose");
-    checkRigid(scan.relativePoseIntensityWRTDepth, "pose of the colour camera");
+    checkColourPose(scan);
 
     RgbdFrame frame;
     frame.timestamp = fromMrptTime(scan.timestamp);
@@ -155,9 +193,10 @@ RgbdFrame toRgbdFrame(const CObservation3DRangeScan& scan) {
     if (image.channels() == 3) frame.colour = image;
 
     frame.depth = depthOf(scan, depth_camera);
+    checkIsOfThisSize(depth_camera, colour_camera);
     if (!camerasCoincide(scan, depth_camera, colour_camera))
-        frame.depth = registerDepth(frame.depth, depth_camera, colour_camera,
-                                    colourFromDepth(scan.relativePoseIntensityWRTDepth));
+        frame.depth =
+            registerDepth(frame.depth, depth_camera, colour_camera, colourFromDepth(colourOnSensor(scan)));
     return frame;
 }
 

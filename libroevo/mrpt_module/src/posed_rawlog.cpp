@@ -37,11 +37,14 @@ CObservation::Ptr poseOf(const PosedScan& scan) {
     return pose;
 }
 
-/// Puts what is in files of its own where the new rawlog has its own.
+/// Puts what is in files of its own where the new rawlog has its own. Points and confidences, which follow
+/// from the depth or are not used, are left behind when they are in files: MRPT loads no scan that lacks one.
 void adopt(CObservation3DRangeScan& scan, RawlogWriter& out) {
     if (scan.hasIntensityImage && scan.intensityImage.isExternallyStored())
         scan.intensityImage.setExternalStorage(
             out.addImageFile(scan.intensityImage.getExternalStorageFileAbsolutePath()));
+    if (scan.points3D_isExternallyStored()) scan.hasPoints3D = false;
+    if (scan.confidenceImage.isExternallyStored()) scan.hasConfidenceImage = false;
     if (scan.rangeImage_isExternallyStored()) scan.rangeImage_forceResetExternalStorage();  // it is in memory
 }
 

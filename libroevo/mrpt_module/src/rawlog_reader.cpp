@@ -253,6 +253,9 @@ struct RawlogReader::Impl {
             const fs::path file = scan.intensityImage.getExternalStorageFile();
             fs::path found = images / file;  // an absolute file stays as it is
             if (!isThere(found) && isThere(images.parent_path() / file)) found = images.parent_path() / file;
+            // Of a recording that was moved, or made on Windows
+            const std::string name = file.string().substr(file.string().find_last_of("/\\") + 1);
+            if (!isThere(found) && isThere(images / name)) found = images / name;
             scan.intensityImage.setExternalStorage(found.string());
         }
         if (!scan.rangeImage_isExternallyStored()) return;

@@ -85,7 +85,11 @@ bool CRoevoOdometry::isOther(const CObservation3DRangeScan& scan) const {
 
 RgbdFrame CRoevoOdometry::convert(const CObservation3DRangeScan& scan) {
     const mrpt::system::CTimeLoggerEntry entry(profiler_, "convert");
+    // In a CRawlog that was read, what is in files is not loaded; what is, would stay in memory
+    const bool to_load = scan.rangeImage_isExternallyStored() && scan.rangeImage.rows() == 0;
+    if (to_load) scan.load();
     RgbdFrame frame = toRgbdFrame(scan);
+    if (to_load) scan.unload();
     frame.mask = mask_;
     return frame;
 }
