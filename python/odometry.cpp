@@ -161,7 +161,8 @@ void addResult(py::module_& module) {
         .def_readonly("new_keyframe", &FrameResult::new_keyframe, "whether it brought a new keyframe")
         .def_readonly("num_edges", &FrameResult::num_edges, "organized edges in the frame")
         .def_readonly("num_points", &FrameResult::num_points, "points of its edges")
-        .def_readonly("inliers", &FrameResult::inliers, "points that were associated")
+        .def_readonly("inliers", &FrameResult::inliers,
+                      "edge points that passed the chi-square test (mode ct: that were associated)")
         .def_readonly("matched_ratio", &FrameResult::matched_ratio,
                       "share of the keyframe's visible edges that were associated, 0 to 1")
         .def_readonly("found_at", &FrameResult::found_at,

@@ -71,9 +71,8 @@ void checkNames(const RunSettings& settings, const std::string& ground_truth) {
         const auto refuse = [&, option = option, &file = file](const std::string& what) {
             throw UsageError(std::string(option) + " " + file + " is what " + what + "; give another name");
         };
-        keepInputs(option, file,
-                   {ground_truth, settings.choice.mask, settings.config, pairs,
-                    (fs::path(settings.input) / pairs).string()});
+        keepInputs(option, file, {ground_truth, settings.choice.mask, settings.config, pairs});
+        if (!pairs.empty()) keepInputs(option, file, {(fs::path(settings.input) / pairs).string()});
         // Results may lie inside of the recording, and those of an earlier run be replaced
         if (!isWithin(file, settings.output_dir) || isSameFile(settings.output_dir, settings.input))
             keepInputs(option, file, {settings.input});
@@ -338,7 +337,8 @@ RunReport runOdometry(const RunSettings& settings) {
         if (fs::exists(fs::path(settings.output_dir) / name)) report.files.push_back(name);
     for (const std::string& file :
          {settings.covariances, settings.map_out, settings.simple_map, settings.rawlog_with_poses})
-        if (!file.empty()) report.files.push_back(file);
+        if (!file.empty())  // not in the output folder
+            report.files.push_back((fs::path(file).is_absolute() ? "" : "./") + file);
     return report;
 }
 

@@ -34,14 +34,12 @@ const char* rowOf(TrajectoryFormat format) {
     return kFormats[static_cast<std::size_t>(format)].row;
 }
 
-/// Rows of a text file without comments and blank lines, one after the other. What stands between the words
-/// is told by the format, or by the first row.
+/// Rows of a text file without comments and blank lines, one after the other. Whether there are commas
+/// between the words the first row tells; in EuRoC's format there are.
 class Rows {
   public:
     explicit Rows(const std::string& path, std::optional<TrajectoryFormat> format = {}) : path_(path) {
-        if (format) has_commas_ = *format == TrajectoryFormat::kEuroc;
-        if (format)
-            separators_ = " \t\r\f\v,";  // TUM's and KITTI's columns in whatever a table was exported with
+        if (format == TrajectoryFormat::kEuroc) has_commas_ = true;
         requireRegularInput(path);
         errno = 0;
         in_.open(path);
@@ -101,10 +99,9 @@ class Rows {
             words_.push_back(trimmed(content));
             return;
         }
-        for (std::size_t at = 0;
-             (at = content.find_first_not_of(separators_, at)) != std::string_view::npos;) {
-            words_.push_back(content.substr(at, content.find_first_of(separators_, at) - at));
-            at += words_.back().size();
+        for (content = trimmed(content); !content.empty();) {
+            words_.push_back(content.substr(0, content.find_first_of(kBlank)));
+            content = trimmed(content.substr(words_.back().size()));
         }
     }
 
@@ -112,7 +109,6 @@ class Rows {
     std::ifstream in_;
     std::size_t line_ = 0, columns_ = 0;
     std::optional<bool> has_commas_;
-    std::string_view separators_ = kBlank;  // where there are no commas
     std::vector<std::string_view> words_;
 };
 

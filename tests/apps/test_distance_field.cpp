@@ -301,8 +301,7 @@ TEST(DistanceFieldMethod, BadFramesComeBackWithAReason) {
 TEST(DistanceFieldMethod, NamesAndCamerasAreChecked) {
     const testing::Sequence sequence = room(1);
     EXPECT_THROW(makeMethod("distance", sequence.camera, OdometryOptions()), std::invalid_argument);
-    EXPECT_THROW(makeMethod("distance-field", PinholeCamera(), OdometryOptions()),
-                 std::invalid_argument);
+    EXPECT_THROW(makeMethod("distance-field", PinholeCamera(), OdometryOptions()), std::invalid_argument);
     for (const MethodInfo& info : distanceFieldMethods()) {
         EXPECT_NE(makeMethod(info.name, sequence.camera, OdometryOptions()), nullptr);
         EXPECT_FALSE(info.ours);
