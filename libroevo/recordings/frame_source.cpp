@@ -109,6 +109,7 @@ class RawlogSource : public FrameSource {
         frame.mounted = frame.fault.empty() && isMountedOnRobot(*scan_);
         frame.camera_on_robot.reset();
         if (frame.fault.empty()) frame.camera_on_robot = cameraOnRobot(*scan_);
+        if (frame.camera_on_robot) noteMount(*frame.camera_on_robot);
         const auto start = std::chrono::steady_clock::now();
         advance();  // reading from the file belongs to decoding, too
         frame.ms_decode +=
@@ -130,9 +131,22 @@ class RawlogSource : public FrameSource {
     GroundTruth groundTruth() const override { return truth_; }
     std::vector<std::string> notes() const override { return notes_; }
     std::size_t size() const override { return 0; }
-    std::string warning() const override { return reader_.report().warning(); }
+    std::string warning() const override {
+        if (back_and_forth_ < kSurely) return reader_.report().warning();
+        return "two cameras seem to share the label '" + excerpt(reader_.report().label) +
+               "': its place on the robot goes back and forth";
+    }
 
   private:
+    static constexpr int kSurely = 5;
+
+    /// Two cameras under one label take turns.
+    void noteMount(const Pose& mount) {
+        const bool moved = !mount.isApprox(mounts_[0], 1e-3);
+        if (moved && mount.isApprox(mounts_[1], 1e-9)) ++back_and_forth_;
+        mounts_[1] = mounts_[0];
+        mounts_[0] = mount;
+    }
     void advance() {
         scan_ = std::move(following_);
         following_ = scan_ ? reader_.next() : nullptr;
@@ -178,6 +192,8 @@ class RawlogSource : public FrameSource {
     GroundTruth truth_;
     PinholeCamera camera_;
     std::vector<std::string> notes_;
+    Pose mounts_[2];  ///< the last ones
+    int back_and_forth_ = 0;
 };
 
 std::unique_ptr<FrameSource> openUnmasked(const std::string& input, const InputChoice& choice) {

@@ -132,5 +132,25 @@ TEST(ForeignRawlogs, ImagesOfMoreThanEightBits) {
     }
 }
 
+TEST(ForeignRawlogs, TwoCamerasUnderOneLabel) {
+    const test::TemporaryFolder folder;
+    for (const bool two : {false, true}) {
+        {
+            mrpt::io::CFileGZOutputStream file(folder / "two.rawlog");
+            auto archive = mrpt::serialization::archiveFrom(file);
+            for (int i = 0; i < 12; ++i) {
+                auto scan = makeScan();
+                scan->timestamp += std::chrono::milliseconds(40 * i);
+                scan->setSensorPose(mrpt::poses::CPose3D(two ? 0.3 * (i % 2) : 0.01 * i, 0, 0, 0, 0, 0));
+                archive << *scan;
+            }
+        }
+        const auto source = openSource(folder / "two.rawlog");
+        for (SourceFrame frame; source->next(frame);) EXPECT_EQ(frame.fault, "");
+        EXPECT_EQ(source->warning().find("two cameras seem to share") != std::string::npos, two)
+            << "one that is turned on the robot is none";
+    }
+}
+
 }  // namespace
 }  // namespace roevo
