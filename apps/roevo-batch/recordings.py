@@ -8,8 +8,8 @@ from messages import Fault, say
 
 ENDINGS = (".rawlog", ".bag", ".db3", ".mcap")
 IMAGES = (".png", ".jpg", ".jpeg")
-PARTS_OF_A_RECORDING = ("rgb", "color", "colour", "image", "images", "depth", "depths", "aligned_depth", "rgb.txt",
-                        "associations.txt", "metadata.yaml", "camera.txt")
+PARTS_OF_A_RECORDING = ("rgb", "depth", "depths", "aligned_depth", "rgb.txt", "associations.txt", "metadata.yaml",
+                        "camera.txt")
 
 
 def recording(path, name=None, **more):

@@ -80,8 +80,7 @@ int drawPicture(const Settings& settings, bool layer_wanted, bool is_movie) {
             "--view: " + picture.view +
             (is_movie ? " is for pictures (.png); a movie has the view orbit" : " is for movies (.mp4)"));
     if (!settings.trajectories.empty() && picture.view != "follow")
-        throw UsageError(
-            "--trajectory: in pictures and movies it is what --view follow follows, in .html pages more");
+        throw UsageError("--trajectory is for .html pages, and for pictures with --view follow");
     picture.from = pointOf("--from", settings.from);
     picture.look_at = pointOf("--look-at", settings.look_at);
     if (picture.from && !picture.look_at) throw UsageError("--from: say where to look, too, by --look-at");

@@ -132,9 +132,10 @@ class RawlogSource : public FrameSource {
     std::vector<std::string> notes() const override { return notes_; }
     std::size_t size() const override { return 0; }
     std::string warning() const override {
-        if (back_and_forth_ < kSurely) return reader_.report().warning();
-        return "two cameras seem to share the label '" + excerpt(reader_.report().label) +
-               "': its place on the robot goes back and forth";
+        const std::string of_file = reader_.report().warning();
+        if (back_and_forth_ < kSurely) return of_file;
+        return (of_file.empty() ? "" : of_file + "; ") + "two cameras seem to share the label '" +
+               excerpt(reader_.report().label) + "': its place on the robot goes back and forth";
     }
 
   private:

@@ -124,8 +124,8 @@ void setCamera(const CameraDescription& camera, DatasetDescription& out) {
     if (camera.camera.width == 0 && std::max(off(out.camera.cx, out.camera.width),
                                              off(out.camera.cy, out.camera.height)) > kFarFromMiddle)
         throw std::runtime_error(
-            out.folder + ": " + camera.source + ": (" + shortText(out.camera) +
-            "): the principal point is far from the middle: intrinsics of images of "
+            out.folder + ": " + camera.source + " says " + shortText(out.camera) +
+            ": the principal point is far from the middle: intrinsics of images of "
             "another size? If they are right, say so by a camera.txt with width and height");
 }
 

@@ -153,6 +153,11 @@ DatasetDescription loadIcl(const std::string& folder_name, const DatasetOptions&
         requireImages(colours, (folder / "rgb").string());
         requireImages(depths, (folder / "depth").string());
         pairByName(colours, depths, out.frame_rate, options.max_time_difference, out);
+        if (!(out.frame_rate > 0))
+            throw std::runtime_error(
+                folder_name +
+                ": ICL-NUIM counts frames in whole numbers; its images are named by times "
+                "(--format plain reads them)");
         out.notes.push_back("no associations.txt: colour and depth were paired by file name");
     } else {
         throw std::runtime_error(folder_name + " has no associations.txt, nor rgb/ and depth/");

@@ -20,6 +20,8 @@ namespace {
 
 constexpr double kFirstStamp = 1e9;    // of ten digits: no recording has so many frames
 constexpr double kLargestStep = 1000;  // frames that are left out between two
+// What a count behind whole seconds looks like, read as their decimals
+constexpr double kShortestStep = 1e-4, kBetweenSeconds = 0.5;  // s
 
 bool isDigit(char c) {
     return c >= '0' && c <= '9';
@@ -37,34 +39,34 @@ std::size_t beginOfDigits(const std::string& name, std::size_t end) {
     return end;
 }
 
-/// Seconds and their decimals as two numbers ("1305031453_359"), or as a date ("20240517_123046_033333",
-/// "2024-05-17 12-30-46.03"): seconds since 1970.
-std::optional<NamedNumber> timeInParts(const std::string& name) {
-    static const std::regex seconds("(?:^|[^0-9])([0-9]{10})[-_]([0-9]{3}|[0-9]{6})(?![0-9])");
+/// A date at the end of a name's numbers ("20240517_123046_033333", "2024-05-17 12-30-46.03"): seconds since
+/// 1970.
+std::optional<NamedNumber> dateIn(const std::string& name) {
     static const std::regex date(
-        "(?:^|[^0-9])((?:19|20)[0-9]{2})[-_.]?(0[1-9]|1[0-2])[-_.]?([0-3][0-9])[-_. T]?"
-        "([01][0-9]|2[0-3])[-_.:h]?([0-5][0-9])[-_.:m]?([0-5][0-9])(?:\\.([0-9]+)|[-_]?([0-9]{3}|[0-9]{6}|[0-"
-        "9]{9}))?"
-        "(?![0-9])");
+        "(?:^|[^0-9])((?:19|20)[0-9]{2})[-_.]?(0[1-9]|1[0-2])[-_.]?(0[1-9]|[12][0-9]|3[01])[-_. T]?"
+        "([01][0-9]|2[0-3])[-_.:h]?([0-5][0-9])[-_.:m]?([0-5][0-9])"
+        "(?:\\.([0-9]+)|[-_]?([0-9]{3}|[0-9]{6}|[0-9]{9}))?[^0-9]*$");
     std::smatch part;
-    NamedNumber out;
-    out.decimal = true;
-    if (std::regex_search(name, part, seconds)) {
-        out.value = std::stod(part.str(1) + "." + part.str(2));
-    } else if (std::regex_search(name, part, date)) {
-        std::tm day{};
-        day.tm_year = std::stoi(part.str(1)) - 1900;
-        day.tm_mon = std::stoi(part.str(2)) - 1;
-        day.tm_mday = std::stoi(part.str(3));
-        day.tm_hour = std::stoi(part.str(4));
-        day.tm_min = std::stoi(part.str(5));
-        day.tm_sec = std::stoi(part.str(6));
-        out.value = static_cast<double>(timegm(&day)) + std::stod("0." + part.str(7) + part.str(8) + "0");
-    } else {
-        return std::nullopt;
-    }
-    out.begin = static_cast<std::size_t>(part.position(1));
-    return out;
+    if (!std::regex_search(name, part, date)) return std::nullopt;
+    std::tm day{};
+    day.tm_year = std::stoi(part.str(1)) - 1900;
+    day.tm_mon = std::stoi(part.str(2)) - 1;
+    day.tm_mday = std::stoi(part.str(3));
+    day.tm_hour = std::stoi(part.str(4));
+    day.tm_min = std::stoi(part.str(5));
+    day.tm_sec = std::stoi(part.str(6));
+    const double decimals = std::stod("0." + part.str(7) + part.str(8) + "0");
+    return NamedNumber{static_cast<double>(timegm(&day)) + decimals, true,
+                       static_cast<std::size_t>(part.position(1))};
+}
+
+/// Seconds and their decimals as two numbers ("1305031453_359").
+std::optional<NamedNumber> secondsIn(const std::string& name) {
+    static const std::regex seconds("(?:^|[^0-9])([0-9]{10})[-_]([0-9]{3}|[0-9]{6})[^0-9]*$");
+    std::smatch part;
+    if (!std::regex_search(name, part, seconds)) return std::nullopt;
+    return NamedNumber{std::stod(part.str(1) + "." + part.str(2)), true,
+                       static_cast<std::size_t>(part.position(1))};
 }
 
 /// The last number in a name, with its decimals. Seconds and nanoseconds of a stamp ("1305031453_359684000")
@@ -88,9 +90,6 @@ std::optional<NamedNumber> lastNumber(const std::string& name) {
             out.begin = whole;
         }
     }
-    const std::size_t length = end - out.begin;  // stamps have 10, 13, 16 or 19 digits
-    if (length == 14 || length == 17 || length == 20)
-        if (const auto date = timeInParts(digits)) return NamedNumber{date->value, true, out.begin};
     out.value = std::stod(digits);
     return out;
 }
@@ -130,7 +129,8 @@ struct Numbered {
         const auto beforeEnding = [&](const std::string& name) {
             return lastNumber(name.substr(0, name.size() - ending.size()));
         };
-        if (!take(files, lastNumber) && !take(files, timeInParts) && !take(files, beforeEnding))
+        if (!take(files, dateIn) && !take(files, lastNumber) && !take(files, secondsIn) &&
+            !take(files, beforeEnding))
             throw std::runtime_error(
                 files.begin()->second +
                 ": which number in its name is the time? By the last one, others of these "
@@ -157,8 +157,8 @@ struct Numbered {
   private:
     bool decimal = false;
 
-    /// Reads all names in one way. @return false where that cannot be: one has no such number, or in their
-    /// order another number in the names goes back
+    /// Reads all names in one way. @return false where that cannot be: one has no such number; another number
+    /// goes back in the order of those that are not surely times or a count; or a count stands behind dates
     template <class Read>
     bool take(const NamedImages& files, const Read& read) {
         images.clear();
@@ -176,7 +176,16 @@ struct Numbered {
         if (decimal && !by_number.empty())
             throw std::runtime_error(by_number + ": some images are named by number, others by time");
         std::sort(order.begin(), order.end());
+        const bool times = order.front().first >= kFirstStamp;
+        bool count = !decimal, counted_behind = decimal, together = false;
         for (std::size_t i = 1; i < order.size(); i++) {
+            const double step = order[i].first - order[i - 1].first;
+            count = count && step == 1;
+            together = together || (step > 0 && step < kShortestStep);
+            counted_behind = counted_behind && step > 0 && (step < kShortestStep || step > kBetweenSeconds);
+        }
+        if (counted_behind && together) return false;
+        for (std::size_t i = 1; i < order.size() && !times && !count; i++) {
             const auto &before = order[i - 1].second, &now = order[i].second;
             if (order[i].first == order[i - 1].first && now != before) return false;
             for (std::size_t k = 0; k < std::min(before.size(), now.size()); k++)

@@ -71,7 +71,7 @@ bool isFrameNumber(double stamp) {
 }
 
 bool numbersToSeconds(DatasetDescription& dataset) {
-    if (!countsFrames(dataset.ground_truth)) return false;
+    if (!(dataset.frame_rate > 0) || !countsFrames(dataset.ground_truth)) return false;
     divideTimes(dataset.ground_truth.poses, &StampedPose::timestamp, dataset.frame_rate);
     return true;
 }

@@ -1,6 +1,7 @@
 // Folders as the benchmarks pack them.
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
 #include "layout.h"
@@ -19,9 +20,16 @@ std::string cameraText(const PinholeCamera& camera) {
     return cameraFileText(camera, 5000, {"invalid_depth: 0", "note: simulated"}, allDigits);
 }
 
+const std::string& withParents(const std::string& path) {
+    std::error_code ignored;  // WholeFolder says what is wrong
+    std::filesystem::create_directories(std::filesystem::path(path).lexically_normal().parent_path(),
+                                        ignored);
+    return path;
+}
+
 class FolderRecording : public Recording {
   public:
-    explicit FolderRecording(const std::string& path) : folder_(path) {}
+    explicit FolderRecording(const std::string& path) : folder_(withParents(path)) {}
     void finish() final {
         finishFiles();
         folder_.commit();

@@ -120,16 +120,21 @@ TEST(ForeignRawlogs, ImagesOfARecordingThatWasMoved) {
 TEST(ForeignRawlogs, ImagesOfMoreThanEightBits) {
     const test::TemporaryFolder folder;
     cv::Mat wide(48, 64, CV_16UC1);
-    for (const double most : {1023., 4095., 65535.}) {
+    const auto write = [&](double most) {
         for (int v = 0; v < wide.rows; ++v)
             for (int u = 0; u < wide.cols; ++u)
                 wide.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(most * u / 63);
         cv::imwrite(folder / "a.png", wide);
-        const cv::Mat read = readColourFile(folder / "a.png");
-        ASSERT_EQ(read.type(), CV_8UC1);
-        EXPECT_LE(read.at<std::uint8_t>(0, 0), 1) << most;
-        EXPECT_GE(read.at<std::uint8_t>(5, 63), 254) << most;
+    };
+    for (const double most : {1023., 4095.}) {
+        write(most);
+        expectContains(errorOf([&] { readColourFile(folder / "a.png"); }), "no more than 12 are used");
     }
+    write(65535);
+    const cv::Mat read = readColourFile(folder / "a.png");
+    ASSERT_EQ(read.type(), CV_8UC1);
+    EXPECT_EQ(read.at<std::uint8_t>(0, 0), 0);
+    EXPECT_EQ(read.at<std::uint8_t>(5, 63), 255);
 }
 
 TEST(ForeignRawlogs, TwoCamerasUnderOneLabel) {
@@ -150,6 +155,16 @@ TEST(ForeignRawlogs, TwoCamerasUnderOneLabel) {
         EXPECT_EQ(source->warning().find("two cameras seem to share") != std::string::npos, two)
             << "one that is turned on the robot is none";
     }
+}
+
+TEST(ForeignRawlogs, PackedByAnotherProgram) {
+    const test::TemporaryFolder folder;
+    test::writeFile(folder / "a.rawlog",
+                    "\xFD"
+                    "7zXZ and more");
+    expectContains(errorOf([&] { RawlogReader(folder / "a.rawlog"); }), "is packed by xz: unpack it first");
+    test::writeFile(folder / "a.rawlog", "\x28\xB5\x2F\xFD and more");
+    expectContains(errorOf([&] { RawlogReader(folder / "a.rawlog"); }), "is packed by zstd");
 }
 
 }  // namespace

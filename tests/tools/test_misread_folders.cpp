@@ -38,8 +38,8 @@ TEST(MisreadFolders, IntrinsicsOfImagesOfAnotherSize) {
     options.folder.intrinsics = {120, 120, 63.5, 47};
     EXPECT_CONTAINS(
         errorOf([&] { openDataset(folder.path(), options); }),
-        "the command line: (64x48 fx 120 fy 120 cx 63.5 cy 47, no lens distortion): the principal "
-        "point is far from the middle");
+        "the command line says 64x48 fx 120 fy 120 cx 63.5 cy 47, no lens distortion: the principal point "
+        "is far from the middle");
     options.folder.intrinsics = {30, 30, 15.5, 11.5};
     EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path(), options); }), "far from the middle");
     folder.write("camera.txt", "width: 64\nheight: 48\nfx: 60\nfy: 60\ncx: 60\ncy: 40\ndepth_scale: 5000\n");
@@ -135,6 +135,16 @@ TEST(MisreadFolders, LensNamesOfPyrealsense) {
     EXPECT_EQ(camera.distortion[1], 0.2);
     setLens("distortion.kannala_brandt4", {0.1, 0.2}, camera);
     EXPECT_EQ(camera.lens, LensModel::kKannalaBrandt);
+}
+
+TEST(MisreadFolders, IclWithTimesForNumbersIsRefused) {
+    const SmallDataset folder("icl");
+    folder.remove("associations.txt");
+    for (int i = 0; i < 3; i++)
+        for (const auto& image : {folder.colour(i), folder.depth(i)})
+            fs::rename(folder / image, folder / (image.substr(0, image.find('/') + 1) + "1305031453." +
+                                                 std::to_string(i) + ".png"));
+    EXPECT_CONTAINS(errorOf([&] { openDataset(folder.path()); }), "its images are named by times");
 }
 
 }  // namespace

@@ -55,6 +55,21 @@ TEST(PlainFolder, NamesWithSeveralNumbers) {
               minute);
     EXPECT_EQ(timesWithNames({"20240517123059967", "20240517123100000"}),
               (Times{1715949059.967, 1715949060}));
+    EXPECT_EQ(timesWithNames({"PXL_20240517_123059967", "PXL_20240517_123100000"}),
+              (Times{1715949059.967, 1715949060}));
+    EXPECT_EQ(timesWithNames({"20240517123059.967", "20240517123100.5"}),
+              (Times{1715949059.967, 1715949060.5}));
+    EXPECT_EQ(timesWithNames({"20240517_123059", "20240517_123100", "20240517_123102"}),
+              (Times{1715949059, 1715949060, 1715949062}));
+    EXPECT_EQ(timesWithNames({"20240517_123059_000003", "20240517_123059_000006", "20240517_123100_000009"}),
+              (Times{0.1, 0.2, 0.3}))
+        << "a count of six digits";
+    EXPECT_EQ(timesWithNames({"20120800000000", "20120833333333", "20120866666666"}),
+              (Times{20120.8, 20120.833333, 20120.866667}))
+        << "ns since a machine was started";
+    EXPECT_EQ(timesWithNames({"img_0_1305031453.5", "img_1_1305031453.6", "img_0_1305031453.7"}),
+              (Times{1305031453.5, 1305031453.6, 1305031453.7}));
+    EXPECT_EQ(timesWithNames({"exp8_00003", "exp12_00004", "exp6_00005"}), (Times{0.1, 0.133333, 0.166667}));
     EXPECT_EQ(timesWithNames({"1305031454_033333", "1305031453_966667", "1305031453_933333"}),
               (Times{1305031453.933333, 1305031453.966667, 1305031454.033333}));
     EXPECT_EQ(timesWithNames({"1305031453_966", "1305031454_033"}), (Times{1305031453.966, 1305031454.033}));
@@ -65,7 +80,7 @@ TEST(PlainFolder, NamesWithSeveralNumbers) {
 }
 
 TEST(PlainFolder, NamesThatDoNotTellWhichNumberCounts) {
-    EXPECT_CONTAINS(errorOf([] { timesWithNames({"1_2", "2_1", "3_3"}); }), "which number in its name");
+    EXPECT_CONTAINS(errorOf([] { timesWithNames({"1_2", "2_1", "3_7"}); }), "which number in its name");
     EXPECT_CONTAINS(errorOf([] {
                         timesWithNames({"a_7", "b_7", "c_7", "d_8", "e_7"});
                     }),

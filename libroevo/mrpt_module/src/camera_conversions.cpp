@@ -7,17 +7,14 @@
 namespace roevo {
 namespace {
 
-/// MRPT's converters of TUM's sequences and its demo of OpenNI2 wrote rows for columns: the principal point
-/// is in the middle of the image that the size would be of the other way round, and not of this one.
+/// MRPT's converters of TUM's sequences and its demo of OpenNI2 wrote rows for columns: of an image that is
+/// wider than high the principal point is then too far to the right and up, and in the middle the other way
+/// round.
 bool isTransposed(const PinholeCamera& camera) {
-    constexpr double kNearMiddle = 0.1;  // of the side
-    const auto isNear = [](double centre, int side) {
-        return std::abs((centre + 0.5) / side - 0.5) <= kNearMiddle;
-    };
-    const auto fits = [&](int width, int height) {
-        return isNear(camera.cx, width) && isNear(camera.cy, height);
-    };
-    return !fits(camera.width, camera.height) && fits(camera.height, camera.width);
+    const double x = (camera.cx + 0.5) / camera.width, y = (camera.cy + 0.5) / camera.height;
+    const double turned_x = (camera.cx + 0.5) / camera.height, turned_y = (camera.cy + 0.5) / camera.width;
+    return camera.width < camera.height && x > 0.6 && y < 0.45 && std::abs(turned_x - 0.5) < 0.1 &&
+           std::abs(turned_y - 0.5) < 0.1;
 }
 
 }  // namespace

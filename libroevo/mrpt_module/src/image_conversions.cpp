@@ -86,14 +86,13 @@ cv::Mat asColour(const Bytes& bytes, const std::string& file) {
     constexpr int kAsStored = cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION;
     const cv::Mat image = decode(bytes, file, kAsStored | cv::IMREAD_ANYDEPTH);
     if (image.depth() != CV_16U) return image.depth() == CV_8U ? image : decode(bytes, file, kAsStored);
-    // Of 10, 12 or 16 bits, which need not fill the 16
     double most = 0;
     cv::minMaxLoc(image.reshape(1), nullptr, &most);
-    double times = 1;
-    for (const double bits : {4., 16., 256.})
-        if (most >= 256 * times) times = bits;
+    if (most >= 256 && most < 4096)
+        throw std::runtime_error(
+            "the image has 16 bits, of which no more than 12 are used: make one of 8 bits of it: " + file);
     cv::Mat out;
-    image.convertTo(out, CV_8U, 1 / times);
+    image.convertTo(out, CV_8U, 1 / 256.);
     return out;
 }
 

@@ -102,6 +102,16 @@ double statedSize(const std::string& file) {
     return in ? b[0] + 256.0 * (b[1] + 256.0 * (b[2] + 256.0 * b[3])) : 0.0;
 }
 
+/// Only gz is read as it is.
+void requireNotPacked(const std::string& file) {
+    char head[4] = {};
+    std::ifstream(file, std::ios::binary).read(head, sizeof head);
+    for (const auto& [magic, program] : {std::pair("\x28\xB5\x2F\xFD", "zstd"), {"\xFD\x37\x7A\x58", "xz"}})
+        if (std::memcmp(head, magic, sizeof head) == 0)
+            throw std::runtime_error(file + " is packed by " + program + ": unpack it first (" + program +
+                                     " -d), or pack it by gzip");
+}
+
 std::string listCounts(const std::map<std::string, std::size_t>& counts) {
     std::string text;
     for (const auto& [name, count] : counts)
@@ -287,6 +297,7 @@ RawlogReader::RawlogReader(const std::string& path, const std::string& sensor_la
         throw std::runtime_error(error ? "cannot read " + path + ": " + error.message()
                                        : "rawlog not found: " + path);
     requireRegularInput(path);
+    requireNotPacked(path);
     if (!impl_->stream.file.open(path)) throw std::runtime_error("cannot read " + path);
     impl_->path = path;
     impl_->compressed_size = static_cast<double>(fs::file_size(path));

@@ -27,8 +27,8 @@ void toImage(const CameraInfoMessage& message, PinholeCamera& camera) {
     const bool part = message.roi_width > 0 && message.roi_height > 0;
     camera.width = static_cast<int>((part ? message.roi_width : message.width) / x);
     camera.height = static_cast<int>((part ? message.roi_height : message.height) / y);
-    camera.fx /= x, camera.cx = (camera.cx - message.roi_x) / x;
-    camera.fy /= y, camera.cy = (camera.cy - message.roi_y) / y;
+    camera.fx /= x, camera.cx = (camera.cx - (part ? message.roi_x : 0)) / x;
+    camera.fy /= y, camera.cy = (camera.cy - (part ? message.roi_y : 0)) / y;
 }
 
 }  // namespace
@@ -64,8 +64,10 @@ BagCamera readCamera(const BagFile& bag, const std::string& info_topic, const Ba
     std::string fault = "it has no message";
     for (std::size_t i = 0; i < all; i++) {
         try {
-            const PinholeCamera camera =
-                cameraOf(parseCameraInfo(bag.message(info_topic, i)), rectified, of_depth);
+            CameraInfoMessage info = parseCameraInfo(bag.message(info_topic, i));
+            if (info.width == images.width && info.height == images.height)  // of the image as it is
+                info.binning_x = info.binning_y = info.roi_width = info.roi_height = 0;
+            const PinholeCamera camera = cameraOf(info, rectified, of_depth);
             if (!first) first = camera;
             if (camera != *first) others++;
         } catch (const std::runtime_error& error) {

@@ -183,7 +183,7 @@ std::vector<MapUpdate> RefiningMapper::due(double timestamp, double& waited_ms) 
     std::vector<MapUpdate> updates;
     Lock lock(mutex_);
     while (!due_.empty()) {
-        if (options_.deterministic ? due_.front() > timestamp : updates_.empty()) break;
+        if (options_.deterministic ? due_.front() > timestamp : updates_.empty() && !failure_) break;
         const Stopwatch watch;
         // None comes where memory ran out between a promise and its job
         waitFor(lock, [&] { return !updates_.empty() || isIdle(); });
