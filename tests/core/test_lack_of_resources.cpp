@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <new>
 #include <sstream>
@@ -139,6 +140,26 @@ TEST_F(LackOfResources, MemoryThatRunsOutInAThreadEndsTheOdometryNotTheProgram) 
         ASSERT_LT(processed, 60u) << "nothing ran out";
         expectBrokenForGood(odometry, path, processed);
     }
+}
+
+TEST_F(LackOfResources, AMapperThatFailedIsHeardOfLiveToo) {
+    const Sequence path = backAndForth(70);
+    OdometryOptions options = withThreads();
+    options.mapping.deterministic = false;
+    options.mapping.close_loops = options.loss.recognise = false;  // so that no other thread allocates
+    Odometry odometry(path.camera, options, path.start());
+    bool threw = false;
+    for (std::size_t i = 0; i < path.frames.size() && !threw; ++i) {
+        if (i == 20) left_in_other_threads = 0;
+        try {
+            (void)odometry.processFrame(path.frames[i]);
+        } catch (const std::bad_alloc&) {
+            threw = true;
+            EXPECT_GE(i, 20u);
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));  // in which the map is worked on
+    }
+    EXPECT_TRUE(threw);
 }
 
 /// Whether the frame that follows some threw.
