@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 
+#include "camera/off_centre.h"
 #include "programs/text.h"
 
 namespace roevo {
@@ -127,9 +128,8 @@ std::string RunReport::evaluationWarning() const {
 }
 
 std::string RunReport::cameraWarning() const {
-    constexpr double kMostOff = 0.25;  // of the image, from its middle: cameras are off by some hundredths
-    const auto isOff = [&](double centre, int size) { return std::abs(centre / size - 0.5) > kMostOff; };
-    if (!isOff(camera.cx, camera.width) && !isOff(camera.cy, camera.height)) return {};
+    constexpr double kMostOff = 0.25;
+    if (offCentre(camera) <= kMostOff) return {};
     return format(
                "the optical axis is far from the middle of the image: pixel %.1f, %.1f of %d x %d. Are these "
                "the intrinsics of another image size? They are from ",

@@ -152,7 +152,8 @@ std::optional<CameraDescription> findCamera(const YAML::Node& root, int levels) 
                         if (const auto depth = findCamera(beside, levels - 1);
                             depth && std::abs(depth->camera.fx - found->camera.fx) > 1)
                             found->notes.push_back(
-                                "it also has a depth camera of another focal length: depth is taken as "
+                                "the calibration also has a depth camera of another focal length: depth is "
+                                "taken as "
                                 "registered to colour already (camera.txt can say otherwise)");
                 return found;
             }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "camera/lens_terms.h"
+#include "camera/off_centre.h"
 #include "recordings/calibration_file.h"
 #include "recordings/image_sizes.h"
 #include "recordings/lens.h"
@@ -119,10 +120,8 @@ void setCamera(const CameraDescription& camera, DatasetDescription& out) {
     }
     if (const std::string fault = out.camera.check(); !fault.empty())
         throw std::runtime_error(out.folder + ": " + camera.source + ": " + fault);
-    constexpr double kFarFromMiddle = 0.15;  // of the side: no lens, but images that were made smaller or cut
-    const auto off = [](double centre, int side) { return std::abs((centre + 0.5) / side - 0.5); };
-    if (camera.camera.width == 0 && std::max(off(out.camera.cx, out.camera.width),
-                                             off(out.camera.cy, out.camera.height)) > kFarFromMiddle)
+    constexpr double kMostOff = 0.15;
+    if (camera.camera.width == 0 && offCentre(out.camera) > kMostOff)
         throw std::runtime_error(
             out.folder + ": " + camera.source + " says " + shortText(out.camera) +
             ": the principal point is far from the middle: intrinsics of images of "

@@ -195,6 +195,16 @@ struct Numbered {
     }
 };
 
+/// Whether it is plain that numbers belong together that are not the same: both without gaps, as many of
+/// each.
+bool areOneApart(const std::vector<ListEntry>& colours, const std::vector<ListEntry>& depths) {
+    const auto unbroken = [](const std::vector<ListEntry>& images) {
+        return images.back().timestamp - images.front().timestamp == static_cast<double>(images.size() - 1);
+    };
+    return colours.size() == depths.size() && unbroken(colours) && unbroken(depths) &&
+           std::abs(colours.front().timestamp - depths.front().timestamp) == 1;
+}
+
 }  // namespace
 
 std::optional<long long> wholeNumber(const std::string& word) {
@@ -229,20 +239,6 @@ NamedImages imagesIn(const fs::path& folder) {
 void requireImages(const NamedImages& images, const std::string& place) {
     if (images.empty()) throw std::runtime_error(place + " has no images in it");
 }
-
-namespace {
-
-/// Whether it is plain that numbers belong together that are not the same: both without gaps, as many of
-/// each.
-bool areOneApart(const std::vector<ListEntry>& colours, const std::vector<ListEntry>& depths) {
-    const auto unbroken = [](const std::vector<ListEntry>& images) {
-        return images.back().timestamp - images.front().timestamp == static_cast<double>(images.size() - 1);
-    };
-    return colours.size() == depths.size() && unbroken(colours) && unbroken(depths) &&
-           std::abs(colours.front().timestamp - depths.front().timestamp) == 1;
-}
-
-}  // namespace
 
 std::string pairByName(const NamedImages& colour_files, const NamedImages& depth_files, double rate,
                        double max_difference, DatasetDescription& out) {

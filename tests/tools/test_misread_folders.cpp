@@ -68,7 +68,7 @@ TEST(MisreadFolders, ADepthCameraOfAnotherFocalLengthIsNamed) {
     EXPECT_EQ(openDataset(folder.path()).summary().find("focal length"), std::string::npos);
     folder.write("camera.json", "{\"color\": {" + camera + "60}, \"depth\": {" + camera + "70}}");
     EXPECT_CONTAINS(openDataset(folder.path()).summary(),
-                    "it also has a depth camera of another focal length");
+                    "the calibration also has a depth camera of another focal length");
 }
 
 TEST(MisreadFolders, GroundTruthThatCountsFramesAsTheImagesDo) {

@@ -12,11 +12,16 @@
 namespace roevo {
 namespace {
 
+OdometryOptions inMode(Mode mode, OdometryOptions options) {
+    options.mode = mode;
+    return options;
+}
+
 class RoevoMethod : public Method {
   public:
     /// @param options  but for the mode
-    RoevoMethod(const PinholeCamera& camera, OdometryOptions options, Mode own_mode)
-        : odometry_(camera, (options.mode = own_mode, options)) {}
+    RoevoMethod(const PinholeCamera& camera, const OdometryOptions& options, Mode mode)
+        : odometry_(camera, inMode(mode, options)) {}
 
     std::vector<std::string> stages() const override {
         std::vector<std::string> names{"edges", "coarse"};

@@ -1,8 +1,9 @@
 #include "roevo_mrpt/camera_conversions.h"
 
-#include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "camera/off_centre.h"
 
 namespace roevo {
 namespace {
@@ -11,10 +12,10 @@ namespace {
 /// wider than high the principal point is then too far to the right and up, and in the middle the other way
 /// round.
 bool isTransposed(const PinholeCamera& camera) {
-    const double x = (camera.cx + 0.5) / camera.width, y = (camera.cy + 0.5) / camera.height;
-    const double turned_x = (camera.cx + 0.5) / camera.height, turned_y = (camera.cy + 0.5) / camera.width;
-    return camera.width < camera.height && x > 0.6 && y < 0.45 && std::abs(turned_x - 0.5) < 0.1 &&
-           std::abs(turned_y - 0.5) < 0.1;
+    PinholeCamera turned = camera;
+    std::swap(turned.width, turned.height);
+    return camera.width < camera.height && camera.cx > 0.6 * camera.width &&
+           camera.cy < 0.45 * camera.height && offCentre(turned) < 0.1;
 }
 
 }  // namespace

@@ -85,15 +85,13 @@ cv::Mat asColour(const Bytes& bytes, const std::string& file) {
     // Not turned as a camera was held: depth and intrinsics are of the pixels as they are stored
     constexpr int kAsStored = cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION;
     const cv::Mat image = decode(bytes, file, kAsStored | cv::IMREAD_ANYDEPTH);
-    if (image.depth() != CV_16U) return image.depth() == CV_8U ? image : decode(bytes, file, kAsStored);
+    if (image.depth() == CV_8U) return image;
     double most = 0;
-    cv::minMaxLoc(image.reshape(1), nullptr, &most);
-    if (most >= 256 && most < 4096)
+    if (image.depth() == CV_16U) cv::minMaxLoc(image.reshape(1), nullptr, &most);
+    if (most >= 256 && most < 4096)  // of 16 bits the upper ones are taken: it would be black
         throw std::runtime_error(
             "the image has 16 bits, of which no more than 12 are used: make one of 8 bits of it: " + file);
-    cv::Mat out;
-    image.convertTo(out, CV_8U, 1 / 256.);
-    return out;
+    return decode(bytes, file, kAsStored);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "camera/off_centre.h"
 #include "embedded_jpegs.h"
 #include "roevo/camera/depth_registration.h"
 #include "roevo_mrpt/camera_conversions.h"
@@ -123,10 +124,9 @@ bool camerasCoincide(const CObservation3DRangeScan& scan, const PinholeCamera& d
 
 /// MRPT takes the size of the range image for that of its camera, whatever was stored, and leaves the rest.
 void checkIsOfThisSize(const PinholeCamera& depth_camera, const PinholeCamera& colour_camera) {
-    constexpr double kMostOff = 0.25;  // of the image, from its middle
-    const auto isOff = [&](double centre, int size) { return std::abs(centre / size - 0.5) > kMostOff; };
+    constexpr double kMostOff = 0.25;
     if (depth_camera == colour_camera) return;  // which is warned of
-    if (isOff(depth_camera.cx, depth_camera.width) || isOff(depth_camera.cy, depth_camera.height))
+    if (offCentre(depth_camera) > kMostOff)
         throw std::runtime_error("the depth camera's principal point is far from the middle of its " +
                                  std::to_string(depth_camera.width) + "x" +
                                  std::to_string(depth_camera.height) +

@@ -87,10 +87,12 @@ RgbdFrame CRoevoOdometry::convert(const CObservation3DRangeScan& scan) {
     const mrpt::system::CTimeLoggerEntry entry(profiler_, "convert");
     // In a CRawlog that was read, what is in files is not loaded; what is, would stay in memory
     const bool to_load = scan.rangeImage_isExternallyStored() && scan.rangeImage.rows() == 0;
-    const std::shared_ptr<const CObservation3DRangeScan> loaded(
-        &scan, [to_load](const CObservation3DRangeScan* each) {
-            if (to_load) each->unload();
-        });
+    const struct Unload {
+        const CObservation3DRangeScan* scan;
+        ~Unload() {
+            if (scan != nullptr) scan->unload();
+        }
+    } afterwards{to_load ? &scan : nullptr};
     if (to_load) scan.load();
     RgbdFrame frame = toRgbdFrame(scan);
     frame.mask = mask_;
