@@ -117,6 +117,27 @@ TEST(Kidnapping, OtherRoomsStayApart) {
     EXPECT_EQ(both.joined, 0);
 }
 
+/// 14 frames of a corridor, as of something that is held before the camera, in the midst of a room.
+TEST(Kidnapping, AMomentElsewhereIsBridgedOnceTheRoomIsSeenAgain) {
+    constexpr std::size_t kHidden = 20, kSeenAgain = 34;
+    Sequence sequence, hidden_by;
+    append(room(1, 0.45), 0, 50, sequence);
+    simulator::SimulationOptions corridor = room(3, 0.45);
+    corridor.scene = "corridor";
+    append(corridor, 0, static_cast<int>(kSeenAgain - kHidden), hidden_by);
+    for (std::size_t i = kHidden; i < kSeenAgain; ++i) {
+        sequence.frames[i] = hidden_by.frames[i - kHidden];
+        sequence.frames[i].timestamp = sequence.truth[i].timestamp;
+    }
+    const TracksRun both = run(sequence, sequence.frames.size());
+    EXPECT_EQ(both.results[kSeenAgain].status, FrameStatus::kOk);
+    EXPECT_GE(both.results[kSeenAgain].found_at, 0) << "there is a track of the corridor";
+    for (std::size_t i = 0; i < sequence.truth.size(); ++i) {
+        const Pose error = sequence.truth[i].T_world_camera.inverse() * both.trajectory[i].T_world_camera;
+        EXPECT_LT(error.translation().norm(), i < kHidden || i >= kSeenAgain ? 0.005 : 0.03) << i;
+    }
+}
+
 TEST(Kidnapping, IsTheSameWithAnyNumberOfThreads) {
     const testing::ThreadsRestored restored;
     for (const int threads : {1, 2, 4}) {

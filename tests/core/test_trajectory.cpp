@@ -176,25 +176,58 @@ Trajectory foundAgain() {
     return trajectory;
 }
 
-TEST(Trajectory, NothingIsInterpolatedBetweenTracks) {
-    EXPECT_NEAR(foundAgain().frames()[3].T_world_camera.translation().x(), 41, 1e-12);
-}
-
-TEST(Trajectory, FramesAreInterpolatedAcrossATrackThatWasNeverJoined) {
+TEST(Trajectory, WhatWasMeasuredInAnotherTrackIsBentToWhereTheLongestOneHasIt) {
+    // Lost from 2 s on in one track, from 6 s on in the other, which went on to 5 m beside it
     Trajectory trajectory;
     beginTrack(trajectory, 0, at(0));
-    trajectory.addFrame(0, from(0, at(0)));
-    trajectory.addFrame(1, from(0, at(0)), false);
-    beginTrack(trajectory, 2, at(50));
-    trajectory.addFrame(2, from(1, at(0)));
-    trajectory.addFrame(3, from(1, at(0)), false);
-    trajectory.addFrame(4, from(0, at(4)));
+    for (const double t : {0.0, 1.0}) trajectory.addFrame(t, from(0, at(t)));
+    trajectory.addFrame(2, from(0, at(-7)), false);
+    beginTrack(trajectory, 3, at(50));
+    for (const double t : {3.0, 4.0, 5.0}) {
+        Pose beside = at(t - 3);
+        beside.translation().y() = 1 - std::abs(t - 4);
+        trajectory.addFrame(t, from(1, beside));
+    }
+    trajectory.addFrame(6, from(1, at(-9)), false);
+    for (const double t : {7.0, 8.0, 9.0}) trajectory.addFrame(t, from(0, at(t)));
     for (const bool smooth : {false, true}) {
         const std::vector<StampedPose> frames = trajectory.frames(smooth);
-        EXPECT_NEAR(frames[1].T_world_camera.translation().x(), 1, 1e-9);
-        EXPECT_NEAR(frames[2].T_world_camera.translation().x(), 50, 1e-9);
-        EXPECT_NEAR(frames[3].T_world_camera.translation().x(), 50, 1e-9);
+        for (const StampedPose& frame : frames) {
+            EXPECT_NEAR(frame.T_world_camera.translation().x(), frame.timestamp, 1e-3) << smooth;
+            EXPECT_NEAR(frame.T_world_camera.translation().y(), frame.timestamp == 4 ? 1 : 0, 1e-3)
+                << frame.timestamp << ": its own motion stays";
+        }
     }
+    EXPECT_NEAR(trajectory.live()[3].T_world_camera.translation().x(), 50, 1e-12) << "as it was known then";
+}
+
+TEST(Trajectory, WhatIsMeasuredForAMomentInAnotherTrackIsWhatHidTheScene) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    for (int i = 0; i <= 10; ++i) trajectory.addFrame(i / 30., from(0, at(i / 30.)));
+    beginTrack(trajectory, 11 / 30., at(50));
+    for (int i = 11; i < 20; ++i) trajectory.addFrame(i / 30., from(1, at(i % 2)));  // a hand
+    for (int i = 20; i <= 30; ++i) trajectory.addFrame(i / 30., from(0, at(i / 30.)));
+    for (const StampedPose& frame : trajectory.frames())
+        EXPECT_NEAR(frame.T_world_camera.translation().x(), frame.timestamp, 1e-3);
+}
+
+TEST(Trajectory, AMomentInAnotherTrackAtAnEndHangsAtTheLongestOne) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(50));
+    for (const double t : {0.0, 0.1}) trajectory.addFrame(t, from(0, at(t)));
+    beginTrack(trajectory, 0.2, at(0.2));
+    for (int i = 2; i < 9; ++i) trajectory.addFrame(0.1 * i, from(1, at(0.1 * (i - 2))));
+    beginTrack(trajectory, 0.9, at(-50));
+    for (const double t : {0.9, 1.0}) trajectory.addFrame(t, from(2, at(t - 0.9)));
+    const std::vector<StampedPose> frames = trajectory.frames();
+    EXPECT_NEAR(frames[1].T_world_camera.translation().x(), 0.2, 1e-3);
+    EXPECT_NEAR(frames[0].T_world_camera.translation().x(), 0.1, 1e-3) << "its own motion stays";
+    EXPECT_NEAR(frames[9].T_world_camera.translation().x(), 0.8, 1e-3);
+    EXPECT_NEAR(frames[10].T_world_camera.translation().x(), 0.9, 1e-3);
+    trajectory.addFrame(2.5, from(2, at(1.6)));
+    EXPECT_NEAR(trajectory.frames()[9].T_world_camera.translation().x(), -50, 1e-3)
+        << "a longer one stays where the map has its edges";
 }
 
 TEST(Trajectory, MotionIsKnownBetweenAllFramesOfATrack) {

@@ -19,8 +19,7 @@ constexpr double kFirstVelocity = 2;                        // m/s, rad/s: one s
 constexpr double kUsualNoise = 0.1;                         // m^2/s^3, rad^2/s^3: where to begin
 constexpr double kFineStep = 1.75;                          // factor to which it is learned
 constexpr double kLeastNoise = 1e-7, kMostNoise = 1e3, kLeastJitter = 1e-3;
-constexpr double kLongestGap = 1;  // s; across more, a velocity tells nothing
-constexpr int kRounds = 3;         // of learning how heavy the tails are
+constexpr int kRounds = 3;  // of learning how heavy the tails are
 
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 using Matrix12d = Eigen::Matrix<double, 12, 12>;

@@ -5,6 +5,8 @@
 
 namespace roevo {
 
+constexpr double kLongestGap = 1;  ///< s; across more, a velocity tells nothing
+
 /// A camera at some time: its pose as it was measured, or not at all.
 struct MotionSample {
     double timestamp = 0;

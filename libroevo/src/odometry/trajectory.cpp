@@ -2,8 +2,10 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -298,29 +300,81 @@ bool Trajectory::isKeyframe(const Frame& frame) const {
            (next < keyframes_.size() && keyframes_[next].timestamp == frame.timestamp);
 }
 
+bool Trajectory::isMeasured(std::size_t frame, int track) const {
+    return frames_[frame].measured && beginOfTrack(frames_[frame].pose.keyframe) == track;
+}
+
+/// Smooths or bridges poses, from the first to the last frame of a track that was measured.
+void Trajectory::bridge(int track, const std::vector<std::size_t>& indices, bool smooth,
+                        std::vector<StampedPose>& poses) const {
+    const auto measured = [&](std::size_t k) { return isMeasured(k, track); };
+    const auto begin = std::find_if(indices.begin(), indices.end(), measured);
+    const auto end = std::find_if(indices.rbegin(), indices.rend(), measured).base();
+    std::vector<MotionSample> samples;
+    for (auto k = begin; k < end; ++k) {
+        const Frame& frame = frames_[*k];
+        // A keyframe is where the map has it
+        const Matrix6d covariance = isKeyframe(frame) ? Matrix6d::Zero() : frame.pose.uncertainty.own();
+        samples.push_back({frame.timestamp, poses[*k].T_world_camera, covariance, measured(*k)});
+    }
+    (smooth ? smoothMotion : bridgeMotion)(samples);
+    for (std::size_t k = 0; k < samples.size(); ++k)
+        poses[*(begin + static_cast<std::ptrdiff_t>(k))].T_world_camera = samples[k].T_world_camera;
+}
+
+/// Where other tracks were begun was a guess. The longest track knows where the camera was before and after.
+void Trajectory::fitToTrack(int longest, bool smooth, std::vector<StampedPose>& poses) const {
+    std::vector<std::size_t> all(frames_.size()), known, others;
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    const auto isKnown = [&](std::size_t k) { return isMeasured(k, longest); };
+    std::copy_if(all.begin(), all.end(), std::back_inserter(known), isKnown);
+    std::vector<StampedPose> bridged = poses;
+    bridge(longest, all, smooth, bridged);
+    const auto inverse = [&](std::size_t k) { return poses[k].T_world_camera.inverse(); };
+    for (std::size_t i = 0; i <= known.size(); ++i) {  // what is before this one, and after the one before
+        const bool has_before = i > 0, has_after = i < known.size();
+        const std::size_t begin = has_before ? known[i - 1] + 1 : 0, end = has_after ? known[i] : all.size();
+        others.clear();
+        for (std::size_t k = begin; k < end; ++k)
+            if (frames_[k].measured) others.push_back(k);
+        if (others.empty()) continue;
+        const std::size_t first = others.front(), last = others.back();
+        const double seconds =
+            poses[end - (has_after ? 0 : 1)].timestamp - poses[begin - (has_before ? 1 : 0)].timestamp;
+        const bool is_short = seconds <= kLongestGap;
+        if (has_before && has_after) {
+            // In a short piece another track saw what hid the scene; a long one knows how the camera moved
+            const Pose from_first = bridged[first].T_world_camera * inverse(first);
+            const Pose from_last = bridged[last].T_world_camera * inverse(last);
+            for (std::size_t k = begin; k < end; ++k) {
+                const bool bent = !is_short && frames_[k].measured;
+                const double share = first < last ? (poses[k].timestamp - poses[first].timestamp) /
+                                                        (poses[last].timestamp - poses[first].timestamp)
+                                                  : 0;
+                Pose& pose = poses[k].T_world_camera;
+                pose = bent ? interpolate(from_first * pose, from_last * pose, share)
+                            : bridged[k].T_world_camera;
+            }
+        } else if (is_short) {
+            const Pose moved = has_after ? poses[end].T_world_camera * inverse(last)
+                                         : poses[begin - 1].T_world_camera * inverse(first);
+            for (std::size_t k = begin; k < end; ++k)
+                poses[k].T_world_camera = moved * poses[k].T_world_camera;
+        }
+    }
+}
+
 std::vector<StampedPose> Trajectory::frames(bool smooth) const {
     std::vector<StampedPose> poses;
     for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame)});
-    // Of each track those from the first that was measured to the last; another track may be in between
     std::map<int, std::vector<std::size_t>> of_tracks;
     for (std::size_t k = 0; k < frames_.size(); ++k)
         of_tracks[beginOfTrack(frames_[k].pose.keyframe)].push_back(k);
-    std::vector<MotionSample> samples;
-    for (auto& [track, indices] : of_tracks) {
-        const auto measured = [&](std::size_t k) { return frames_[k].measured; };
-        const auto begin = std::find_if(indices.begin(), indices.end(), measured);
-        const auto end = std::find_if(indices.rbegin(), indices.rend(), measured).base();
-        samples.clear();
-        for (auto k = begin; k < end; ++k) {
-            const Frame& frame = frames_[*k];
-            // A keyframe is where the map has it
-            const Matrix6d covariance = isKeyframe(frame) ? Matrix6d::Zero() : frame.pose.uncertainty.own();
-            samples.push_back({frame.timestamp, poses[*k].T_world_camera, covariance, frame.measured});
-        }
-        (smooth ? smoothMotion : bridgeMotion)(samples);
-        for (std::size_t k = 0; k < samples.size(); ++k)
-            poses[*(begin + static_cast<std::ptrdiff_t>(k))].T_world_camera = samples[k].T_world_camera;
-    }
+    for (const auto& [track, indices] : of_tracks) bridge(track, indices, smooth, poses);
+    const auto longest =
+        std::max_element(of_tracks.begin(), of_tracks.end(),
+                         [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+    if (of_tracks.size() > 1) fitToTrack(longest->first, smooth, poses);
     return poses;
 }
 

@@ -100,6 +100,10 @@ class Trajectory {
     void takePosterior(const WindowPosterior& posterior, int keyframe);
     Pose finalPose(const Frame& frame) const;
     bool isKeyframe(const Frame& frame) const;
+    bool isMeasured(std::size_t frame, int track) const;
+    void bridge(int track, const std::vector<std::size_t>& indices, bool smooth,
+                std::vector<StampedPose>& poses) const;
+    void fitToTrack(int longest, bool smooth, std::vector<StampedPose>& poses) const;
     std::vector<PoseConstraint> constraintsOf(int track) const;
 
     int held_ = 0;  ///< so many keyframes do not move
