@@ -73,6 +73,18 @@ TEST_F(BundleAdjustment, StepsOfManyKeyframesSolveTheEquationsSparseOrNot) {
     }
 }
 
+// Not all of a point's pairs of keyframes make the Hessian then.
+TEST_F(BundleAdjustment, ManyKeyframesOfOneRoomConvergeAsFewDo) {
+    std::vector<TestKeyframe> made;
+    for (int k = 0; k < 80; ++k) made.push_back(makeKeyframe(k, placeOnPath(k % 6), room(), seeAll(room())));
+    look(std::move(made));
+    drift();
+    ASSERT_GT(positionError(window_), 1e-3);
+    fuseAndRefine(2, 5);
+    EXPECT_LT(positionError(window_), 2e-4);
+    EXPECT_LT(rotationError(window_), 1e-4);
+}
+
 // Far points of a sensor that is trusted nearby only: weights underflow.
 TEST_F(BundleAdjustment, PointsWithoutAnyWeightTellNothing) {
     std::vector<TestKeyframe> made = made_;

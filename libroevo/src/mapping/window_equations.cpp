@@ -24,6 +24,8 @@ constexpr double kMostlyFilled = 0.25;  ///< of the blocks: sparse equations tak
 /// Damping of a point's step along its edge, relative to the information across it: normals and slopes differ
 /// by noise, and points that follow them slide. 1 and 0.001 are about as good.
 constexpr double kDampingAlong = 0.1;
+/// Of points that more keyframes see only some make the Hessian, and count for all: the work is the square.
+constexpr std::size_t kManyViews = 32;
 constexpr double kDamping = 1e-6;  ///< the same in all directions, for those in which nothing is known
 
 }  // namespace
@@ -151,7 +153,9 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
             ++inliers[slot];
             ++count;
         }
-        if (count >= 2) addPoint(at(points, points_[p]), p % stride == 0);
+        const std::size_t every = std::max(stride, 1 + touched_.size() / kManyViews);
+        const auto counts_for = static_cast<double>(every) / static_cast<double>(stride);
+        if (count >= 2) addPoint(at(points, points_[p]), p % every == 0 ? counts_for : 0);
         for (const std::int32_t slot : touched_) at(point_blocks_, slot).used = false;
         const bool last_of_edge = p + 1 == points_.size() || edge_of_[p + 1] != edge_of_[p];
         if (anchor_ >= 1 && last_of_edge) addPulls(edge_of_[p]);
@@ -241,7 +245,7 @@ bool WindowEquations::addObservation(const LineObservation& seen, const Residual
     return true;
 }
 
-void WindowEquations::addPoint(Eigen::Vector3d& point, bool to_hessian) {
+void WindowEquations::addPoint(Eigen::Vector3d& point, double hessian_weight) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d point_gradient = Eigen::Vector3d::Zero();
     for (const std::int32_t slot : touched_) {
@@ -264,7 +268,7 @@ void WindowEquations::addPoint(Eigen::Vector3d& point, bool to_hessian) {
         gradients_[s] -= pull;
         if (anchor_ >= 1) edge_gradients_[s] -= pull;  // else nobody asks
     }
-    if (to_hessian) addToHessian(point, inverse);
+    if (hessian_weight > 0) addToHessian(point, inverse, hessian_weight);
 }
 
 void WindowEquations::addPulls(std::int32_t edge) {
@@ -275,17 +279,18 @@ void WindowEquations::addPulls(std::int32_t edge) {
     }
 }
 
-void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse) {
+void WindowEquations::addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse,
+                                   double weight) {
     std::sort(touched_.begin(), touched_.end());
     const Eigen::Matrix3d P = skew(point - origin_);
     hessian_rows_.clear();
     for (const std::int32_t slot : touched_) {
         if (!isInHessian(slot)) continue;
-        const Eigen::Matrix3d& information = at(point_blocks_, slot).information;
+        const Eigen::Matrix3d information = weight * at(point_blocks_, slot).information;
         Coupling& coupling = couplings_[hessian_rows_.size()];
         coupling.topRows<3>() = information;
         coupling.bottomRows<3>().noalias() = P * information;
-        throughs_[hessian_rows_.size()].noalias() = coupling * inverse;
+        throughs_[hessian_rows_.size()].noalias() = coupling * (inverse / weight);
         hessian_rows_.push_back(blockRow(slot));
         Matrix6d& diagonal = blocks_[blockOf(slot, slot)];
         diagonal.leftCols<3>() += coupling;

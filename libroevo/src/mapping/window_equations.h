@@ -95,8 +95,8 @@ class WindowEquations {
 
     double spread(std::int32_t slot, double least_scale);
     bool addObservation(const LineObservation& seen, const Residual& residual, const Eigen::Matrix3d& R);
-    void addPoint(Eigen::Vector3d& point, bool to_hessian);
-    void addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse);
+    void addPoint(Eigen::Vector3d& point, double hessian_weight);
+    void addToHessian(const Eigen::Vector3d& point, const Eigen::Matrix3d& inverse, double weight);
     void addPulls(std::int32_t edge);
     template <class Take>
     void eachBlock(const Take& take) const;
