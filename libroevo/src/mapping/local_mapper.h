@@ -16,8 +16,8 @@
 namespace roevo {
 
 /// Keyframes of a long track that are refined together at its end. In a room that they see again and again
-/// their equations are dense: 370 took 11 s.
-constexpr std::size_t kMostTogether = 500;
+/// their equations are dense, and take the cube of their number.
+constexpr std::size_t kMostTogether = 200;
 
 /// What mapping found when a keyframe was inserted.
 struct MapUpdate {
