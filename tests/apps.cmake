@@ -54,6 +54,7 @@ roevo_test(test_compare
   SOURCES apps/test_method_run.cpp apps/test_rows.cpp apps/test_process.cpp apps/test_supervised_run.cpp
           apps/test_compare_sequences.cpp apps/test_compare_program.cpp apps/test_compare_terminal.cpp
           apps/test_compare_ba_first.cpp apps/test_compare_trajectories.cpp apps/test_compare_browser.cpp
+          apps/test_compare_mixed.cpp
   LIBS roevo_compare roevo_programs roevo_test_support nlohmann_json::nlohmann_json SUITES)
 add_dependencies(test_compare roevo-compare roevo-odometry roevo-render rgbd2rawlog rawlog-simulate)
 

@@ -192,10 +192,8 @@ ComparisonReport compare(const CompareSettings& settings) {
             for (const MethodInfo& method : settings.methods) {
                 if (!sequences[s].failure.empty()) continue;
                 SequenceComparison row = makeRun(settings, settings.sequences[s], method);
-                if (row.runs[0].ok()) {  // as a report of rows finds them, to the last digit
-                    sequences[s].part = row.part;
+                if (row.runs[0].ok())  // as a report of rows finds them, to the last digit
                     sequences[s].reference = row.reference;
-                }
                 sequences[s].runs.push_back(std::move(row.runs[0]));
                 sequences[s].run_folders.push_back(row.run_folders[0]);
             }

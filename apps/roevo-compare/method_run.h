@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct StageStatistics {
 struct MethodRun {
     std::string method, label, note;
     std::string input;    ///< as given on the command line
+    std::string part;     ///< what of the recording was run: "frames 10 to 24"; empty: all of it
+    std::string config;   ///< every option in force, as in config_used.ini, where it is at hand
     std::string skipped;  ///< why the method was not run at all (a library lacks it); empty when it was
     std::string failure;  ///< why there is no (whole) result: what it threw, the signal that ended it, a NaN
     std::size_t frames = 0, tracked = 0, rejected = 0;  ///< rejected: unreadable, no method can use them
@@ -36,6 +39,8 @@ struct MethodRun {
     std::string key;                    ///< by which roevo-batch tells what it was made of; else empty
     std::string trajectory_file;  ///< with poses that another program made: no times are known; else empty
     std::size_t poses = 0;        ///< of the trajectory, where it is known but not at hand
+    /// Of its part, where there is a ground truth that may not be at hand.
+    std::optional<double> ground_truth_length_m;
 
     bool ok() const { return skipped.empty() && failure.empty(); }
 };

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr char kRunFile[] = "run.json", kTrajectoryFile[] = "trajectory.txt",
-               kTruthFile[] = "groundtruth.txt";
+               kTruthFile[] = "groundtruth.txt", kConfigFile[] = "config_used.ini";
 
 std::string inFolder(const std::string& folder, const char* name) {
     return (fs::path(folder) / name).string();
@@ -149,13 +149,13 @@ EvaluatedRun toErrors(const Json& json) {
 }
 
 Json toJson(const SequenceComparison& sequence) {
+    const MethodRun& run = sequence.runs.at(0);
     Json json{{"name", sequence.name},
-              {"part", sequence.part},
+              {"part", run.part},
               {"notes", sequence.notes},
               {"ground_truth", sequence.ground_truth},
               {"ground_truth_fault", sequence.ground_truth_fault}};
     if (!sequence.reference.empty()) {
-        const MethodRun& run = sequence.runs.at(0);
         const double length =
             pathLength(run.ok() ? coveredPart(sequence.reference, run.trajectory) : sequence.reference);
         json["ground_truth_length_m"] = finite(length, "the ground truth's length");
@@ -169,31 +169,30 @@ SequenceComparison toRow(const Json& json) {
     const Json& facts = json.at("sequence");
     SequenceComparison row;
     facts.at("name").get_to(row.name);
-    row.part = facts.value("part", "");
     row.notes = facts.value("notes", std::vector<std::string>());
     row.ground_truth = facts.value("ground_truth", "");
     row.ground_truth_fault = facts.value("ground_truth_fault", "");
-    if (facts.contains("ground_truth_length_m"))
-        row.ground_truth_length_m = facts["ground_truth_length_m"].get<double>();
     if (facts.contains("paper_ate_cm")) row.paper_ate_cm = facts["paper_ate_cm"].get<double>();
-    row.runs.push_back(toRun(json));
-    row.input = row.runs[0].input;
-    row.errors.push_back(row.runs[0].ok() ? toErrors(json.at("errors"))
-                                          : EvaluatedRun{{}, row.runs[0].failure, {}});
+    MethodRun run = toRun(json);
+    run.part = facts.value("part", "");
+    if (facts.contains("ground_truth_length_m"))
+        run.ground_truth_length_m = facts["ground_truth_length_m"].get<double>();
+    row.input = run.input;
+    row.errors.push_back(run.ok() ? toErrors(json.at("errors")) : EvaluatedRun{{}, run.failure, {}});
+    row.runs.push_back(std::move(run));
     return row;
 }
 
-// Trajectory and ground truth of a row, from its folder.
-void load(SequenceComparison& row, const std::string& folder) {
-    MethodRun& run = row.runs[0];
-    if (!run.ok()) return;
+// The trajectory of a run, from its folder. @return the ground truth, if it has one
+std::vector<StampedPose> load(MethodRun& run, const std::string& folder) {
+    if (!run.ok()) return {};
     run.trajectory = readTumTrajectory(inFolder(folder, kTrajectoryFile));
     if (run.trajectory.size() != run.poses)
         throw std::runtime_error(std::string(kTrajectoryFile) + " has " +
                                  std::to_string(run.trajectory.size()) + " poses instead of " +
                                  std::to_string(run.poses));
-    if (row.ground_truth_length_m) row.reference = readTumTrajectory(inFolder(folder, kTruthFile));
-    row.errors.clear();
+    if (!run.ground_truth_length_m) return {};
+    return readTumTrajectory(inFolder(folder, kTruthFile));
 }
 
 bool sceneIsMissing(const MethodRun& run, const std::string& folder) {
@@ -254,7 +253,12 @@ class RowCollector {
                                             }) -
                            sequence.runs.begin();
         MethodRun run = std::move(row.runs[0]);
+        const fs::path folder = fs::path(file).parent_path();
         nameAsKnown(run);
+        if (fs::path(file).filename() == kRunFile) {  // others are in folders of their own kind
+            std::ifstream config(folder / kConfigFile);
+            run.config.assign(std::istreambuf_iterator<char>(config), {});
+        }
         const EvaluatedRun errors = std::move(row.errors[0]);
         // What failed may not know its recording
         if (is_first || (sequence.ground_truth.empty() && run.ok())) {
@@ -265,8 +269,7 @@ class RowCollector {
         }
         sequence.runs.insert(sequence.runs.begin() + place, std::move(run));
         sequence.errors.insert(sequence.errors.begin() + place, errors);
-        sequence.run_folders.insert(sequence.run_folders.begin() + place,
-                                    fs::path(file).parent_path().string());
+        sequence.run_folders.insert(sequence.run_folders.begin() + place, folder.string());
     }
 
     // What has left no row of its own does not say how it is called.
@@ -318,7 +321,8 @@ SequenceComparison readRow(const std::string& folder) {
     if (!in) throw std::runtime_error("there is no whole run in " + folder + ": no " + kRunFile);
     try {
         SequenceComparison row = toRow(Json::parse(in));
-        load(row, folder);
+        row.reference = load(row.runs[0], folder);
+        row.errors.clear();
         if (sceneIsMissing(row.runs[0], folder)) throw std::runtime_error(row.runs[0].scene + " is missing");
         row.run_folders = {folder};
         return row;
@@ -330,14 +334,10 @@ SequenceComparison readRow(const std::string& folder) {
 void loadTrajectories(SequenceComparison& sequence) {
     for (std::size_t i = 0; i < sequence.runs.size(); ++i) {
         MethodRun& run = sequence.runs[i];
-        SequenceComparison row;
-        row.ground_truth_length_m = sequence.ground_truth_length_m;
-        row.runs = {run};
         try {
-            load(row, sequence.run_folders[i]);
-            run = std::move(row.runs[0]);
+            auto reference = load(run, sequence.run_folders[i]);
             if (sceneIsMissing(run, sequence.run_folders[i])) run.scene.clear();  // maps may be thrown away
-            if (sequence.reference.empty()) sequence.reference = std::move(row.reference);
+            if (sequence.reference.empty()) sequence.reference = std::move(reference);
         } catch (const std::exception& e) {
             run.failure = "its files are not whole: " + firstLine(e.what());
         }

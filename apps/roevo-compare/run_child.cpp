@@ -41,22 +41,23 @@ MethodRun runGiven(const ChildSettings& settings, const SequenceComparison& sequ
     return run;
 }
 
-MethodRun makeRun(const ChildSettings& settings, const SequenceComparison& sequence,
+MethodRun makeRun(const ChildSettings& settings, const SequenceComparison& sequence, FrameSource& source,
                   const RunProgress& progress) {
     const std::string name = settings.method.substr(0, settings.method.find(kVariantMark));
-    const auto source = openSource(settings.sequence.input, settings.sequence.choice);
-    skipFrames(*source, settings.sequence.skip, settings.sequence.input);
-    if (!settings.trajectory.empty()) return runGiven(settings, sequence, *source, progress);
-    const auto method = makeMethod(name, source->camera(), settings.options);
-    return runMethod(*method, {}, *source, settings.sequence.first, settings.folder, progress);
+    skipFrames(source, settings.sequence.skip, settings.sequence.input);
+    if (!settings.trajectory.empty()) return runGiven(settings, sequence, source, progress);
+    const auto method = makeMethod(name, source.camera(), settings.options);
+    return runMethod(*method, {}, source, settings.sequence.first, settings.folder, progress);
 }
 
-void keepFailure(const ChildSettings& settings, SequenceComparison row, const std::string& reason) {
+void keepFailure(const ChildSettings& settings, SequenceComparison row, const std::string& part,
+                 const std::string& reason) {
     row.name = settings.sequence.name;
     row.runs.resize(1);
     row.runs[0] = MethodRun();
     row.runs[0].method = settings.method;
     row.runs[0].failure = reason;
+    row.runs[0].part = part;
     try {
         writeRow(settings.folder, row);
     } catch (const std::exception&) {  // the reason is told all the same, as this process's last words
@@ -74,6 +75,7 @@ std::string outOfMemory(const ChildSettings& settings) {
 
 void runChild(const ChildSettings& settings) {
     SequenceComparison row;
+    std::string part;
     try {
         cv::setNumThreads(1);  // before memory is limited: TBB waits forever where it gets none
         limitMemory(settings.memory_mb);
@@ -81,17 +83,20 @@ void runChild(const ChildSettings& settings) {
         if (!row.failure.empty()) throw std::runtime_error(row.failure);
         const ProgressFile file(settings.folder);
         const auto tell = [&](std::size_t frames, double share) { file.write({frames, share}); };
-        row.runs = {makeRun(settings, row, tell)};
+        const auto source = openSource(settings.sequence.input, settings.sequence.choice);
+        part = partOf(settings.sequence, source->size());
+        row.runs = {makeRun(settings, row, *source, tell)};
         MethodRun& run = row.runs[0];
         run.method = settings.method;
         run.poses = run.trajectory.size();
         // A rawlog does not tell its length before its end
         if (run.frames < settings.sequence.first)
-            row.part = partOf(settings.sequence, settings.sequence.skip + run.frames);
+            part = partOf(settings.sequence, settings.sequence.skip + run.frames);
+        run.part = part;
         writeRow(settings.folder, row);
     } catch (const std::exception& e) {
         const std::string reason = isOutOfMemory(e) ? outOfMemory(settings) : describe(e);
-        keepFailure(settings, row, reason);
+        keepFailure(settings, row, part, reason);
         throw;
     }
 }

@@ -97,7 +97,6 @@ SequenceComparison openSequence(const SequenceInput& sequence) {
     if (!sequence.choice.ground_truth.empty()) readTrajectory(sequence.choice.ground_truth);
     try {
         const auto source = openSource(sequence.input, sequence.choice);
-        out.part = partOf(sequence, source->size());
         for (const std::string& note : source->notes())  // of the ground truth setGroundTruth() tells
             if (note.rfind("ground truth:", 0) != 0) out.notes.push_back(note);
         setGroundTruth(out, *source);

@@ -92,10 +92,13 @@ std::string terminalTable(const std::vector<SequenceComparison>& sequences) {
             continue;
         }
         text += sequence.runs.empty() ? " not run\n" : runLines(results, width);
-        if (!sequence.part.empty()) text += "  only " + sequence.part + " of the recording\n";
+        if (const std::string part = commonPart(sequence); !part.empty())
+            text += "  only " + part + " of the recording\n";
         for (const std::string& note : sequence.notes) text += "  " + note + "\n";
     }
-    return text + (text.find(kBest) == std::string::npos ? "" : "\n* the best, as in the report\n");
+    if (text.find(kBest) != std::string::npos) text += "\n* the best, as in the report\n";
+    if (const auto remark = optionsRemark(all)) text += "\n" + *remark + "\n";
+    return text;
 }
 
 }  // namespace roevo

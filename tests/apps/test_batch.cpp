@@ -140,7 +140,7 @@ TEST_F(Batch, ListsOfSequences) {
     EXPECT_EQ(second.runs[0].frames, 3u);
     EXPECT_FALSE(second.paper_ate_cm) << "it is of both parts together";
     EXPECT_EQ(second.notes.at(0), "a wall");
-    EXPECT_EQ(second.part, "frames 5 to 7");
+    EXPECT_EQ(second.runs[0].part, "frames 5 to 7");
 
     for (const auto& [text, word] :
          {std::pair<std::string, std::string>("[", "no list"),

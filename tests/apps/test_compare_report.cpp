@@ -175,8 +175,7 @@ TEST(CompareReport, LinksRunsRelatively) {
 TEST(CompareReport, NotesAndWarningsAreThereOnce) {
     auto sequence = makeSequence("s", {makeRun("roevo-tr", 0.01), makeRun("b", 0.02), makeRun("c", 0.02)});
     sequence.notes = {"2 images had no partner", "the list says so"};
-    sequence.part = "frames 3 to 6";
-    for (MethodRun& run : sequence.runs) run.warnings = {"the file ends early"};
+    for (MethodRun& run : sequence.runs) run.warnings = {"the file ends early"}, run.part = "frames 3 to 6";
     sequence.runs[1].warnings.push_back("no scene: disk full");
     auto info = makeInfo();
     info.notes = {"the machine was busy"};

@@ -255,7 +255,7 @@ TEST(CompareTable, SaysOfWhichFramesThePapersFiguresAre) {
     auto whole = makeSequence("whole", {makeRun("a", 0.01)}),
          part = makeSequence("part", {makeRun("a", 0.01)});
     whole.paper_ate_cm = 1.5;
-    part.part = "frames 10 to 24";
+    part.runs[0].part = "frames 10 to 24";
     const std::string words = "The paper's figures are by its own protocol, of whole sequences";
     EXPECT_TRUE(contains(WrittenComparison({whole, part}).md, words + ".")) << "the part has none";
     part.paper_ate_cm = 2.5;

@@ -43,9 +43,8 @@ TEST(TerminalTable, MarksTheBestAsTheReportDoes) {
 
 TEST(TerminalTable, SaysWhatIsOddOnce) {
     auto sequence = makeSequence("s", {makeRun("a", 0.01), makeRun("b", 0.01)});
-    for (MethodRun& run : sequence.runs) run.warnings = {"the file ends early"};
+    for (MethodRun& run : sequence.runs) run.warnings = {"the file ends early"}, run.part = "frames 2 to 5";
     sequence.notes = {"3 images had no partner"};
-    sequence.part = "frames 2 to 5";
     const std::string text = terminalTable({sequence});
     for (const char* words : {"the file ends early", "3 images had no partner", "only frames 2 to 5"})
         EXPECT_EQ(count(text, words), 1u) << words << " in " << text;

@@ -227,7 +227,7 @@ TEST_F(ManyRows, StateTheErrorsThatTheirTrajectoriesGive) {
         EXPECT_EQ(errors[0].evaluation->ate.translation.count, 4u);
         EXPECT_EQ(errors[1].fault, "it died");
     }
-    EXPECT_EQ(row.ground_truth_length_m, 6.0);
+    EXPECT_EQ(row.runs[0].ground_truth_length_m, 6.0);
 }
 
 TEST_F(ManyRows, TheGroundTruthsLengthIsOfThePartThatWasRun) {
@@ -235,7 +235,7 @@ TEST_F(ManyRows, TheGroundTruthsLengthIsOfThePartThatWasRun) {
     part.trajectory.pop_back();
     part.frames = part.tracked = 3;
     put("a", part);
-    EXPECT_EQ(read().sequences.at(0).ground_truth_length_m, 4.0);
+    EXPECT_EQ(read().sequences.at(0).runs[0].ground_truth_length_m, 4.0);
 }
 
 TEST_F(ManyRows, SeveralMayBeInOneFile) {

@@ -27,7 +27,7 @@ Errors errorsOf(const std::vector<SequenceResults>& results, const std::string& 
     for (const SequenceResults& result : results)
         if (const auto run = findRun(*result.sequence, method))
             errors[result.sequence->name] = {metricOf(shownMetrics().front(), result, *run),
-                                             result.sequence->part};
+                                             result.sequence->runs[*run].part};
     return errors;
 }
 

@@ -21,17 +21,15 @@ struct SequenceComparison {
     std::string name;     ///< of the table's row, e.g. "fr1_xyz"
     std::string input;    ///< as given
     std::string failure;  ///< why nothing could be run on it (unreadable, …); empty otherwise
-    std::string part;     ///< what of the recording was run: "frames 10 to 24"; empty: all of it
     /// What a reader must know of it, a line each: how images were paired, what was substituted or left out.
     std::vector<std::string> notes;
-    std::string ground_truth;                     ///< file or folder, empty when there is none
-    std::vector<StampedPose> reference;           ///< the ground truth's poses; may be empty
-    std::string ground_truth_fault;               ///< why there is none although one was named
-    std::optional<double> ground_truth_length_m;  ///< where it is known but the poses are not at hand
-    std::vector<MethodRun> runs;                  ///< in the order of the tables
-    std::vector<std::string> run_folders;         ///< where each is kept, for links and scenes
-    std::vector<EvaluatedRun> errors;    ///< of each run, as its row states them; empty: to be computed
-    std::optional<double> paper_ate_cm;  ///< the paper's ROEVO-TR+BA on the same frames, when it has it
+    std::string ground_truth;              ///< file or folder, empty when there is none
+    std::vector<StampedPose> reference;    ///< the ground truth's poses; may be empty
+    std::string ground_truth_fault;        ///< why there is none although one was named
+    std::vector<MethodRun> runs;           ///< in the order of the tables
+    std::vector<std::string> run_folders;  ///< where each is kept, for links and scenes
+    std::vector<EvaluatedRun> errors;      ///< of each run, as its row states them; empty: to be computed
+    std::optional<double> paper_ate_cm;    ///< the paper's ROEVO-TR+BA on the same frames, when it has it
 };
 
 /// What a reader must know to repeat it.

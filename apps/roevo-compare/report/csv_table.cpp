@@ -152,7 +152,7 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
         row.count(rank_names[k], rank ? std::optional<std::size_t>(*rank) : std::nullopt);
     }
     addCosts(row, run, stages);
-    std::optional<double> length = sequence.ground_truth_length_m;
+    std::optional<double> length = run ? run->ground_truth_length_m : std::nullopt;
     if (run && !run->trajectory.empty() && !sequence.reference.empty())
         length = pathLength(coveredPart(sequence.reference, run->trajectory));
     row.number("ground_truth_length_m", length);
@@ -161,11 +161,13 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
     row.text("ground_truth", sequence.ground_truth);
     row.text("run_folder", index && *index < sequence.run_folders.size() ? sequence.run_folders[*index] : "");
     row.text("note", run ? run->note : "");
-    row.text("sequence_part", sequence.part);
+    row.text("sequence_part", run ? run->part : "");
     row.text("sequence_note", joined(sequence.notes));
-    row.text("warning", run ? joined(warningsOf(*run, *evaluated)) : "");
+    row.text("warning", run ? joined(warningsOf(*run, *evaluated, results)) : "");
     row.text("not_pinned", run ? run->not_pinned : "");
-    row.text("protocol", errorProtocol() + " " + costProtocol(!run || run->not_pinned.empty()));
+    Conditions conditions = conditionsOf({results});
+    conditions.pinned = !run || run->not_pinned.empty();
+    row.text("protocol", errorProtocol(conditions) + " " + costProtocol(conditions));
     return row;
 }
 

@@ -8,6 +8,7 @@
 #include "programs/text.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/remarks.h"
 
 namespace roevo {
 namespace {
@@ -60,11 +61,12 @@ const TableMethod& leadingMethod(const std::vector<TableMethod>& methods) {
 
 Table distributionTable(const std::vector<SequenceResults>& results,
                         const std::vector<TableMethod>& methods) {
+    const Conditions conditions = conditionsOf(results);
     Table table{"Over all recordings",
                 "Method",
                 {"Runs", "Without result"},
                 {},
-                errorProtocol() + " " + costProtocol(allPinned(results))};
+                errorProtocol(conditions) + " " + costProtocol(conditions)};
     for (const Column& column : kColumns) table.columns.push_back(column.head);
     for (const TableMethod& method : methods) {
         Table::Row row{method.label, isOurs(method.name), false, {}, {}};

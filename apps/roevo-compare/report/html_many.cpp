@@ -22,9 +22,10 @@ std::vector<std::string> countedRemarks(const std::vector<SequenceResults>& resu
     for (const SequenceResults& result : results) {
         const auto oddities = odditiesOf(result);
         if (!oddities.empty() && odd++ == 0) first_odd = result.sequence->name, first_oddity = oddities[0];
-        parts += !result.sequence->part.empty();
+        parts += !commonPart(*result.sequence).empty();
     }
     std::vector<std::string> sentences;
+    if (const auto remark = optionsRemark(results)) sentences.push_back(*remark);
     if (odd > 0)
         sentences.push_back(counted(odd, "recording") + " with something odd (table.csv: warning), e.g. " +
                             first_odd + ": " + first_oddity);
@@ -153,7 +154,7 @@ std::string htmlReportOfMany(const std::vector<SequenceResults>& results, const 
     const std::string sections = changesSection(results, baseline) + distributions(results, legend, files) +
                                  failures(results) + worst(results, legend, folder) +
                                  rankingOfMany(results, legend) + methodList(legend) +
-                                 protocolSection(allPinned(results)) + repeating(info);
+                                 protocolSection(conditionsOf(results)) + repeating(info);
     return pageHead() + header(results, legend, info, sections) + "<main>\n" + sections +
            "</main>\n</body>\n</html>\n";
 }

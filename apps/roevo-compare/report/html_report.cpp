@@ -92,8 +92,8 @@ std::string htmlReport(const std::vector<SequenceResults>& results, const Compar
     std::string html = pageHead() + header(results, legend, info);
     if (!writer.plotFault().empty()) html += remark("No plots: " + writer.plotFault());
     return html + "<main>\n" + summary(results, legend, folder) + changesSection(results, baseline) +
-           sequences + ranking(results, legend) + methodList(legend) + protocolSection(allPinned(results)) +
-           repeating(info) + "</main>\n</body>\n</html>\n";
+           sequences + ranking(results, legend) + methodList(legend) +
+           protocolSection(conditionsOf(results)) + repeating(info) + "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace roevo

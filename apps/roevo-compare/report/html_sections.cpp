@@ -3,7 +3,6 @@
 #include "programs/text.h"
 #include "roevo-compare/report/baseline.h"
 #include "roevo-compare/report/html_parts.h"
-#include "roevo-compare/report/protocol.h"
 
 namespace roevo {
 namespace {
@@ -31,9 +30,9 @@ std::string methodList(const Legend& legend) {
     return html + "</dl>\n</section>\n";
 }
 
-std::string protocolSection(bool pinned) {
+std::string protocolSection(const Conditions& conditions) {
     std::string html = "<section id=\"Protocol\">\n<h2>Protocol</h2>\n<ul class=\"lines\">\n";
-    for (const std::string& line : protocolLines(pinned)) html += element("li", line) + "\n";
+    for (const std::string& line : protocolLines(conditions)) html += element("li", line) + "\n";
     return html + "</ul>\n</section>\n";
 }
 

@@ -4,6 +4,7 @@
 
 #include "roevo-compare/report/documents.h"
 #include "roevo-compare/report/html_parts.h"
+#include "roevo-compare/report/protocol.h"
 
 namespace roevo {
 
@@ -14,7 +15,7 @@ std::string pageHead(const std::string& title = "Comparison of RGB-D odometries"
 std::string remark(const std::string& text);
 
 std::string methodList(const Legend& legend);
-std::string protocolSection(bool pinned);
+std::string protocolSection(const Conditions& conditions);
 std::string repeating(const ComparisonInfo& info);
 
 /// What became better or worse since an earlier comparison; nothing without one.

@@ -11,6 +11,7 @@
 #include "programs/text.h"
 #include "roevo-compare/report/html_parts.h"
 #include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/remarks.h"
 #include "roevo-compare/report/scene_picture.h"
 
 namespace roevo {
@@ -27,7 +28,8 @@ std::string facts(const SequenceComparison& sequence) {
     if (frames > 0)
         parts.push_back(counted(frames, "frame") +
                         (rejected > 0 ? ", " + std::to_string(rejected) + " of them unusable" : ""));
-    if (!sequence.part.empty()) parts.push_back("only " + sequence.part + " of the recording");
+    if (const std::string part = commonPart(sequence); !part.empty())
+        parts.push_back("only " + part + " of the recording");
     double duration = 0;
     for (const MethodRun& run : sequence.runs)
         if (!run.trajectory.empty())

@@ -108,7 +108,7 @@ std::string markdownTables(const std::vector<SequenceResults>& results, const Co
     for (const TableMethod& method : methods)
         text += "- **" + markdownText(method.label) + "**: " + markdownText(method.note) + "\n";
     text += (results.size() > kManySequences ? "" : recordings(results)) + "\n## Protocol\n\n";
-    for (const std::string& line : protocolLines(allPinned(results))) text += "- " + line + "\n";
+    for (const std::string& line : protocolLines(conditionsOf(results))) text += "- " + line + "\n";
     for (const std::string& note : info.notes) text += "- " + markdownText(note) + "\n";
     text += "\n## Repeating it\n\n" + code(info.command) + "\n- Date: " + markdownText(info.date) +
             "\n- Machine: " + markdownText(info.machine) + "\n";

@@ -4,6 +4,10 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
+#include <utility>
+
+#include "roevo-compare/report/ranking.h"
 
 namespace roevo {
 namespace {
@@ -26,15 +30,6 @@ std::optional<std::string> truthRemark(const SequenceResults& results) {
     if (const auto fault = commonFault(results))
         return "no run could be compared with its ground truth: " + *fault;
     return std::nullopt;
-}
-
-std::optional<std::string> framesRemark(const SequenceComparison& sequence) {
-    std::set<std::size_t> counts;
-    for (const MethodRun& run : sequence.runs)
-        if (run.ok()) counts.insert(run.frames - std::min(run.rejected, run.frames));
-    if (counts.size() < 2) return std::nullopt;
-    return "the methods were given " + std::to_string(*counts.begin()) + " to " +
-           std::to_string(*counts.rbegin()) + " frames, so their figures are not of the same frames";
 }
 
 // Sentences of several methods, those that mean the same put together.
@@ -63,12 +58,89 @@ class Gathered {
     std::map<std::string, std::vector<std::string>> labels_;
 };
 
+std::optional<std::string> framesRemark(const SequenceComparison& sequence) {
+    std::set<std::size_t> counts;
+    Gathered parts;
+    for (const MethodRun& run : sequence.runs)
+        if (run.ok()) {
+            counts.insert(run.frames - std::min(run.rejected, run.frames));
+            parts.add(run.part, run.part.empty() ? "all frames" : run.part, labelOf(run));
+        }
+    const auto sentences = parts.sentences(sequence.runs.size());
+    if (sentences.size() > 1) {
+        std::string text;
+        for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+        return text + ": figures are not of the same frames";
+    }
+    if (counts.size() < 2) return std::nullopt;
+    return "the methods were given " + std::to_string(*counts.begin()) + " to " +
+           std::to_string(*counts.rbegin()) + " frames, so their figures are not of the same frames";
+}
+
+// By "section.key".
+std::map<std::string, std::string> optionsOf(const std::string& config) {
+    std::map<std::string, std::string> options;
+    std::istringstream lines(config);
+    std::string section;
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t equals = line.find(" = ");
+        if (line[0] == '[') section = line.substr(1, line.find(']') - 1) + ".";
+        if (line[0] != ';' && equals != std::string::npos)
+            options[section + line.substr(0, equals)] = line.substr(equals + 3);
+    }
+    return options;
+}
+
 }  // namespace
 
-std::vector<std::string> warningsOf(const MethodRun& run, const EvaluatedRun& evaluated) {
+std::vector<std::string> warningsOf(const MethodRun& run, const EvaluatedRun& evaluated,
+                                    const SequenceResults& results) {
     std::vector<std::string> all = run.warnings;
     if (!evaluated.scale_warning.empty()) all.push_back(evaluated.scale_warning);
+    if (const auto remark = framesRemark(*results.sequence)) all.push_back(*remark);
+    if (const auto remark = optionsRemark({results}); remark && isOurs(run.method)) all.push_back(*remark);
     return all;
+}
+
+std::optional<std::string> optionsRemark(const std::vector<SequenceResults>& results) {
+    std::map<std::string, std::set<std::string>> configs;  // by variant: those are to differ
+    for (const SequenceResults& result : results)
+        for (const MethodRun& run : result.sequence->runs)
+            if (isOurs(run.method)) {
+                const std::size_t mark = run.method.find(kVariantMark);
+                configs[mark == std::string::npos ? "" : run.method.substr(mark)].insert(run.config);
+            }
+    std::map<std::pair<std::string, std::string>, std::set<std::string>> values;  // by variant and option
+    for (const auto& [variant, texts] : configs)
+        for (const std::string& text : texts)
+            for (const auto& [option, value] : optionsOf(text)) values[{variant, option}].insert(value);
+    std::string differing;
+    for (const auto& [key, all] : values) {
+        if (all.size() < 2) continue;
+        std::string list;
+        for (const std::string& value : all) list += (list.empty() ? "" : ", ") + value;
+        differing += (differing.empty() ? "" : ", ") + key.second + key.first + " (" + list + ")";
+    }
+    if (differing.empty()) return std::nullopt;
+    return "Runs of ROEVO differ in " + differing + ": figures are not of one configuration";
+}
+
+Conditions conditionsOf(const std::vector<SequenceResults>& results) {
+    Conditions conditions;
+    for (const SequenceResults& result : results) {
+        conditions.frames = conditions.frames && !framesRemark(*result.sequence);
+        for (const MethodRun& run : result.sequence->runs)
+            conditions.pinned = conditions.pinned && run.not_pinned.empty();
+    }
+    conditions.config = !optionsRemark(results);
+    return conditions;
+}
+
+std::string commonPart(const SequenceComparison& sequence) {
+    std::set<std::string> parts;
+    for (const MethodRun& run : sequence.runs)  // what failed may not know its own
+        if (run.ok() || !run.part.empty()) parts.insert(run.part);
+    return parts.size() == 1 ? *parts.begin() : "";
 }
 
 std::vector<std::string> odditiesOf(const SequenceResults& results) {
@@ -101,9 +173,10 @@ std::vector<std::string> remarks(const std::vector<SequenceResults>& results) {
         }
         if (const auto remark = truthRemark(result)) say(*remark);
         for (const std::string& oddity : odditiesOf(result)) say(oddity);
-        if (!sequence.part.empty())
-            parts += (parts.empty() ? "" : "; ") + sequence.name + ": " + sequence.part;
+        if (const std::string part = commonPart(sequence); !part.empty())
+            parts += (parts.empty() ? "" : "; ") + sequence.name + ": " + part;
     }
+    if (const auto remark = optionsRemark(results)) sentences.push_back(*remark);
     if (!parts.empty())
         sentences.push_back("Only parts of these recordings were run (counted from 0): " + parts + ".");
     return sentences;

@@ -105,14 +105,6 @@ bool allFinite(const std::vector<StampedPose>& trajectory) {
     });
 }
 
-bool allPinned(const std::vector<SequenceResults>& results) {
-    return std::all_of(results.begin(), results.end(), [](const SequenceResults& result) {
-        const auto& runs = result.sequence->runs;
-        return std::all_of(runs.begin(), runs.end(),
-                           [](const MethodRun& run) { return run.not_pinned.empty(); });
-    });
-}
-
 std::string whyNoErrors(const SequenceComparison& sequence, const MethodRun& run,
                         const EvaluatedRun& evaluated) {
     if (evaluated.evaluation) return {};

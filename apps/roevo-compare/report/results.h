@@ -45,9 +45,6 @@ std::optional<std::size_t> findRun(const SequenceComparison& sequence, const std
 /// No pose with a number that is none.
 bool allFinite(const std::vector<StampedPose>& trajectory);
 
-/// Every run was bound to one core.
-bool allPinned(const std::vector<SequenceResults>& results);
-
 /// Why a run has no errors, in words: skipped, failed, no ground truth, …; empty when it has.
 std::string whyNoErrors(const SequenceComparison& sequence, const MethodRun& run,
                         const EvaluatedRun& evaluated);

@@ -5,6 +5,7 @@
 #include "programs/text.h"
 #include "roevo-compare/report/protocol.h"
 #include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/remarks.h"
 
 namespace roevo {
 namespace {
@@ -103,9 +104,10 @@ std::string inUnit(const Metric& metric) {
 }
 
 std::string protocolOf(const Metric& metric, const std::vector<SequenceResults>& results) {
-    return metric.is_error   ? errorProtocol()
-           : metric.is_share ? shareProtocol()
-                             : costProtocol(allPinned(results));
+    const Conditions conditions = conditionsOf(results);
+    return metric.is_error   ? errorProtocol(conditions)
+           : metric.is_share ? shareProtocol(conditions)
+                             : costProtocol(conditions);
 }
 
 void addPaperRow(Table& table, const std::vector<SequenceResults>& results) {
@@ -118,9 +120,8 @@ void addPaperRow(Table& table, const std::vector<SequenceResults>& results) {
     table.rows.push_back(row);
     table.protocol += " The paper's figures are by its own protocol, of whole sequences";
     for (const SequenceResults& result : results)
-        if (known(result) && !result.sequence->part.empty())
-            table.protocol +=
-                "; that of " + result.sequence->name + ", as ours, of its " + result.sequence->part;
+        if (const std::string part = commonPart(*result.sequence); known(result) && !part.empty())
+            table.protocol += "; that of " + result.sequence->name + ", as ours, of its " + part;
     table.protocol += ".";
 }
 
@@ -167,11 +168,12 @@ Table figureTable(const Metric& metric, const std::vector<SequenceResults>& resu
 }
 
 Table sequenceTable(const SequenceResults& results) {
+    const Conditions conditions = conditionsOf({results});
     Table table{"All figures",
                 "Method",
                 {},
                 {},
-                "Errors and times per frame. " + errorProtocol() + " " + costProtocol(allPinned({results}))};
+                "Errors and times per frame. " + errorProtocol(conditions) + " " + costProtocol(conditions)};
     for (const MethodRun& run : results.sequence->runs)
         table.rows.push_back({labelOf(run), isOurs(run.method), false, {}, {}});
     for (const Metric& metric : shownMetrics()) {
@@ -184,12 +186,9 @@ Table sequenceTable(const SequenceResults& results) {
 }
 
 Table stageTable(const SequenceResults& results) {
-    Table table{"Time per frame, median / 95th percentile [ms]",
-                "Method",
-                {"In all", "Decoding, apart", "By stage"},
-                {},
-                costProtocol(allPinned({results})),
-                true};
+    Table table{"Time per frame, median / 95th percentile [ms]", "Method",
+                {"In all", "Decoding, apart", "By stage"},       {},
+                costProtocol(conditionsOf({results})),           true};
     const auto show = [](const StageStatistics& s) {
         return shownNumber(s.median, 2) + " / " + shownNumber(s.p95, 2);
     };
@@ -213,7 +212,7 @@ Table stageTable(const SequenceResults& results) {
 }
 
 Table rankingTable(const std::vector<SequenceResults>& results, const std::vector<TableMethod>& methods) {
-    Table table{"", "Method", {}, {}, errorProtocol()};
+    Table table{"", "Method", {}, {}, errorProtocol(conditionsOf(results))};
     for (const TableMethod& method : methods)
         table.rows.push_back({method.label, isOurs(method.name), false, {}, {}});
     for (std::size_t m = 0; m < kRankedMetrics; ++m) {
