@@ -1,6 +1,7 @@
 /// Figures of a report, by the paths that gnuplot draws.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <regex>
 
 #include "programs/process.h"
@@ -180,6 +181,36 @@ TEST_F(Plots, LinesEndWhereNothingIsKnown) {
     EXPECT_EQ(piecesOf(above, 1).size(), 1u) << "the ground truth";
     EXPECT_EQ(piecesOf(above, 2).size(), 1u);
     EXPECT_EQ(piecesOf(above, 3).size(), 2u);
+}
+
+TEST_F(Plots, LongBarsEndAtTheEdgeAndAllLabelsAreBesideIt) {
+    for (const char* name : {"a", "b", "slow", "busy"}) add(name, walk());
+    sequence_.runs[2].total = {"total", 654, 765.4, 654.3};
+    sequence_.runs[3].cpu_ms_per_frame = 321.4;
+    std::vector<std::string> stages;
+    const std::string svg = stageFigure(results(), stages).svg;
+    std::map<double, double> ends;  // by row
+    const std::string bars =
+        svg.substr(svg.find("gnuplot_plot_1\""), svg.find("gnuplot_plot_2\"") - svg.find("gnuplot_plot_1\""));
+    const std::regex corner(R"(([-0-9.]+),([-0-9.]+))");
+    for (std::sregex_iterator at(bars.begin(), bars.end(), corner), end; at != end; ++at) {
+        const double row = std::stod((*at)[2]);
+        ends[row] = std::max(ends[row], std::stod((*at)[1]));
+    }
+    ASSERT_GE(ends.size(), 8u) << "upper and lower sides of four bars";
+    std::vector<double> rights;
+    for (const auto& [row, right] : ends) rights.push_back(right);
+    const double edge = rights[5];
+    EXPECT_EQ(rights[4], edge);
+    for (const std::size_t other : {0u, 2u, 6u}) {
+        EXPECT_LT(rights[other], 0.85 * edge) << "7 of 9 ms";
+        EXPECT_NEAR(rights[other], rights[0], 0.1) << "all 7 ms";
+    }
+    const std::regex label("translate\\(([0-9.]+),[^<]*<text>(<[^>]*>)*mean");
+    std::size_t labels = 0;
+    for (std::sregex_iterator at(svg.begin(), svg.end(), label), end; at != end; ++at, ++labels)
+        EXPECT_GT(std::stod((*at)[1]), edge);
+    EXPECT_EQ(labels, 4u) << svg;
 }
 
 }  // namespace

@@ -302,9 +302,9 @@ TEST(CompareReport, MarksBeyondTheEdgeOfAPlotAreWritten) {
     EXPECT_FALSE(contains(stageDrawing({makeRun("a", 0.01), twice}), "▶")) << "worth a longer axis";
     const std::string drawing =
         stageDrawing({makeRun("a", 0.01), makeRun("b", 0.01), makeRun("c", 0.01), outlier, busy, slow});
-    for (const char* label : {"mean 7.00, 95th percentile 432.1 ▶, processor 7.25",
-                              "mean 7.00, 95th percentile 9.00, processor 321.4 ▶",
-                              "mean 654.3 ▶, 95th percentile 765.4 ▶, processor 7.25"})
+    for (const char* label :
+         {"mean 7.00, 95 % 432.1 ▶, processor 7.25", "mean 7.00, 95 % 9.00, processor 321.4 ▶",
+          "mean 654.3 ▶, 95 % 765.4 ▶, processor 7.25"})
         EXPECT_TRUE(contains(drawing, label)) << label << "\n" << drawing;
 }
 

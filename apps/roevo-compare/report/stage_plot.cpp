@@ -12,9 +12,7 @@ namespace {
 constexpr int kBarHeight = 30, kBesideBars = 56;  // px
 constexpr std::size_t kLongestLabel = 42;         // characters
 constexpr double kMarginByCharacter = 0.95;       // gnuplot counts in widths of a wide one
-constexpr double kLabelPixelsByCharacter = 6.7;   // of a label, on the whole
-constexpr double kPixelsOfMargin = 8.4;           // of a character of a margin
-constexpr int kRightMargin = 15;                  // characters, for the means
+constexpr char kBeyond[] = " ▶";
 constexpr double kClipBarAt =
     5;  // times the median bar: what is longer is cut off, so that others stay legible
 constexpr double kMarksAt = 2;       // times the longest bar: marks that lie further out are cut off, too
@@ -61,23 +59,15 @@ std::string timeText(double ms) {
     return shownNumber(ms, ms < 10 ? 2 : 1);
 }
 
-// What a bar's label says. Where something lies beyond the right edge the label stands there, on what is
-// drawn of the bar, and names every figure.
-struct BarLabel {
-    std::string text;
-    bool beyond = false;
-};
-
-BarLabel labelOf(const Bar& bar, double end) {
+// What a bar's label says: every figure where one of them lies beyond the right edge.
+std::string labelOf(const Bar& bar, double end) {
     const auto isBeyond = [&](double ms) { return isTime(ms) && ms > end; };
-    const auto text = [&](double ms) { return timeText(ms) + (isBeyond(ms) ? " ▶" : ""); };
-    BarLabel label{"mean " + timeText(bar.total.mean) + " ms",
-                   isBeyond(bar.total.mean) || isBeyond(bar.total.p95) || isBeyond(bar.processor)};
-    if (!label.beyond) return label;
-    label.text = "mean " + text(bar.total.mean);
-    if (isTime(bar.total.p95)) label.text += ", 95th percentile " + text(bar.total.p95);
-    if (isTime(bar.processor)) label.text += ", processor " + text(bar.processor);
-    return label;
+    const auto text = [&](double ms) { return timeText(ms) + (isBeyond(ms) ? kBeyond : ""); };
+    const std::string mean = "mean " + text(bar.total.mean);
+    if (!isBeyond(bar.total.mean) && !isBeyond(bar.total.p95) && !isBeyond(bar.processor))
+        return mean + " ms";
+    return mean + (isTime(bar.total.p95) ? ", 95 % " + text(bar.total.p95) : "") +
+           (isTime(bar.processor) ? ", processor " + text(bar.processor) : "");
 }
 
 // Right edge of the picture: all bars and marks, but for what is so far out that it would squash the others.
@@ -95,27 +85,25 @@ double rightEdge(const std::vector<Bar>& bars) {
     return 1.03 * longest;
 }
 
-// In gnuplot's characters.
-double leftMargin(const std::vector<Bar>& bars) {
+// For the longest of the texts, in gnuplot's characters.
+std::string margin(const std::vector<std::string>& texts) {
     std::size_t longest = 0;
-    for (const Bar& bar : bars) longest = std::max(longest, countCharacters(bar.label));
-    return kMarginByCharacter * static_cast<double>(longest) + 2;
-}
-
-// Up to where a bar is drawn: one that goes on beyond the edge makes room for its label there.
-double drawnEnd(const Bar& bar, double end, double left_margin) {
-    if (bar.total.mean <= end) return end;
-    const double text =
-        kLabelPixelsByCharacter * static_cast<double>(countCharacters(labelOf(bar, end).text) + 1);
-    return end * std::max(0.1, 1 - text / (kFigureWidth - kPixelsOfMargin * (left_margin + kRightMargin)));
+    for (const std::string& text : texts) longest = std::max(longest, countCharacters(text));
+    return exactNumber(kMarginByCharacter * static_cast<double>(longest) + 2);
 }
 
 std::string axes(const std::vector<Bar>& bars, double end) {
-    std::string tics;
-    for (std::size_t i = 0; i < bars.size(); ++i)
-        tics += (i == 0 ? "" : ", ") + gnuplotText(bars[i].label) + " " + std::to_string(i);
-    return "unset key\nset lmargin " + exactNumber(leftMargin(bars)) + "\nset rmargin " +
-           std::to_string(kRightMargin) +
+    std::string tics, means;
+    std::vector<std::string> left, right;
+    for (std::size_t i = 0; i < bars.size(); ++i) {
+        const std::string row = std::to_string(i);
+        left.push_back(bars[i].label);
+        right.push_back(labelOf(bars[i], end));
+        tics += (i == 0 ? "" : ", ") + gnuplotText(left.back()) + " " + row;
+        means += "set label " + gnuplotText(right.back()) + " at graph 1, first " + row +
+                 " left offset 0.7,0 textcolor rgb '#222222'\n";
+    }
+    return means + "unset key\nset lmargin " + margin(left) + "\nset rmargin " + margin(right) +
            "\nset tmargin 0.5\nset bmargin 2.6\nset border 1\n"
            "set xlabel 'time per frame [ms]' offset 0,0.4\nset grid noytics xtics\nset ytics scale 0\n"
            "set xrange [0:" +
@@ -123,31 +111,21 @@ std::string axes(const std::vector<Bar>& bars, double end) {
            ":-0.6]\nset ytics (" + tics + ")\n";
 }
 
-// The label stands in the margin, away from the marks, or left of the edge where something lies beyond it.
-std::string labelScript(const Bar& bar, std::size_t row, double end) {
-    const BarLabel label = labelOf(bar, end);
-    return "set label " + gnuplotText(label.text) + " at graph 1, first " + std::to_string(row) +
-           (label.beyond ? " right front" : " left offset 0.7,0 front") + " textcolor rgb '#222222'\n";
-}
-
 std::string plotScript(const std::vector<Bar>& bars, double end) {
     std::vector<std::vector<double>> rectangles, ticks, processor;
-    std::string labels;
     for (std::size_t i = 0; i < bars.size(); ++i) {
         const Bar& bar = bars[i];
         const double y = static_cast<double>(i);
-        const double last = drawnEnd(bar, end, leftMargin(bars));
         double x = 0;
         for (const auto& [stage, ms] : bar.pieces) {
-            if (x < last)
-                rectangles.push_back({x, y, x, std::min(x + ms, last), y - 0.3, y + 0.3,
-                                      static_cast<double>(stageRgb(stage))});
+            if (x < end)
+                rectangles.push_back(
+                    {x, y, x, std::min(x + ms, end), y - 0.3, y + 0.3, static_cast<double>(stageRgb(stage))});
             x += ms;
         }
-        if (isTime(bar.total.p95) && bar.total.p95 <= last)
+        if (isTime(bar.total.p95) && bar.total.p95 <= end)
             ticks.push_back({bar.total.p95, y - 0.38, 0, 0.76});
-        if (isTime(bar.processor) && bar.processor <= last) processor.push_back({bar.processor, y});
-        labels += labelScript(bar, i, end);
+        if (isTime(bar.processor) && bar.processor <= end) processor.push_back({bar.processor, y});
     }
     std::string data = gnuplotData("bars", rectangles);
     std::string plot = "plot $bars using 1:2:3:4:5:6:7 with boxxyerror fc rgb variable fs solid 1 noborder";
@@ -159,7 +137,7 @@ std::string plotScript(const std::vector<Bar>& bars, double end) {
         data += gnuplotData("processor", processor);
         plot += ", $processor using 1:2 with points pt 13 ps 0.9 lc rgb '#222222'";
     }
-    return labels + data + plot + "\n";
+    return data + plot + "\n";
 }
 
 std::vector<std::pair<std::string, unsigned>> fillsOf(const std::vector<Bar>& bars,
@@ -183,8 +161,9 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
     const std::vector<Bar> bars = barsOf(*results.sequence, stages);
     if (bars.empty()) return {"", "", "No run has times that could be drawn."};
     const double end = rightEdge(bars);
-    const bool beyond =
-        std::any_of(bars.begin(), bars.end(), [&](const Bar& bar) { return labelOf(bar, end).beyond; });
+    const bool beyond = std::any_of(bars.begin(), bars.end(), [&](const Bar& bar) {
+        return labelOf(bar, end).find(kBeyond) != std::string::npos;
+    });
     const int height = kBarHeight * static_cast<int>(bars.size()) + kBesideBars;
     Figure figure = drawFigure(axes(bars, end) + plotScript(bars, end), kFigureWidth, height,
                                results.sequence->name + ": time per frame by stage",
