@@ -156,7 +156,7 @@ std::string RunReport::failure() const {
     for (const FrameRecord& f : frames)
         if (f.result.status != FrameStatus::kInitialised)
             reasons[reasonWithoutFile(f.result.reason)].push_back(&f);
-    if (reasons.empty()) return "there is no frame (after those that --skip leaves out)";
+    if (reasons.empty()) return "there is no frame";
     const auto commonest = std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) {
         return a.second.size() < b.second.size();
     });

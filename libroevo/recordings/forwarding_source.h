@@ -23,6 +23,9 @@ class ForwardingSource : public FrameSource {
     std::size_t size() const override { return source_->size(); }
     std::string warning() const override { return source_->warning(); }
 
+  protected:
+    const FrameSource& source() const { return *source_; }
+
   private:
     std::unique_ptr<FrameSource> source_;
 };

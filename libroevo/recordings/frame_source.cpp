@@ -56,6 +56,7 @@ class DatasetSource : public FrameSource {
         return true;
     }
     bool skip() override { return index_ < reader_.size() && ++index_; }
+    bool isAtEnd() const override { return index_ >= reader_.size(); }
 
     const PinholeCamera& camera() const override { return reader_.camera(); }
     std::string kind() const override { return reader_.description().format; }
@@ -122,6 +123,7 @@ class RawlogSource : public FrameSource {
         advance();
         return true;
     }
+    bool isAtEnd() const override { return !scan_; }
 
     const PinholeCamera& camera() const override { return camera_; }
     std::string kind() const override { return "rawlog"; }
@@ -231,10 +233,11 @@ std::unique_ptr<FrameSource> openSource(const std::string& input, const InputCho
 }
 
 void skipFrames(FrameSource& source, std::size_t count, const std::string& input) {
-    for (std::size_t i = 0; i < count; ++i)
-        if (!source.skip())
-            throw std::runtime_error("--skip " + std::to_string(count) + ": " + input + " has only " +
-                                     counted(i, "frame"));
+    std::size_t left_out = 0;
+    while (left_out < count && source.skip()) ++left_out;
+    if (left_out < count || (count > 0 && source.isAtEnd()))
+        throw std::runtime_error("--skip " + std::to_string(count) + ": " + input + " has only " +
+                                 counted(left_out, "frame") + ", so that no frame is left");
 }
 
 std::string DepthScaleCheck::faultOf(const SourceFrame& frame) {

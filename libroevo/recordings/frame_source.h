@@ -35,6 +35,9 @@ class FrameSource {
     /// Leaves out one frame without decoding it; false at the end.
     virtual bool skip() = 0;
 
+    /// No frame is left. Only openSource()'s can tell before next() does.
+    virtual bool isAtEnd() const { return false; }
+
     virtual const PinholeCamera& camera() const = 0;
     virtual std::string kind() const = 0;          ///< "rawlog", "tum", …
     virtual std::string cameraSource() const = 0;  ///< where the intrinsics come from, in words
@@ -53,7 +56,7 @@ std::unique_ptr<FrameSource> openSource(const std::string& input, const InputCho
 /// Decodes ahead in a thread of its own (programs/ahead.h), in order.
 std::unique_ptr<FrameSource> prefetch(std::unique_ptr<FrameSource> source);
 
-/// Leaves out the first frames. @throws std::runtime_error when there are fewer
+/// Leaves out the first frames, of a source of openSource(). @throws std::runtime_error when none is left
 /// @param input  name of the source for the message
 void skipFrames(FrameSource& source, std::size_t count, const std::string& input);
 

@@ -41,6 +41,8 @@ class MaskedSource : public ForwardingSource {
         return true;
     }
 
+    bool isAtEnd() const override { return source().isAtEnd(); }
+
     std::vector<std::string> notes() const override {
         std::vector<std::string> notes = ForwardingSource::notes();
         const double share =

@@ -201,7 +201,7 @@ TEST_F(Compare, RecordingsThatCannotBeUsedAtAll) {
     expectError(run({folder / "none.rawlog"}), 1, kName, {"none.rawlog", "no such file"});
     const std::string input = clip("clip", 3);
     expectError(run({input, folder / "none.rawlog"}), 1, kName, {"none.rawlog", "no such file"});
-    expectError(run({input}, {"--skip", "3"}), 1, kName, {"clip", "no frame"});
+    expectError(run({input}, {"--skip", "3"}), 1, kName, {"clip", "only 3 frames", "no frame"});
     expectError(run({input}, {"--skip", "4"}), 1, kName, {"clip", "only 3 frames"});
     writeFile(input + "/camera.txt", test::cameraText(5));
     expectError(run({input}), 1, kName, {"clip", "depth", "5000"});
