@@ -90,8 +90,7 @@ void runChild(const ChildSettings& settings) {
         run.method = settings.method;
         run.poses = run.trajectory.size();
         // A rawlog does not tell its length before its end
-        if (run.frames < settings.sequence.first)
-            part = partOf(settings.sequence, settings.sequence.skip + run.frames);
+        if (source->isAtEnd()) part = partOf(settings.sequence, settings.sequence.skip + run.frames);
         run.part = part;
         writeRow(settings.folder, row);
     } catch (const std::exception& e) {

@@ -97,5 +97,17 @@ TEST_F(MixedRows, OneWithoutGroundTruthIsNoFailure) {
     EXPECT_EQ(row("roevo-ct").at("associated_poses"), "5") << "judged by the recording's, which is known now";
 }
 
+TEST_F(MixedRows, AllFramesOfARawlogAreNoPart) {
+    const std::string input = clip("clip", 6), rawlog = folder / "clip.rawlog";
+    ASSERT_EQ(test::runProgram("rgbd2rawlog", {"--input", input, "--output", rawlog}).exit_code, 0);
+    make(rawlog, "roevo-ct", {"--first", "6"});
+    make(rawlog, "roevo-tr", {"--first", "5", "--skip", "1"});
+    make(rawlog, "distance-field", {"--first", "5"});
+    report();
+    EXPECT_EQ(row("roevo-ct").at("sequence_part"), "");
+    EXPECT_EQ(row("roevo-tr").at("sequence_part"), "frames 1 to 5");
+    EXPECT_EQ(row("distance-field").at("sequence_part"), "frames 0 to 4");
+}
+
 }  // namespace
 }  // namespace roevo
