@@ -17,10 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path wholePath(const std::string& input) {
-    std::error_code fault;
-    fs::path path = fs::weakly_canonical(input, fault);
-    if (fault) path = input;
-    return path.has_filename() ? path : path.parent_path();  // "folder/"
+    const fs::path path = fs::absolute(input).lexically_normal();  // a link is called as it is given
+    return path.has_filename() ? path : path.parent_path();        // "folder/"
 }
 
 std::string nameOf(const fs::path& path) {

@@ -21,6 +21,8 @@ TEST(SequenceNames, AreUniqueAndFitForFolders) {
     EXPECT_EQ(sequenceNames({folder / "a/clip", folder / "a/clip"}),
               (std::vector<std::string>{"a_clip", "a_clip_2"}));
     EXPECT_EQ(sequenceNames({folder / "a/../b/clip/."}), std::vector<std::string>{"clip"});
+    fs::create_directory_symlink(folder / "a/clip", folder / "linked");
+    EXPECT_EQ(sequenceNames({folder / "linked"}), std::vector<std::string>{"linked"}) << "as it is given";
     for (const std::string& name : sequenceNames({"/", ".", ".."})) {
         EXPECT_NE(name, "");
         EXPECT_NE(name[0], '.');
