@@ -83,6 +83,12 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* 
                                                        : "'" + unknown.front() + "' belongs to no option");
         throw UsageError(e.what());
     }
+    // Of a script's variable that is not set: the run would not be the one that was asked for
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& word : option->results())
+            if (word.empty())
+                throw UsageError(option->get_name() +
+                                 ": its text is empty; give one, or leave the option out");
     return std::nullopt;
 }
 

@@ -26,7 +26,7 @@ int runProgram(const char* name, const std::function<int()>& body);
 
 /// Adds --version and parses. Use as `if (auto code = parseCommandLine(app, argc, argv)) return *code;`
 /// @return nothing when the program should go on; 0 after --help or --version. Throws UsageError on wrong
-/// usage.
+/// usage, and for an option whose text is empty.
 std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv);
 
 /// Version of this software, e.g. "0.1.0".

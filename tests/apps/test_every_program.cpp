@@ -41,6 +41,33 @@ TEST(ProgramsThatTakeFrames, SayWhatANumberOfFramesIs) {
                     {"--skip: 'abc' is not a whole number of 0 or more"});
 }
 
+// A script whose variable is not set must not get another run than it asks for.
+TEST(TextOfOptions, MustNotBeEmpty) {
+    const auto expectRefused = [](const char* name, const std::string& option) {
+        expectError(test::runProgram(name, {"--input", "in", "--output", "out", option, ""}), 2, name,
+                    {option, "empty"});
+    };
+    for (const char* option :
+         {"--map-in", "--map-out", "--mask", "--ground-truth", "--config", "--covariances", "--simplemap",
+          "--sensor-label", "--associations", "--colour-topic", "--mode", "--write-default-config"})
+        expectRefused("roevo-odometry", option);
+    for (const char* option : {"--config", "--set", "--methods", "--baseline"}) {
+        expectRefused("roevo-compare", option);
+        expectRefused("roevo-batch", option);
+    }
+    for (const auto& [name, option] : {std::pair("roevo-render", "--title"),
+                                       {"rgbd2rawlog", "--associations"},
+                                       {"rawlog2rgbd", "--sensor-label"}})
+        expectRefused(name, option);
+    expectError(test::runProgram("roevo-study",
+                                 {"--input", "a", "--output", "b", "--experiment", "gaps", "--mode", ""}),
+                2, "roevo-study", {"--mode", "empty"});
+    expectError(test::runProgram("roevo-eval", {"--reference", "a", "--estimate", "b", "--json", ""}), 2,
+                "roevo-eval", {"--json", "empty"});
+    expectError(test::runProgram("rawlog-simulate", {"--scene", "", "--output", "b"}), 2, "rawlog-simulate",
+                {"--scene", "empty"});
+}
+
 INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram,
                          testing::Values("roevo-odometry", "roevo-eval", "roevo-render", "rgbd2rawlog",
                                          "rawlog2rgbd", "rawlog-simulate", "roevo-compare", "roevo-batch",
