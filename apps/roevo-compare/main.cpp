@@ -62,7 +62,7 @@ void addOptions(CLI::App& app, Arguments& a) {
     app.add_option("--memory", a.memory,
                    "MB that a run may have before it is ended as a failure (0: no limit)")
         ->capture_default_str()
-        ->check(CLI::NonNegativeNumber);
+        ->check(faultOfNumber, "");
     app.add_option("--report", a.report,
                    "Make no run, but the report of rows: folders with run.json files anywhere below them, or "
                    "such files");

@@ -170,10 +170,10 @@ int run(int argc, char** argv) {
                    "sigmas: what positions (m) and orientations (degrees) of the ground truth err by, "
                    "one sigma per axis (default: 0 0, exact)")
         ->expected(2)
-        ->check(CLI::NonNegativeNumber)
+        ->check(faultOfNumber, "")
         ->type_name("M DEG");
     app.add_option("--gap", settings.gaps, "gaps: how many frames are cut out, one or more numbers")
-        ->check(CLI::PositiveNumber)
+        ->check([](const std::string& word) { return faultOfCount(word, 1); }, "")
         ->capture_default_str();
     addFrameOptions(app, settings.first, settings.skip, " of each recording");
     addInputOptions(app, settings.choice);

@@ -7,17 +7,20 @@
 #include "roevo_mrpt/config_file.h"
 
 namespace roevo {
-namespace {
 
-// CLI11's own check would print the largest number that there is, of 309 digits.
+std::string faultOfNumber(const std::string& word) {
+    double number = 0;
+    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (fault == std::errc() && end == word.data() + word.size() && !(number < 0)) return {};
+    return "'" + word + "' is not a number of 0 or more";
+}
+
 std::string faultOfCount(const std::string& word, std::size_t least) {
     std::size_t count = 0;
     const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), count);
     if (fault == std::errc() && end == word.data() + word.size() && count >= least) return {};
     return "'" + word + "' is not a whole number of " + std::to_string(least) + " or more";
 }
-
-}  // namespace
 
 void addFrameOptions(CLI::App& app, std::size_t& first, std::size_t& skip, const std::string& of) {
     app.add_option("--first", first, "Process at most this many frames" + of + " (default: all)")

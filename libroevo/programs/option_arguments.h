@@ -11,6 +11,11 @@ class App;
 
 namespace roevo {
 
+/// Checks for CLI11, whose own would print the largest number that there is, of 309 digits.
+/// @return empty when it is a number of 0 or more, or a whole one of `least` or more
+std::string faultOfNumber(const std::string& word);
+std::string faultOfCount(const std::string& word, std::size_t least);
+
 /// The options --first and --skip. @param of  which frames, for the help: " of each recording"; may be empty
 void addFrameOptions(CLI::App& app, std::size_t& first, std::size_t& skip, const std::string& of = "");
 

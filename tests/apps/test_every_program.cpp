@@ -68,6 +68,16 @@ TEST(TextOfOptions, MustNotBeEmpty) {
                 {"--scene", "empty"});
 }
 
+TEST(NumbersOfOptions, AreRefusedInWords) {
+    for (const auto& [name, option, words] :
+         {std::tuple("roevo-compare", "--memory", "'-5' is not a number of 0 or more"),
+          {"roevo-study", "--truth-sigma", "'-5' is not a number of 0 or more"},
+          {"roevo-study", "--gap", "'-5' is not a whole number of 1 or more"}})
+        expectError(test::runProgram(name, {"--input", "in", "--output", "out", option, "-5"}), 2, name,
+                    {std::string(option) + ": " + words});
+    expectError(test::runProgram("roevo-study", {"--gap", "0"}), 2, "roevo-study", {"--gap: '0' is not a"});
+}
+
 INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram,
                          testing::Values("roevo-odometry", "roevo-eval", "roevo-render", "rgbd2rawlog",
                                          "rawlog2rgbd", "rawlog-simulate", "roevo-compare", "roevo-batch",
