@@ -171,6 +171,28 @@ TEST(CompareReport, LinksRunsRelatively) {
     EXPECT_TRUE(contains(test::readFile(folder / "out/report.html"), "href=\"runs/s%20p/%3Ca%3E%26\""));
 }
 
+TEST(CompareReport, TakesThePlaceOfAnEarlierOne) {
+    if (findProgram("gnuplot").empty()) GTEST_SKIP() << "no gnuplot";
+    const TemporaryFolder folder;
+    const std::string figures = folder / "figures/";
+    std::filesystem::create_directories(folder / "pages/views");
+    test::writeFile(folder / "pages/views/old.html", "a view");
+    test::writeFile(folder / "pages/old.html",
+                    "<h1>Comparison of RGB-D odometries</h1><a href=\"views/old.html\">");
+    writeComparison(folder.path(),
+                    {makeSequence("a", {makeRun("x", 0.01)}), makeSequence("b", {makeRun("x", 0.01)})},
+                    makeInfo());
+    for (const char* old : {"pages/old.html", "pages/views/old.html"})
+        EXPECT_FALSE(std::filesystem::exists(folder / old)) << old;
+    EXPECT_TRUE(std::filesystem::exists(figures + "b_time_per_frame_by_stage.svg"));
+    test::writeFile(figures + "mine.svg", "a drawing of somebody");
+    writeComparison(folder.path(), {makeSequence("a", {makeRun("x", 0.01)})}, makeInfo());
+    for (const auto& entry : std::filesystem::directory_iterator(figures))
+        EXPECT_NE(entry.path().filename().string()[0], 'b') << entry.path();
+    for (const std::string& kept : {figures + "a_time_per_frame_by_stage.svg", figures + "mine.svg"})
+        EXPECT_TRUE(std::filesystem::exists(kept)) << kept;
+}
+
 // Each: by the reader's name for it, at the top or with the sequence.
 TEST(CompareReport, NotesAndWarningsAreThereOnce) {
     auto sequence = makeSequence("s", {makeRun("roevo-tr", 0.01), makeRun("b", 0.02), makeRun("c", 0.02)});

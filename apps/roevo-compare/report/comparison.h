@@ -59,6 +59,8 @@ constexpr std::size_t kWorstSequences = 10;
 
 /// Writes table.csv, table.md and report.html (all pictures inside, no network) into the folder, each whole
 /// or not at all; of more than kManySequences also a page in pages/ for each whose trajectories are there.
+/// What an earlier report has left in figures/, views/ and pages/ is removed (files to which its pages have
+/// links, nothing else).
 /// @param baseline  an earlier comparison to compare with; may be empty
 /// @throws std::runtime_error in one line; Interrupted after a signal (needs an InterruptGuard), and then
 /// nothing has been written

@@ -6,6 +6,8 @@
 
 namespace roevo {
 
+constexpr char kReportTitle[] = "Comparison of RGB-D odometries";
+
 class PageFiles;
 
 /// table.csv: one row per sequence and method with every figure, SI units and milliseconds, named in the

@@ -38,7 +38,7 @@ std::vector<std::string> countedRemarks(const std::vector<SequenceResults>& resu
 // @param sections  the page's others, to which it has links
 std::string header(const std::vector<SequenceResults>& results, const Legend& legend,
                    const ComparisonInfo& info, const std::string& sections) {
-    std::string html = "<header>\n<h1>Comparison of RGB-D odometries</h1>\n<p class=\"subtitle\">" +
+    std::string html = "<header>\n<h1>" + std::string(kReportTitle) + "</h1>\n<p class=\"subtitle\">" +
                        counted(legend.methods.size(), "method") + " on " +
                        counted(results.size(), "recording") + " · " + htmlText(info.date) +
                        "</p>\n<p class=\"verdict\">" + htmlText(verdict(results)) + "</p>\n";

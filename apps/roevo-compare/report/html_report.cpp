@@ -17,7 +17,7 @@ constexpr std::size_t kSummaryMetrics[] = {0, 1, 2, 5, 6, 8};
 
 std::string header(const std::vector<SequenceResults>& results, const Legend& legend,
                    const ComparisonInfo& info) {
-    std::string html = "<header>\n<h1>Comparison of RGB-D odometries</h1>\n<p class=\"subtitle\">" +
+    std::string html = "<header>\n<h1>" + std::string(kReportTitle) + "</h1>\n<p class=\"subtitle\">" +
                        counted(legend.methods.size(), "method") + " on " +
                        counted(results.size(), "sequence") + " · " + htmlText(info.date) +
                        "</p>\n<p class=\"verdict\">" + htmlText(verdict(results)) + "</p>\n";

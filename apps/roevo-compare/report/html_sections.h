@@ -9,7 +9,7 @@
 namespace roevo {
 
 /// All up to and with <body>.
-std::string pageHead(const std::string& title = "Comparison of RGB-D odometries");
+std::string pageHead(const std::string& title = kReportTitle);
 
 /// A sentence that must not be missed.
 std::string remark(const std::string& text);

@@ -91,7 +91,7 @@ std::string figures(const std::vector<SequenceResults>& results, const std::vect
 std::string markdownTables(const std::vector<SequenceResults>& results, const ComparisonInfo& info) {
     const auto methods = tableMethods(results);
     Footnotes notes;
-    std::string text = "# Comparison of RGB-D odometries\n\n" + markdownText(verdict(results)) +
+    std::string text = std::string("# ") + kReportTitle + "\n\n" + markdownText(verdict(results)) +
                        " The best figures are bold.\n\n";
     text += results.size() > kManySequences ? setTable(distributionTable(results, methods), notes)
                                             : figures(results, methods, notes);
