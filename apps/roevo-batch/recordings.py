@@ -1,5 +1,6 @@
 """What a batch is made of: recordings of a folder, of a list, or of a list of sequences in JSON."""
 
+import glob
 import json
 import os
 import re
@@ -101,14 +102,33 @@ def recordings(args):
     return named(args, found)
 
 
+def names_in_runs(output):
+    """Of the rows of earlier commands: the names that an input has."""
+    names = {}
+    for file in glob.glob(os.path.join(glob.escape(output), "runs", "*", "*", "run.json")):
+        try:
+            with open(file, encoding="utf-8") as row:
+                path = json.load(row)["input"]
+            names.setdefault(path, set()).add(os.path.basename(os.path.dirname(os.path.dirname(file))))
+        except (OSError, ValueError, LookupError, TypeError):
+            continue  # it will be made anew
+    return names
+
+
 def named(args, found):
-    """Names that are unique and good for folders, whatever the files are called."""
-    taken = set()
+    """Names that are unique and good for folders, whatever the files are called. A recording keeps the name that it has:
+    it would be in the report twice if another one's end gave it that one's."""
+    earlier = names_in_runs(args.output)
     for one in found:
         stem = os.path.basename(one["input"])
         stem = os.path.splitext(stem)[0] if stem.endswith(ENDINGS) else stem
-        name = re.sub(r"[^A-Za-z0-9._+-]", "_", one["name"] or stem).lstrip(".") or "recording"
-        unique, i = name, 2
+        one["plain"] = re.sub(r"[^A-Za-z0-9._+-]", "_", one["name"] or stem).lstrip(".") or "recording"
+        one["name"] = next((name for name in sorted(earlier.get(one["input"], ()))
+                            if re.fullmatch(re.escape(one["plain"]) + r"(_\d+)?", name)), None)
+    taken = set()
+    for one in sorted(found, key=lambda one: one["name"] is None):
+        name, i = one["plain"], 2
+        unique = one["name"] or name
         while unique in taken:
             unique, i = f"{name}_{i}", i + 1
         taken.add(unique)

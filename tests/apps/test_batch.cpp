@@ -103,6 +103,18 @@ TEST_F(Batch, MakesARowOfEachAndOnlyWhatIsMissingWhenItGoesOn) {
     EXPECT_FALSE(fs::exists(out() + "/runs/a/.roevo-ct.node.1.partial"));
 }
 
+TEST_F(Batch, ARecordingKeepsItsName) {
+    clip("a b");
+    clip("a_b", 5);
+    ASSERT_EQ(run({"--quiet"}).exit_code, 0);
+    const auto kept = madeAt("a_b_2");
+    fs::remove_all(data() + "/a b");
+    ASSERT_EQ(run({"--quiet"}).exit_code, 0);
+    EXPECT_EQ(row("a_b_2").frames, 5u);
+    EXPECT_EQ(madeAt("a_b_2"), kept);
+    EXPECT_EQ(row("a_b").frames, 4u) << "of the earlier command: not of the same recording";
+}
+
 TEST_F(Batch, ConfigurationsAreComparedWithEachOther) {
     clip("a");
     writeFile(folder / "long.ini", "[edges]\nmin_length = 15\n");
