@@ -17,6 +17,7 @@
 #include "programs/output_folder.h"
 #include "programs/progress.h"
 #include "programs/text.h"
+#include "report/baseline.h"
 #include "report/distributions.h"
 #include "roevo_mrpt/config_file.h"
 #include "rows.h"
@@ -227,6 +228,10 @@ ComparisonReport reportRows(const std::vector<std::string>& rows, const std::vec
     else
         for (const std::size_t s : worstRecordings(evaluateAll(read.sequences), kWorstSequences))
             loadTrajectories(read.sequences[s]);
+    if (!baseline.empty())
+        for (const std::string& sentence :
+             changeSentences(changesSince(evaluateAll(earlier), evaluateAll(read.sequences))))
+            read.notes.push_back(sentence);
     prepareOutputFolder(output);
     const FolderLock lock(output);
     return writeReport(std::move(read.sequences), output, command, read.notes, earlier);

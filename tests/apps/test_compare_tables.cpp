@@ -8,6 +8,7 @@
 #include "programs/text.h"
 #include "report_fixture.h"
 #include "roevo-compare/report/ranking.h"
+#include "roevo-compare/report/remarks.h"
 #include "roevo-compare/report/tables.h"
 
 namespace roevo {
@@ -261,6 +262,21 @@ TEST(CompareTable, SaysOfWhichFramesThePapersFiguresAre) {
     part.paper_ate_cm = 2.5;
     EXPECT_TRUE(contains(WrittenComparison({whole, part}).md,
                          words + "; that of part, as ours, of its frames 10 to 24."));
+}
+
+TEST(Remarks, OptionsOfVariantsAreMeantToDiffer) {
+    auto plain = makeRun("roevo-tr", 0.01), few = makeRun("roevo-tr@few", 0.01), foreign = makeRun("a", 0.01);
+    plain.config = "[edges]\n; a note = 3\ncanny_factor = 1.5\n";
+    few.config = foreign.config = "[edges]\ncanny_factor = 4\n";
+    std::vector<SequenceComparison> sequences{makeSequence("s", {plain, few, foreign})};
+    EXPECT_EQ(optionsRemark(evaluateAll(sequences)), std::nullopt);
+    plain.config += "[map]\nnew_option = 1\n";  // of a later version
+    sequences.push_back(makeSequence("t", {plain}));
+    EXPECT_EQ(optionsRemark(evaluateAll(sequences)), std::nullopt);
+    few.config = "[edges]\ncanny_factor = 3\n";
+    sequences.push_back(makeSequence("u", {few}));
+    EXPECT_TRUE(contains(*optionsRemark(evaluateAll(sequences)), "differ in edges.canny_factor@few (3, 4):"));
+    EXPECT_FALSE(conditionsOf(evaluateAll(sequences)).config);
 }
 
 TEST(CompareTable, RunsThatAreNotPinnedAreNotSaidToBeOnOneCore) {

@@ -131,6 +131,22 @@ Table changeTable(const std::vector<MethodChange>& changes) {
     return table;
 }
 
+std::vector<std::string> changeSentences(const std::vector<MethodChange>& changes) {
+    if (changes.empty())
+        return {
+            "Against the earlier comparison: no method was run on the same recording, or the same part of "
+            "one, in both of them."};
+    std::vector<std::string> sentences;
+    for (const Table::Row& row : changeTable(changes).rows) {
+        const auto text = [&](std::size_t column) { return row.cells[column].text; };
+        sentences.push_back("Against the earlier comparison, " + row.head + ": median change of the ATE " +
+                            text(1) + " over " + text(0) + " recording" + (text(0) == "1" ? "" : "s") + "; " +
+                            text(2) + " better, " + text(3) + " worse, " + text(4) + " mended, " + text(5) +
+                            " broken: " + text(6) + ".");
+    }
+    return sentences;
+}
+
 Table changedRecordings(const MethodChange& change, std::size_t most) {
     Table table{change.method.label + ": recordings that changed",
                 "Recording",

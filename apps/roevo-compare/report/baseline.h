@@ -33,6 +33,9 @@ std::vector<MethodChange> changesSince(const std::vector<SequenceResults>& befor
 /// A row for each method: recordings, median ratio and its interval, how many became better or worse.
 Table changeTable(const std::vector<MethodChange>& changes);
 
+/// The same in a sentence for each method; one that there is none.
+std::vector<std::string> changeSentences(const std::vector<MethodChange>& changes);
+
 /// The recordings that became worse or better beyond noise, the largest changes first, so many of each.
 Table changedRecordings(const MethodChange& change, std::size_t most);
 
