@@ -20,7 +20,7 @@ struct Column {
 constexpr Column kColumns[] = {{"ATE cm", 0}, {"RPE cm/s", 1}, {"deg/s", 2},  {"tracked %", 5},
                                {"ms", 6},     {"ms 95 %", 7},  {"CPU ms", 8}, {"MB", 9}};
 constexpr int kWidth = 11;  // of a column, the last character for the mark
-constexpr char kBest[] = "*";
+constexpr char kBest[] = "*", kWeak[] = "!";
 
 std::string padded(const std::string& text, std::size_t width) {
     return text + std::string(width - std::min(width, text.size()), ' ');
@@ -40,9 +40,13 @@ struct Figures {
     std::string row(std::size_t run) const {
         std::string text;
         for (std::size_t c = 0; c < std::size(kColumns); ++c) {
-            const auto value = metricOf(metric(kColumns[c]), results_, run);
-            text += rightAligned(value ? shownNumber(value, metric(kColumns[c]).decimals) : "-", kWidth - 1) +
-                    (best_[c][run] ? kBest : " ");
+            const Metric& shown = metric(kColumns[c]);
+            const auto value = metricOf(shown, results_, run);
+            const bool weak = shown.is_share && !isComplete(results_.sequence->runs[run]);
+            text += rightAligned(value ? shownNumber(value, shown.decimals) : "-", kWidth - 1) +
+                    (best_[c][run] ? kBest
+                     : weak        ? kWeak
+                                   : " ");
         }
         return text.substr(0, text.find_last_not_of(' ') + 1) + '\n';
     }
@@ -96,7 +100,15 @@ std::string terminalTable(const std::vector<SequenceComparison>& sequences) {
             text += "  only " + part + " of the recording\n";
         for (const std::string& note : sequence.notes) text += "  " + note + "\n";
     }
-    if (text.find(kBest) != std::string::npos) text += "\n* the best, as in the report\n";
+    std::string marks;
+    if (text.find(kBest) != std::string::npos) marks += "* the best, as in the report\n";
+    const auto has_weak = [](const SequenceComparison& sequence) {
+        return std::any_of(sequence.runs.begin(), sequence.runs.end(),
+                           [](const MethodRun& run) { return run.ok() && !isComplete(run); });
+    };
+    if (std::any_of(sequences.begin(), sequences.end(), has_weak))
+        marks += "! tracked less than 90 % of the frames: ranks behind all that tracked more\n";
+    if (!marks.empty()) text += "\n" + marks;
     if (const auto remark = optionsRemark(all)) text += "\n" + *remark + "\n";
     return text;
 }

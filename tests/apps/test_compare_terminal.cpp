@@ -34,11 +34,15 @@ TEST(TerminalTable, MarksTheBestAsTheReportDoes) {
     EXPECT_TRUE(contains(lineWith(text, "label of quick"), " 2.000  ")) << text;
     EXPECT_TRUE(contains(lineWith(text, "label of quick"), " 3.25* ")) << text;
     EXPECT_TRUE(contains(lineWith(text, "label of lost"), " 0.100  ")) << "too few frames\n" << text;
+    EXPECT_TRUE(contains(lineWith(text, "label of lost"), " 50.0! ")) << "and why it is not the best\n"
+                                                                      << text;
+    EXPECT_TRUE(contains(text, "\n! tracked less than 90 %")) << text;
     EXPECT_TRUE(contains(lineWith(text, "  f"), "failed: it threw")) << text;
     EXPECT_EQ(lineWith(text, "label of a").size(), lineWith(text, "label of quick").size()) << text;
     EXPECT_TRUE(contains(text, "\n* the best")) << text;
     EXPECT_FALSE(contains(terminalTable({makeSequence("s", {makeRun("a", 0.01)})}), "*"))
         << "one alone is not the best";
+    EXPECT_FALSE(contains(terminalTable({makeSequence("s", {makeRun("a", 0.01)})}), "!"));
 }
 
 TEST(TerminalTable, SaysWhatIsOddOnce) {
