@@ -121,8 +121,10 @@ Json toJson(const EvaluatedRun& evaluated) {
     if (!evaluated.evaluation) return {{"fault", evaluated.fault}};
     Json json{{"scale_warning", evaluated.scale_warning}};
     forEachError(*evaluated.evaluation, [&](const char* name, const ErrorStatistics& s) {
-        json[name] = {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"std", s.std},
-                      {"min", s.min},   {"max", s.max},   {"count", s.count}};
+        json[name] = nullptr;  // no two poses are that far apart
+        if (s.count > 0)
+            json[name] = {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"std", s.std},
+                          {"min", s.min},   {"max", s.max},   {"count", s.count}};
     });
     return json;
 }
@@ -137,6 +139,7 @@ EvaluatedRun toErrors(const Json& json) {
     evaluated.evaluation.emplace();
     forEachError(*evaluated.evaluation, [&](const char* name, ErrorStatistics& s) {
         const Json& error = json.at(name);
+        if (error.is_null()) return;
         error.at("rmse").get_to(s.rmse);
         error.at("mean").get_to(s.mean);
         error.at("median").get_to(s.median);

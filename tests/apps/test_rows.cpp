@@ -230,6 +230,21 @@ TEST_F(ManyRows, StateTheErrorsThatTheirTrajectoriesGive) {
     EXPECT_EQ(row.runs[0].ground_truth_length_m, 6.0);
 }
 
+TEST_F(ManyRows, WhatWasNotMeasuredIsNoFigure) {
+    MethodRun quick = test::makeRun("roevo-ba", 0.01);
+    SequenceComparison sequence = test::makeSequence("a", {quick});
+    for (auto* poses : {&sequence.reference, &sequence.runs[0].trajectory})
+        for (std::size_t i = 0; i < 4; ++i) (*poses)[i].timestamp = 1000 + 0.1 * static_cast<double>(i);
+    fs::create_directories(folder / "runs/a");
+    writeRow(folder / "runs/a", sequence);
+    const std::string json = readFile(folder / "runs/a/run.json");
+    for (const char* error : {"rpe_second_translation_m", "rpe_second_rotation_deg"})
+        EXPECT_NE(json.find("\"" + std::string(error) + "\": null"), std::string::npos) << json;
+    const Evaluation back = *read().sequences.at(0).errors.at(0).evaluation;
+    EXPECT_EQ(back.rpe_second.translation.count, 0u);
+    EXPECT_EQ(back.rpe_frame.translation.count, 3u);
+}
+
 TEST_F(ManyRows, TheGroundTruthsLengthIsOfThePartThatWasRun) {
     MethodRun part = test::makeRun("roevo-ba", 0.01);
     part.trajectory.pop_back();
