@@ -171,7 +171,7 @@ MethodRun Runner::summary() const {
 
 std::string Runner::csv() const {
     std::string text = "timestamp,tracked,reason,ms_decode";
-    for (const std::string& stage : stages_) text += "," + csvField("ms_" + stage);
+    for (const std::string& stage : stages_) text += "," + csvField("ms_" + replaceAll(stage, " ", "_"));
     text += ",ms_total\n";
     char number[64];
     for (const FrameRow& row : rows) {

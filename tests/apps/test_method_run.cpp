@@ -69,6 +69,7 @@ TEST_F(RunOfAMethod, SumsUpWhatTheMethodSaid) {
         out.stage_ms = {static_cast<double>(frame), 100};
         if (frame == 5) out.tracked = false, out.reason = "lost, with a comma", out.stage_ms = {1e6, 1e6};
     };
+    method.stage_names = {"one", "second one"};
     method.background_work = Method::Background{"mapping", 7, 3};
     const MethodRun result = run();
     EXPECT_TRUE(result.ok());
@@ -94,7 +95,7 @@ TEST_F(RunOfAMethod, SumsUpWhatTheMethodSaid) {
 
     const auto lines = csvLines();
     ASSERT_EQ(lines.size(), 7u);
-    EXPECT_EQ(lines[0], "timestamp,tracked,reason,ms_decode,ms_one,ms_two,ms_total");
+    EXPECT_EQ(lines[0], "timestamp,tracked,reason,ms_decode,ms_one,ms_second_one,ms_total");
     EXPECT_EQ(lines[2].rfind("1.100000,1,,0.000,1.000,100.000,", 0), 0u) << lines[2];
     EXPECT_EQ(lines[6].rfind("1.500000,0,\"lost, with a comma\",", 0), 0u) << lines[6];
 }
