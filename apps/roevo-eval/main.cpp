@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "evaluation/evaluate.h"
@@ -112,11 +113,8 @@ void warnOfParts(const std::vector<JudgedEstimate>& estimates) {
         estimates.begin(), estimates.end(),
         [&](const JudgedEstimate& a, const JudgedEstimate& b) { return poses(a) < poses(b); });
     if (isComparable(*fewest, estimates)) return;
-    const auto nameOf = [&](const JudgedEstimate& estimate) {
-        return cleanText(fewest->name == most->name ? estimate.file : estimate.name);
-    };
-    printWarning(kName, nameOf(*fewest) + " is judged by " + counted(poses(*fewest), "pose") + ", " +
-                            nameOf(*most) + " by " + std::to_string(poses(*most)) +
+    printWarning(kName, cleanText(fewest->name) + " is judged by " + counted(poses(*fewest), "pose") + ", " +
+                            cleanText(most->name) + " by " + std::to_string(poses(*most)) +
                             ": errors of a part do not compare with those of the whole");
 }
 
@@ -179,7 +177,11 @@ int run(int argc, char** argv) {
     std::vector<JudgedEstimate> estimates;
     for (const std::string& argument : settings.estimates)
         estimates.push_back(judge(reference, argument, times, settings));
-    std::string page;  // before all else, since it may fail
+    std::map<std::string, int> count;
+    for (const JudgedEstimate& estimate : estimates) ++count[estimate.name];
+    for (JudgedEstimate& estimate : estimates)
+        if (count[estimate.name] > 1) estimate.name = estimate.file;  // a name of several tells none of them
+    std::string page;                                                 // before all else, since it may fail
     if (!settings.plot.empty())
         page =
             htmlPage(settings.reference, reference, estimates, alignmentOf(settings).text, settings.max_dt);

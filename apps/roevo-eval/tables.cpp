@@ -92,7 +92,7 @@ std::string terminalTable(const std::vector<JudgedEstimate>& estimates) {
     for (const JudgedEstimate& e : estimates) width = std::max(width, countCharacters(cleanText(e.name)));
     std::string head(width, ' '), units(width, ' '), rows;
     char cell[64];
-    std::snprintf(cell, sizeof cell, " %9s %9s", "poses", "scale");
+    std::snprintf(cell, sizeof cell, " %9s %9s", "pairs", "scale");
     head += cell, units += std::string(20, ' ');
     for (const Column& column : kColumns) {
         std::snprintf(cell, sizeof cell, " %9s", column.title);
@@ -139,7 +139,7 @@ std::string csvTable(const std::vector<JudgedEstimate>& estimates, const std::st
 }
 
 Table pageTable(const std::vector<JudgedEstimate>& estimates) {
-    Table table{"", "Estimate", {"poses", "scale"}, {}, {}};
+    Table table{"", "Estimate", {"pairs", "scale"}, {}, {}};
     for (const Column& column : kColumns)
         table.columns.push_back(std::string(column.title) + " [" + column.unit + "]");
     for (const JudgedEstimate& e : estimates) {

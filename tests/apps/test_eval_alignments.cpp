@@ -177,6 +177,9 @@ TEST_F(EvalSeveral, OneThatHasPartOfThePosesOnlyIsNamed) {
     EXPECT_NE(tex.find("textbf", tex.find("\nwhole")), std::string::npos) << tex;
     const auto alike = eval({named("a", "right.txt"), named("a", "part.txt")});
     EXPECT_NE(alike.err.find("part.txt is judged by "), std::string::npos) << alike.err;
+    for (const char* file : {"/right.txt ", "/part.txt "})
+        EXPECT_NE(alike.out.find(file), std::string::npos) << "a name of both tells neither: " << alike.out;
+    EXPECT_NE(alike.out.find(" pairs "), std::string::npos) << "as in the CSV: " << alike.out;
     EXPECT_NE(run.err.find("warning: half is judged by "), std::string::npos) << run.err;
     EXPECT_NE(run.err.find(", whole by "), std::string::npos) << run.err;
     EXPECT_EQ(eval({named("whole", "right.txt"), named("too", "right.txt")}).err, "");
