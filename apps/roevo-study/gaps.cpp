@@ -138,7 +138,7 @@ StudyReport studyGaps(const std::vector<StudyInput>& inputs, const std::string& 
         const KnownViews views(input);
         std::vector<double> times = views.times();
         const StudyRun uncut = trackRecording(input, options);
-        bool any = false;
+        std::vector<std::string> too_short;
         for (const std::size_t length : input.gaps) {
             std::vector<GapRun> runs;
             for (const Gap& gap : gapsOf(length, times.size())) {
@@ -147,10 +147,9 @@ StudyReport studyGaps(const std::vector<StudyInput>& inputs, const std::string& 
                 progress.update(++done);
             }
             if (runs.empty()) {
-                report.notes.push_back(input.name + ": too short for gaps of " + counted(length, "frame"));
+                too_short.push_back(input.name + ": too short for gaps of " + counted(length, "frame"));
                 continue;
             }
-            any = true;
             for (const GapRun& run : runs) {
                 table.add({input.name, toString(options.mode), std::to_string(run.gap.frames),
                            std::to_string(run.gap.first), CsvTable::number(run.known, 3),
@@ -161,7 +160,8 @@ StudyReport studyGaps(const std::vector<StudyInput>& inputs, const std::string& 
             }
             shown.push_back(shownLine(input.name, runs));
         }
-        if (!any) throw std::runtime_error("too short for any of the gaps");
+        if (too_short.size() == input.gaps.size()) throw std::runtime_error("too short for any of the gaps");
+        report.notes.insert(report.notes.end(), too_short.begin(), too_short.end());
     });
     progress.finish();
     addTable(report, folder, "gaps.csv", table);

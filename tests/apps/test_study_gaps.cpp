@@ -71,6 +71,13 @@ TEST_F(StudyGaps, WhatCannotBeCutIsLeftOutByName) {
     StudyInput brief = input("brief", sequence, true);
     brief.gaps = {20};
     EXPECT_THROW(studyGaps({brief}, folder()), std::runtime_error);
+    const testing::Sequence longer = sliding(30);
+    StudyInput good = input("good", longer, true);
+    good.gaps = {3};
+    const StudyReport report = studyGaps({brief, good}, folder());
+    ASSERT_EQ(report.left_out.size(), 1u);
+    EXPECT_EQ(report.left_out[0].reason, "too short for any of the gaps");
+    EXPECT_EQ(report.notes.size(), 1u) << "said once: " << report.notes.front();
     StudyInput blind = input("blind", sequence, false);
     blind.gaps = {3};
     EXPECT_THROW(studyGaps({blind}, folder()), std::runtime_error);
