@@ -10,6 +10,7 @@
 #include "programs/atomic_file.h"
 #include "programs/gnuplot.h"
 #include "programs/program.h"
+#include "programs/text.h"
 
 namespace roevo {
 
@@ -73,13 +74,7 @@ void CsvTable::add(const std::vector<std::string>& fields) {
                                std::to_string(columns_));
     for (std::size_t i = 0; i < fields.size(); ++i) {
         if (i > 0) text_ += ',';
-        if (fields[i].find_first_of(",\"\n") == std::string::npos) {
-            text_ += fields[i];
-            continue;
-        }
-        text_ += '"';
-        for (const char c : fields[i]) text_ += c == '"' ? "\"\"" : std::string(1, c);
-        text_ += '"';
+        text_ += csvField(fields[i]);
     }
     text_ += '\n';
 }
