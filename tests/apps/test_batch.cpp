@@ -103,6 +103,14 @@ TEST_F(Batch, MakesARowOfEachAndOnlyWhatIsMissingWhenItGoesOn) {
     EXPECT_FALSE(fs::exists(out() + "/runs/a/.roevo-ct.node.1.partial"));
 }
 
+TEST_F(Batch, NoResultAtAllIsAFailure) {
+    fs::create_directories(data() + "/broken");
+    for (const char* when : {"made", "kept"}) {
+        expectError(run(), 1, kName, {"no run gave a result; the first: ", "rgb.txt"});
+        EXPECT_TRUE(fs::exists(out() + "/report.html")) << when;
+    }
+}
+
 TEST_F(Batch, ARecordingKeepsItsName) {
     clip("a b");
     clip("a_b", 5);
