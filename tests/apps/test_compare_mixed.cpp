@@ -77,18 +77,6 @@ TEST_F(MixedRows, OtherOptionsAreNamed) {
     EXPECT_NE(file("table.md").find("same frames for all"), std::string::npos);
 }
 
-TEST_F(MixedRows, OneWithoutGroundTruthIsNoFailure) {
-    const std::string input = clip("clip", 8);
-    make(input, "roevo-tr");
-    fs::rename(input + "/groundtruth.txt", folder / "truth.txt");
-    make(input, "roevo-ct", {"--first", "5"});
-    const std::string printed = report();
-    EXPECT_EQ(row("roevo-tr").at("status"), "ok");
-    EXPECT_EQ(row("roevo-ct").at("status"), "ok") << row("roevo-ct").at("reason");
-    EXPECT_EQ(printed.find("failed"), std::string::npos) << printed;
-    EXPECT_EQ(row("roevo-ct").at("associated_poses"), "5") << "judged by the recording's, which is known now";
-}
-
 TEST_F(MixedRows, WhatChangedSinceAnEarlierComparisonIsSaidEverywhere) {
     const std::string input = clip("clip", 5), before = folder / "before";
     make(input, "roevo-ct");

@@ -230,6 +230,21 @@ TEST_F(ManyRows, StateTheErrorsThatTheirTrajectoriesGive) {
     EXPECT_EQ(row.runs[0].ground_truth_length_m, 6.0);
 }
 
+TEST_F(ManyRows, OneWithoutGroundTruthIsJudgedByThatOfTheOthers) {
+    put("a", test::makeRun("roevo-tr", 0.01));
+    SequenceComparison blind = test::makeSequence("a", {test::makeRun("roevo-ba", 0.02)});
+    blind.reference.clear();
+    fs::create_directories(folder / "runs/a/roevo-ba");
+    writeRow(folder / "runs/a/roevo-ba", blind);
+    SequenceComparison row = read().sequences.at(0);
+    EXPECT_FALSE(evaluateRuns(row)[1].evaluation);
+    loadTrajectories(row);
+    EXPECT_EQ(row.runs.at(1).method, "roevo-ba");
+    EXPECT_TRUE(row.runs[1].ok()) << row.runs[1].failure;
+    ASSERT_TRUE(evaluateRuns(row)[1].evaluation);
+    EXPECT_NEAR(evaluateRuns(row)[1].evaluation->ate.translation.rmse, 0.02, 1e-9);
+}
+
 TEST_F(ManyRows, WhatWasNotMeasuredIsNoFigure) {
     MethodRun quick = test::makeRun("roevo-ba", 0.01);
     SequenceComparison sequence = test::makeSequence("a", {quick});
