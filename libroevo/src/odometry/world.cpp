@@ -277,7 +277,11 @@ void World::recognise() {
     }
     if (!drifted) return;
     const auto place = relocaliser_.recognised(Among::kOwnTrack, trajectory_, near);
-    if (place && !isWithinReach(place->pose)) closeLoop({newest.keyframe, *place});
+    if (!place) return;
+    if (isWithinReach(place->pose))  // by its edges, which tell better than its points
+        trajectory_.relate(place->pose.keyframe, newest.keyframe);
+    else
+        closeLoop({newest.keyframe, *place});
 }
 
 /// Whether the map can relate the edges of the place by itself, where the newest keyframe is thought to be.
