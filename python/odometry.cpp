@@ -205,6 +205,8 @@ void addMapParts(py::module_& module) {
         .def_readonly("id", &KeyframeInfo::id,
                       "as FrameResult.keyframe; those of a map that was loaded come first")
         .def_readonly("timestamp", &KeyframeInfo::timestamp, "seconds")
+        .def_readonly("track", &KeyframeInfo::track,
+                      "the first keyframe of its track; what is between tracks means nothing")
         .def_property_readonly(
             "pose", [](const KeyframeInfo& self) -> Eigen::Matrix4d { return self.T_world_camera.matrix(); },
             "T_world_camera, 4 x 4");

@@ -62,44 +62,16 @@ Losses RunReport::losses() const {
 }
 
 std::vector<int> RunReport::segments() const {
-    std::vector<int> parent{
-        0};  // of each piece, itself when it is joined to none; the first is the map's own
-    const auto root = [&](int piece) {
-        while (parent[static_cast<std::size_t>(piece)] != piece)
-            piece = parent[static_cast<std::size_t>(piece)];
-        return piece;
-    };
-    std::map<double, int> piece_at;  // by time stamp
-    const auto pieceOf = [&](int keyframe) {
-        if (map_in && keyframe < map_in->keyframes) return 0;
-        for (const KeyframeInfo& k : keyframes)
-            if (k.id == keyframe)
-                if (const auto found = piece_at.find(k.timestamp); found != piece_at.end())
-                    return found->second;
-        return static_cast<int>(parent.size()) - 1;
-    };
-    std::vector<int> pieces;
-    int current = 0;
-    for (const FrameRecord& f : frames) {
-        const FrameResult& r = f.result;
-        if (r.hasPose()) {
-            if (r.found_at >= 0) {
-                current = pieceOf(r.found_at);
-            } else if (r.status == FrameStatus::kInitialised) {
-                current = static_cast<int>(parent.size());
-                parent.push_back(current);
-            }
-            if (r.joined_at >= 0)
-                parent[static_cast<std::size_t>(root(current))] = root(pieceOf(r.joined_at));
-            piece_at[r.timestamp] = current;
-        }
-        pieces.push_back(r.hasPose() ? current : -1);
+    std::map<int, int> track_of, numbers;  // those of map_in are in the first track of all
+    for (const KeyframeInfo& keyframe : keyframes) track_of[keyframe.id] = keyframe.track;
+    std::vector<int> segments;
+    for (const FrameRecord& frame : frames) {
+        const auto next = static_cast<int>(numbers.size()) + 1;
+        segments.push_back(frame.result.hasPose()
+                               ? numbers.emplace(track_of[frame.result.keyframe], next).first->second
+                               : 0);
     }
-    std::map<int, int> numbers;
-    for (int& piece : pieces)
-        piece =
-            piece < 0 ? 0 : numbers.emplace(root(piece), static_cast<int>(numbers.size()) + 1).first->second;
-    return pieces;
+    return segments;
 }
 
 int RunReport::mapKeyframeOf(const FrameResult& frame) const {

@@ -81,30 +81,25 @@ TEST(RunReport, LossesAreCountedOnceEach) {
     EXPECT_EQ(report.losses().pieces, 1U);
 }
 
-TEST(RunReport, SegmentsAreThePiecesOfTheTrajectory) {
-    RunReport report = trackedReport();  // at 10, 11 and 12 s
-    const auto add = [&](FrameStatus status) -> FrameResult& {
+TEST(RunReport, SegmentsAreTheTracksThatFramesAreInInTheEnd) {
+    RunReport report = trackedReport();  // three frames of keyframe 0
+    const auto add = [&](FrameStatus status, int keyframe) {
         report.frames.emplace_back();
         report.frames.back().result.status = status;
-        report.frames.back().result.timestamp = 9 + static_cast<double>(report.frames.size());
-        return report.frames.back().result;
+        report.frames.back().result.keyframe = keyframe;
     };
-    report.keyframes = {{0, 10, {}}, {1, 15, {}}, {2, 16, {}}};
-    add(FrameStatus::kPredicted);
-    add(FrameStatus::kRejected);
-    add(FrameStatus::kInitialised);  // at 15 s
-    add(FrameStatus::kOk);
-    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 2, 2}));
-    EXPECT_EQ(report.losses().pieces, 2U);
-    add(FrameStatus::kOk).found_at = 0;
-    add(FrameStatus::kOk).found_at = 1;
-    add(FrameStatus::kInitialised);
-    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 2, 2, 1, 2, 3}));
-    add(FrameStatus::kOk).joined_at = 2;
-    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 2, 2, 1, 2, 2, 2}));
-    report.frames[5].result.joined_at = 0;
-    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1}));
-    EXPECT_EQ(report.losses().pieces, 1U);
+    report.keyframes = {{0, 10, {}, 0}, {1, 15, {}, 1}, {2, 16, {}, 1}, {3, 17, {}, 0}, {4, 18, {}, 4}};
+    add(FrameStatus::kPredicted, 0);
+    add(FrameStatus::kRejected, -1);
+    add(FrameStatus::kInitialised, 1);
+    add(FrameStatus::kOk, 2);
+    add(FrameStatus::kOk, 3);  // found again in the first one
+    add(FrameStatus::kInitialised, 4);
+    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 2, 2, 1, 3}));
+    report.keyframes[4].track = 1;  // joined
+    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 2, 2, 1, 2}));
+    report.keyframes[1].track = report.keyframes[2].track = report.keyframes[4].track = 0;
+    EXPECT_EQ(report.segments(), (std::vector<int>{1, 1, 1, 1, 0, 1, 1, 1, 1}));
     const std::string csv = framesCsv(report);
     EXPECT_NE(csv.find("map_reason,segment\n"), std::string::npos);
     EXPECT_EQ(csv.substr(csv.size() - 3), ",1\n");

@@ -256,6 +256,25 @@ TEST(PinholeCamera, CheckNamesWhatIsWrongAndItsValue) {
     EXPECT_NE(PinholeCamera().check(), "");
 }
 
+TEST(PinholeCamera, CheckFindsALensThatTearsTheImageApart) {
+    PinholeCamera camera = kCamera;
+    camera.distortion = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314};
+    EXPECT_EQ(camera.check(), "") << "as OpenCV orders them";
+    camera.distortion = {0.262383, -0.953104, 1.163314, -0.005358, 0.002628};
+    EXPECT_NE(camera.check().find("in the order k1 k2 p1 p2 k3"), std::string::npos) << "k1 k2 k3 p1 p2";
+    camera.distortion = {-5, 20, 0, 0, -50};
+    EXPECT_NE(camera.check(), "") << "folds";
+    camera.distortion = {};
+    camera.denominator = {-10, 0, 0};
+    EXPECT_NE(camera.check(), "") << "a pole in the image";
+    camera.denominator = {-1e300, 1e300, 0};
+    EXPECT_NE(camera.check(), "");
+    camera.denominator = {};
+    camera.distortion = {-0.35, 0.1, 0, 0, 0};
+    camera.fx = camera.fy = 320;
+    EXPECT_EQ(camera.check(), "") << "a barrel of 90 degrees";
+}
+
 TEST(PinholeCamera, FewerDigitsAreNoOtherCamera) {
     const PinholeCamera camera{640,
                                480,

@@ -27,11 +27,13 @@ TEST(Trajectory, AJoinedTrackMovesAsAWholeAndSoDoesWhatTheMapSaysOfItLater) {
     trajectory.addKeyframe(2, from(1, at(1)), {});
     trajectory.addFrame(2, from(2, at(0)));
     EXPECT_EQ(trajectory.beginOfTrack(2), 1);
+    EXPECT_EQ(trajectory.keyframes()[2].track, 1);
     const Correction join = trajectory.join(2, from(0, at(3)));  // keyframe 2 is at x = 3
     EXPECT_EQ(idsOf(join), (std::vector<int>{1, 2}));
     EXPECT_EQ(join.places.front().from, 0);
     EXPECT_NEAR(join.motions.begin()->second.translation().x(), -48, 1e-12);
     EXPECT_EQ(trajectory.beginOfTrack(2), 0);
+    EXPECT_EQ(trajectory.keyframes()[2].track, 0);
     EXPECT_NEAR(trajectory.frames()[1].T_world_camera.translation().x(), 2, 1e-12);
     EXPECT_NEAR(trajectory.frames()[2].T_world_camera.translation().x(), 3, 1e-12);
     MapUpdate late;  // from before the join, in the old place

@@ -60,6 +60,9 @@ struct KeyframeInfo {
     int id = 0;
     double timestamp = 0;
     Pose T_world_camera = Pose::Identity();
+    /// The first keyframe of its track. After a loss another track may begin, about where the camera may be;
+    /// once a place of the older one is recognised, both are one. What is between tracks means nothing.
+    int track = 0;
 };
 
 }  // namespace roevo

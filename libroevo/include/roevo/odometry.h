@@ -73,7 +73,8 @@ class Odometry {
     /// map that was loaded and those that were joined to it; without one, those of the longest piece. Waits
     /// for what is still being mapped. Whether all was written is in the stream's state.
     /// @return how many keyframes the map has
-    /// @throws std::runtime_error when there is no keyframe, or recognising is off
+    /// @throws std::runtime_error when there is no keyframe, or places are not remembered (loss.recognise and
+    /// mapping.close_loops are off)
     /// @throws std::logic_error when a map is used to localise only
     int saveMap(std::ostream& out) const;
 
@@ -93,7 +94,8 @@ class Odometry {
 
     /// Brings the map into agreement, at the end of a recording or whenever there is time: what is still
     /// being mapped takes effect, and in mode ba all keyframes are refined together (mapping.final_rounds).
-    /// Frames may follow. Covariances stay as they were.
+    /// Frames may follow. Covariances stay as they were. It takes seconds where hundreds of keyframes see the
+    /// same room.
     /// @return keyframes that were left as they were, and why
     /// @throws what mapping threw in its thread, e.g. std::bad_alloc
     std::vector<MapRefusal> refineAll();
@@ -108,7 +110,8 @@ class Odometry {
     /// was begun anew between them and nothing has brought the two together.
     /// @throws std::out_of_range where there is no such frame
     Matrix6d motionCovariance(std::size_t from, std::size_t to) const;
-    /// T_from_to of the same frames as it is known by now; where its covariance is infinite it means nothing.
+    /// T_from_to of the same frames as it was tracked and the map has it by now, neither smoothed nor bridged
+    /// as in trajectory(), which errs less. Where its covariance is infinite it means nothing.
     /// Live poses from before and after the map moved do not make a motion of the camera.
     /// @throws std::out_of_range where there is no such frame
     Pose motion(std::size_t from, std::size_t to) const;
@@ -118,7 +121,8 @@ class Odometry {
     /// Whether all is in the world of a map that was loaded: the camera was recognised in it.
     bool isLocalised() const;
 
-    /// The 3-D edges in the world: fused over all keyframes in mode ba, else the keyframes' own.
+    /// The 3-D edges in the world: fused over all keyframes in mode ba, else the keyframes' own. Those of
+    /// tracks that were not joined (KeyframeInfo::track) are where these were begun.
     EdgeMap map() const;
     /// The edges of each keyframe as it saw them, with the cluster that they belong to.
     EdgeMap keyframeEdges() const;

@@ -18,6 +18,9 @@ template <int bytes>
 bool builtWithEigenAlignment();
 inline const bool is_laid_out_alike = builtWithEigenAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES>();
 
+static_assert(!Eigen::Matrix3d::IsRowMajor,
+              "ROEVO's matrices are column by column: no EIGEN_DEFAULT_TO_ROW_MAJOR");
+
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 

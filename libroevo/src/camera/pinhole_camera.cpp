@@ -27,6 +27,20 @@ struct Cubic {
         : value(1 + r2 * (k1 + r2 * (k2 + r2 * k3))), slope(k1 + r2 * (2 * k2 + r2 * 3 * k3)) {}
 };
 
+/// px that the lens moves the image's border, at corners and middles. A fish-eye may move it by any amount.
+double farthestMoved(const PinholeCamera& camera) {
+    double farthest = 0;
+    if (camera.lens == LensModel::kKannalaBrandt) return farthest;
+    for (const double u : {0.0, 0.5 * camera.width, camera.width - 1.0}) {
+        for (const double v : {0.0, 0.5 * camera.height, camera.height - 1.0}) {
+            const double moved = (camera.distortPixel({u, v}) - Eigen::Vector2d(u, v)).norm();
+            if (!std::isfinite(moved)) return moved;
+            farthest = std::max(farthest, moved);
+        }
+    }
+    return farthest;
+}
+
 }  // namespace
 
 bool PinholeCamera::isDistorted() const {
@@ -118,6 +132,7 @@ double PinholeCamera::unfoldedRadiusSquared() const {
 std::string PinholeCamera::check() const {
     // From a view of 170 degrees to one of a telescope. Sizes in pixels follow from the focal length
     constexpr double kShortest = 0.05, kLongest = 1000;  // times the image's width
+    constexpr double kMostMoved = 0.5;                   // of the image's width
     std::ostringstream fault;
     if (width < 32 || height < 32 || width > 8192 || height > 8192) {
         fault << "camera: image size " << width << "x" << height << " is outside 32x32 to 8192x8192";
@@ -135,6 +150,9 @@ std::string PinholeCamera::check() const {
         if (!std::all_of(distortion.begin(), distortion.end(), finite) ||
             !std::all_of(denominator.begin(), denominator.end(), finite))
             fault << "camera: a distortion coefficient is not finite";
+        else if (const double moved = farthestMoved(*this); !(moved <= kMostMoved * width))
+            fault << "camera: the lens moves the image's border by " << moved
+                  << " px: are its terms in the order k1 k2 p1 p2 k3?";
     }
     return fault.str();
 }

@@ -7,6 +7,21 @@
 #include "stopwatch.h"
 
 namespace roevo {
+namespace {
+
+std::string checkStart(const Pose& T_world_start) {
+    constexpr double kFarthest = 1e4;  // m: there a coordinate of the map, a float, is right to 1 mm
+    if (!T_world_start.isFinite()) return "the start pose is not finite";
+    if (!(T_world_start.rotation().norm() > 0.5))
+        return "the start pose has no rotation: its quaternion is 0 0 0 0";
+    if (T_world_start.translation().norm() > kFarthest)
+        return "the start pose is more than 10 km from the origin, too far for the map, which is of floats: "
+               "begin "
+               "nearby, and move what comes out";
+    return "";
+}
+
+}  // namespace
 
 const char* version() {
     return ROEVO_VERSION;
@@ -23,7 +38,7 @@ Odometry::Odometry(const PinholeCamera& camera, const OdometryOptions& options, 
                    std::unique_ptr<Tracker> tracker) {
     if (const auto fault = camera.check(); !fault.empty()) throw std::invalid_argument(fault);
     if (const auto fault = checkOptions(options); !fault.empty()) throw std::invalid_argument(fault);
-    if (!T_world_start.isFinite()) throw std::invalid_argument("the start pose is not finite");
+    if (const auto fault = checkStart(T_world_start); !fault.empty()) throw std::invalid_argument(fault);
     OdometryOptions own = options;
     // What the tracker of an experiment loses stays lost: what is found without it is not its merit
     if (tracker) own.loss.recognise = own.mapping.close_loops = false;

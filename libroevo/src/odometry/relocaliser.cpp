@@ -186,7 +186,7 @@ std::optional<RelativePose> Relocaliser::find(const Frame& frame, Among tracks, 
     const EdgePoints3D edges = lifted(frame, RowMotion());
     if (edges.size() == 0) return std::nullopt;
     const PlacePoints points = describer_.describe(edges, frame.pyramid.level(0));
-    const std::vector<int>& track_of = trajectory.tracks();
+    const std::vector<int> track_of = trajectory.tracks();
     const auto wanted = [&](int id) {
         const bool own = at(track_of, id) == track_of.back();
         return tracks == Among::kAllTracks || own == (tracks == Among::kOwnTrack);

@@ -91,19 +91,25 @@ int Trajectory::addKeyframe(double timestamp, const RelativePose& pose,
 int Trajectory::add(double timestamp, const Pose& T_world_camera, const RelativePose& link,
                     PoseUncertainty in_world) {
     const int id = static_cast<int>(keyframes_.size());
-    // All four lists get longer or, where memory runs out, none
-    makeRoom(keyframes_), makeRoom(in_world_), makeRoom(links_), makeRoom(tracks_);
-    keyframes_.push_back({id, timestamp, T_world_camera});
+    // All three lists get longer or, where memory runs out, none
+    makeRoom(keyframes_), makeRoom(in_world_), makeRoom(links_);
+    const int track = link.keyframe < 0 ? id : beginOfTrack(link.keyframe);
+    keyframes_.push_back({id, timestamp, T_world_camera, track});
     in_world_.push_back(std::move(in_world));
     links_.push_back(link);
-    tracks_.push_back(link.keyframe < 0 ? id : beginOfTrack(link.keyframe));
     return id;
 }
 
 void Trajectory::findTracks() {
-    tracks_.clear();
     for (std::size_t id = 0; id < links_.size(); ++id)
-        tracks_.push_back(links_[id].keyframe < 0 ? static_cast<int>(id) : beginOfTrack(links_[id].keyframe));
+        keyframes_[id].track =
+            links_[id].keyframe < 0 ? static_cast<int>(id) : beginOfTrack(links_[id].keyframe);
+}
+
+std::vector<int> Trajectory::tracks() const {
+    std::vector<int> tracks;
+    for (const KeyframeInfo& keyframe : keyframes_) tracks.push_back(keyframe.track);
+    return tracks;
 }
 
 void Trajectory::addFrame(double timestamp, const RelativePose& pose, bool measured) {
@@ -218,7 +224,7 @@ Correction Trajectory::closeLoop(const std::vector<std::pair<int, RelativePose>>
     for (const PoseConstraint& loop : loops)
         if (beginOfTrack(loop.to) == track && contradiction(poses, loop) > kMostContradiction) return {};
     for (std::size_t id = 0; id < poses.size(); ++id) {
-        if (tracks_[id] != track || static_cast<int>(id) < held_) continue;
+        if (keyframes_[id].track != track || static_cast<int>(id) < held_) continue;
         Pose& placed = keyframes_[id].T_world_camera;
         correction.motions.emplace(static_cast<int>(id), poses[id] * placed.inverse());
         placed = poses[id];

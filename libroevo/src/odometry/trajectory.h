@@ -37,12 +37,12 @@ class Trajectory {
     void measureAfterwards(double timestamp, const RelativePose& pose);
 
     /// First keyframe of a keyframe's track.
-    int beginOfTrack(int keyframe) const { return at(tracks_, keyframe); }
+    int beginOfTrack(int keyframe) const { return at(keyframes_, keyframe).track; }
     bool areOfOneTrack(int keyframe, int other) const {
         return beginOfTrack(keyframe) == beginOfTrack(other);
     }
     /// The same of each keyframe.
-    const std::vector<int>& tracks() const { return tracks_; }
+    std::vector<int> tracks() const;
     /// Moves a keyframe's track to where the keyframe was recognised; where that is in a younger track, moves
     /// that one.
     /// @param pose  of the keyframe, relative to one of another track
@@ -113,7 +113,6 @@ class Trajectory {
     std::vector<PoseConstraint> loops_;
     std::vector<PoseUncertainty> in_world_;  ///< of the keyframes; influences of the newest alone
     std::vector<RelativePose> links_;        ///< of the keyframes, to the ones before; -1: to the world
-    std::vector<int> tracks_;                ///< of the keyframes, by their links: the first of each track
     std::vector<Frame> frames_;
     std::size_t recent_ = 0;  ///< the oldest frame that nothing was forgotten of
     std::vector<StampedPose> live_;

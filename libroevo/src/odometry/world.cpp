@@ -94,11 +94,12 @@ StoredMap World::map() {
     map.surfaces = semi_dense_.keyframes();
     map.surfaces.resize(map.places.size());
     // Tracks that were not joined are in worlds of their own
-    std::vector<int> sizes(trajectory_.tracks().size());
-    for (const int track : trajectory_.tracks()) ++at(sizes, track);
+    const std::vector<int> tracks = trajectory_.tracks();
+    std::vector<int> sizes(tracks.size());
+    for (const int track : tracks) ++at(sizes, track);
     const auto largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
     std::vector<bool> kept;
-    for (const int track : trajectory_.tracks()) kept.push_back(track == (loaded_ > 0 ? 0 : largest));
+    for (const int track : tracks) kept.push_back(track == (loaded_ > 0 ? 0 : largest));
     keepOnly(kept, map);
     return map;
 }
