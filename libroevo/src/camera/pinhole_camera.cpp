@@ -27,13 +27,19 @@ struct Cubic {
         : value(1 + r2 * (k1 + r2 * (k2 + r2 * k3))), slope(k1 + r2 * (2 * k2 + r2 * 3 * k3)) {}
 };
 
-/// px that the lens moves the image's border, at corners and middles. A fish-eye may move it by any amount.
+/// How far the lens moves a ray near the image's border, as a share of its distance from the axis. Terms
+/// hold where they were calibrated: up to there at most. A fish-eye may move rays by any amount.
 double farthestMoved(const PinholeCamera& camera) {
+    constexpr double kCalibrated = 0.5;  // focal lengths from the axis
     double farthest = 0;
     if (camera.lens == LensModel::kKannalaBrandt) return farthest;
     for (const double u : {0.0, 0.5 * camera.width, camera.width - 1.0}) {
         for (const double v : {0.0, 0.5 * camera.height, camera.height - 1.0}) {
-            const double moved = (camera.distortPixel({u, v}) - Eigen::Vector2d(u, v)).norm();
+            const Eigen::Vector2d border(u - camera.cx, v - camera.cy);
+            if (border.norm() < 1) continue;  // px
+            const Eigen::Vector2d ray = border * std::min(1.0, kCalibrated * camera.fx / border.norm());
+            const Eigen::Vector2d centre(camera.cx, camera.cy);
+            const double moved = (camera.distortPixel(centre + ray) - centre - ray).norm() / ray.norm();
             if (!std::isfinite(moved)) return moved;
             farthest = std::max(farthest, moved);
         }
@@ -132,7 +138,7 @@ double PinholeCamera::unfoldedRadiusSquared() const {
 std::string PinholeCamera::check() const {
     // From a view of 170 degrees to one of a telescope. Sizes in pixels follow from the focal length
     constexpr double kShortest = 0.05, kLongest = 1000;  // times the image's width
-    constexpr double kMostMoved = 0.5;                   // of the image's width
+    constexpr double kMostMoved = 0.5;
     std::ostringstream fault;
     if (width < 32 || height < 32 || width > 8192 || height > 8192) {
         fault << "camera: image size " << width << "x" << height << " is outside 32x32 to 8192x8192";
@@ -150,9 +156,10 @@ std::string PinholeCamera::check() const {
         if (!std::all_of(distortion.begin(), distortion.end(), finite) ||
             !std::all_of(denominator.begin(), denominator.end(), finite))
             fault << "camera: a distortion coefficient is not finite";
-        else if (const double moved = farthestMoved(*this); !(moved <= kMostMoved * width))
-            fault << "camera: the lens moves the image's border by " << moved
-                  << " px: are its terms in the order k1 k2 p1 p2 k3?";
+        else if (const double moved = farthestMoved(*this); !(moved <= kMostMoved))
+            fault << "camera: the lens moves the image's border by "
+                  << std::lround(moved < 1e4 ? 100 * moved : 1e6)
+                  << " % of its distance from the centre: are its terms in the order k1 k2 p1 p2 k3?";
     }
     return fault.str();
 }
