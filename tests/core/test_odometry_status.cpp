@@ -92,22 +92,18 @@ TEST_F(OdometryStatus, AStartPoseThatIsNotFiniteIsRefused) {
     }
 }
 
-TEST_F(OdometryStatus, AStartPoseWithoutARotationOrFarAwayIsRefused) {
-    const auto fault = [](const Pose& start) -> std::string {
+TEST_F(OdometryStatus, AStartPoseWithoutARotationIsRefused) {
+    const auto fault = [](const Eigen::Quaterniond& rotation) -> std::string {
         try {
-            const Odometry odometry(room().camera, OdometryOptions(), start);
+            const Odometry odometry(room().camera, OdometryOptions(), {rotation, Eigen::Vector3d::Zero()});
         } catch (const std::invalid_argument& error) {
             return error.what();
         }
         return "";
     };
-    EXPECT_NE(fault({Eigen::Quaterniond(0, 0, 0, 0), Eigen::Vector3d::Zero()}).find("0 0 0 0"),
-              std::string::npos)
-        << "as an unset orientation of ROS";
-    EXPECT_NE(fault({Eigen::Quaterniond(1e200, 1e200, 0, 0), Eigen::Vector3d::Zero()}), "");
-    EXPECT_NE(fault({Eigen::Quaterniond::Identity(), {500000, 4000000, 100}}).find("10 km"),
-              std::string::npos);
-    EXPECT_EQ(fault({Eigen::Quaterniond(2, 0, 0, 0), {5000, 4000, 100}}), "");
+    EXPECT_NE(fault({0, 0, 0, 0}).find("0 0 0 0"), std::string::npos) << "as an unset orientation of ROS";
+    EXPECT_NE(fault({1e200, 1e200, 0, 0}), "");
+    EXPECT_EQ(fault({2, 0, 0, 0}), "");
 }
 
 TEST_F(OdometryStatus, CovariancesKnowThatAllDepthsMayBeWrongByOneShare) {

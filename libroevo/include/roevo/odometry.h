@@ -50,6 +50,8 @@ class Odometry {
   public:
     /// @throws std::invalid_argument when the camera, an option or the start pose is unusable (one line that
     /// names it); std::system_error when the mapping thread cannot be started
+    /// @param T_world_start  of the first frame. Map and surface are of floats: 10 km from the origin they are
+    /// right to 1 mm, 4000 km away to 0.25 m, while poses are not the worse for it
     Odometry(const PinholeCamera& camera, const OdometryOptions& options,
              const Pose& T_world_start = Pose::Identity());
     /// With another tracker, for experiments: frames that it loses are not looked up among the keyframes, and

@@ -120,7 +120,7 @@ std::string faultOf(const StoredMap& map) {
     for (const std::size_t size : {map.graph.links.size(), map.graph.covariances.size(), map.places.size(),
                                    map.edges.size(), map.surfaces.size()})
         if (size != count) return "not all is there of each of its keyframes";
-    if (!graphIsSound(map.graph)) return "poses of keyframes are none";
+    if (!graphIsSound(map.graph)) return "poses of keyframes are none, or beyond 1000 km from the origin";
     for (std::size_t id = 0; id < count; ++id)
         if (!isSound(map.places[id]) || !edgesAreSound(map, id) || !map.surfaces[id].isSound())
             return "keyframe " + std::to_string(id) + " is none";
