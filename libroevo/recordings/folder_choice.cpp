@@ -1,6 +1,7 @@
 #include "recordings/folder_choice.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 
 #include "programs/program.h"
 #include "programs/text.h"
@@ -18,6 +19,17 @@ std::string joined(const std::vector<double>& values) {
     return text;
 }
 
+void requireFour(const char* option, const std::vector<double>& values, const char* names) {
+    if (!values.empty() && values.size() != 4)
+        throw UsageError(std::string(option) + ": 4 numbers (" + names + "), not " +
+                         std::to_string(values.size()));
+}
+
+void requirePositive(const char* option, double value) {
+    if (!(value >= 0 && std::isfinite(value)))  // 0: not said
+        throw UsageError(std::string(option) + ": a number above 0, not " + plainNumber(value));
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> FolderChoice::options() const {
@@ -26,12 +38,16 @@ std::vector<std::pair<std::string, std::string>> FolderChoice::options() const {
     if (!intrinsics.empty()) out.emplace_back(kIntrinsics, joined(intrinsics));
     if (!distortion.empty()) out.emplace_back(kDistortion, joined(distortion));
     if (!fisheye.empty()) out.emplace_back(kFisheye, joined(fisheye));
-    if (depth_scale > 0) out.emplace_back(kDepthScale, plainNumber(depth_scale));
-    if (frame_rate > 0) out.emplace_back(kFrameRate, plainNumber(frame_rate));
+    if (depth_scale != 0) out.emplace_back(kDepthScale, plainNumber(depth_scale));
+    if (frame_rate != 0) out.emplace_back(kFrameRate, plainNumber(frame_rate));
     return out;
 }
 
 void FolderChoice::check() const {
+    requireFour(kIntrinsics, intrinsics, "fx fy cx cy");
+    requireFour(kFisheye, fisheye, "k1 k2 k3 k4");
+    requirePositive(kDepthScale, depth_scale);
+    requirePositive(kFrameRate, frame_rate);
     const std::size_t terms = distortion.size();
     if (terms != 0 && terms != 4 && terms != 5 && terms != 8)
         throw UsageError(std::string(kDistortion) +

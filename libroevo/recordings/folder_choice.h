@@ -22,7 +22,8 @@ struct FolderChoice {
     /// The options that were given, with their values, as a command line has them.
     std::vector<std::pair<std::string, std::string>> options() const;
 
-    /// @throws UsageError when it contradicts itself
+    /// @throws std::runtime_error (of programs: UsageError) naming the option, for numbers that are too few,
+    /// too many or negative, and when it contradicts itself
     void check() const;
 };
 

@@ -172,6 +172,30 @@ TEST(BadInputs, IntrinsicsThatAreNone) {
                     "pairs.txt:1: expected 'timestamp image timestamp depth_image'");
 }
 
+TEST(BadInputs, ChoicesWithTooFewNumbersOrNone) {
+    const SmallDataset folder("plain");
+    const auto error = [&](void (*change)(FolderChoice&)) {
+        FolderChoice choice;
+        choice.intrinsics = {60, 61, 31.5, 23.5};
+        choice.depth_scale = 5000;
+        change(choice);
+        return openError(folder.path(), choice);
+    };
+    EXPECT_EQ(error([](FolderChoice&) {}), "");
+    EXPECT_CONTAINS(error([](FolderChoice& c) { c.intrinsics.resize(2); }),
+                    "--intrinsics: 4 numbers (fx fy cx cy), not 2");
+    EXPECT_CONTAINS(error([](FolderChoice& c) { c.intrinsics.push_back(1); }), "--intrinsics: 4 numbers");
+    EXPECT_CONTAINS(error([](FolderChoice& c) { c.fisheye = {0.1}; }),
+                    "--fisheye: 4 numbers (k1 k2 k3 k4), not 1");
+    EXPECT_CONTAINS(error([](FolderChoice& c) { c.intrinsics.clear(), c.depth_scale = -1; }),
+                    "--depth-scale: a number above 0, not -1");
+    EXPECT_CONTAINS(error([](FolderChoice& c) { c.intrinsics.clear(), c.depth_scale = NAN; }),
+                    "--depth-scale: a number above 0, not nan");
+    EXPECT_CONTAINS(error([](FolderChoice& c) { c.depth_scale = INFINITY; }), "--depth-scale");
+    EXPECT_CONTAINS(error([](FolderChoice& c) { c.frame_rate = -30; }),
+                    "--frame-rate: a number above 0, not -30");
+}
+
 TEST(BadInputs, DepthThatIsHalfThere) {
     const TemporaryFolder folder;
     setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0);
