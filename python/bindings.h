@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "roevo/options.h"
@@ -30,5 +31,8 @@ Pose toPose(const Eigen::MatrixXd& matrix, const std::string& name);
 
 /// @throws OSError as Python's open() does: FileNotFoundError, PermissionError ...
 void requireReadable(const std::filesystem::path& file);
+
+/// Lets `save` write a file. @throws OSError for a file that cannot be written; what else `save` throws
+void saveTo(const std::filesystem::path& file, const std::function<void(const std::string&)>& save);
 
 }  // namespace roevo::python

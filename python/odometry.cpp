@@ -116,7 +116,11 @@ class Session {
     }
 
     int saveMap(const std::filesystem::path& file) {
-        return alone([&](Odometry& odometry) { return saveMapFile(odometry, file.string()); });
+        int keyframes = 0;
+        saveTo(file, [&](const std::string& name) {
+            keyframes = alone([&](const Odometry& odometry) { return saveMapFile(odometry, name); });
+        });
+        return keyframes;
     }
 
     /// What a constant function of the odometry gives.
@@ -316,7 +320,9 @@ Returns what was left as it was and why, a line each.)")
 Poses are in its world from where the camera is recognised in it (see localised). Returns how many keyframes it has.
 Raises OSError for a file that cannot be read, RuntimeError for what is no map, or one of another camera.)")
         .def("save_map", &Session::saveMap, py::arg("file"),
-             "Writes the map for load_map() and roevo-odometry --map-in. Returns how many keyframes it has.");
+             R"(Writes the map for load_map() and roevo-odometry --map-in. Returns how many keyframes it has.
+
+Raises OSError for a file that cannot be written, RuntimeError where there is no map.)");
     addPoses(session);
     module.def(
         "register_depth",

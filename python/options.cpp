@@ -1,10 +1,13 @@
 #include <pybind11/stl/filesystem.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <stdexcept>
+#include <system_error>
 #include <vector>
 
 #include "bindings.h"
+#include "input/regular_file.h"
 #include "roevo_mrpt/config_file.h"
 
 namespace py = pybind11;
@@ -73,6 +76,12 @@ py::dict changed(OdometryOptions& options) {
     return out;
 }
 
+[[noreturn]] void throwOsError(const std::filesystem::path& file, int error) {
+    errno = error;
+    PyErr_SetFromErrnoWithFilename(PyExc_OSError, file.c_str());
+    throw py::error_already_set();
+}
+
 }  // namespace
 
 OdometryOptions toOptions(const py::object& values) {
@@ -86,9 +95,21 @@ OdometryOptions toOptions(const py::object& values) {
 }
 
 void requireReadable(const std::filesystem::path& file) {
-    if (access(file.c_str(), R_OK) == 0) return;  // opening a pipe would wait for who writes to it
-    PyErr_SetFromErrnoWithFilename(PyExc_OSError, file.c_str());
-    throw py::error_already_set();
+    // Opening a pipe would wait for who writes to it
+    if (access(file.c_str(), R_OK) != 0) throwOsError(file, errno);
+    if (std::filesystem::is_directory(file)) throwOsError(file, EISDIR);
+}
+
+void saveTo(const std::filesystem::path& file, const std::function<void(const std::string&)>& save) {
+    if (const std::string other = otherThanFile(file); !other.empty()) {
+        PyErr_Format(PyExc_OSError, "cannot write %s: %s", file.c_str(), other.c_str());
+        throw py::error_already_set();
+    }
+    try {
+        save(file.string());
+    } catch (const std::system_error& fault) {
+        throwOsError(file, fault.code().value());
+    }
 }
 
 void addOptions(py::module_& module) {
@@ -118,9 +139,9 @@ void addOptions(py::module_& module) {
         .def(
             "save",
             [](const OdometryOptions& self, const std::filesystem::path& file) {
-                saveConfigFile(file.string(), self);
+                saveTo(file, [&](const std::string& name) { saveConfigFile(name, self); });
             },
-            py::arg("file"), "Writes all options as an .ini file with comments.")
+            py::arg("file"), "Writes all options as an .ini file with comments. Raises OSError.")
         .def(
             "__getitem__",
             [](OdometryOptions& self, const std::string& name) { return valueOf(fieldOf(self, name)); },

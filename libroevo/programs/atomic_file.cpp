@@ -29,21 +29,13 @@ int registerFile(const char* path) {
     return -1;
 }
 
-std::string temporaryName(const std::string& path) {
-    static std::atomic<unsigned> counter{0};
-    const fs::path target(path);
-    const std::string name = "." + target.stem().string() + ".partial-" + std::to_string(getpid()) + "-" +
-                             std::to_string(counter++) + target.extension().string();
-    return (target.parent_path() / name).string();
-}
-
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
     throw std::runtime_error("cannot write " + path + ": " + what);
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), temporary_path_(temporaryName(path_)) {
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), temporary_path_(temporaryBeside(path_)) {
     requireReplaceable(path_);
     slot_ = registerFile(temporary_path_.c_str());
 }

@@ -47,6 +47,16 @@ TEST(ConfigFile, RoundTripsEveryOption) {
     EXPECT_EQ(values(read), values(options));
 }
 
+TEST(ConfigFile, SaysWhyItCannotBeWrittenAndKeepsWhatLiesBesideIt) {
+    const test::TemporaryFolder folder;
+    EXPECT_EQ(errorOf([&] { saveConfigFile(folder / "no/a.ini", {}); }),
+              "cannot write " + folder / "no/a.ini" + ": No such file or directory");
+    test::writeFile(folder / "a.ini.part", "mine");
+    saveConfigFile(folder / "a.ini", {});
+    EXPECT_EQ(test::readFile(folder / "a.ini.part"), "mine");
+    EXPECT_EQ(countEntries(folder.path()), 2);
+}
+
 TEST(ConfigFile, SaysUnitRangeAndMeaningOfEveryOption) {
     OdometryOptions options;
     const std::string text = toConfigText(options);

@@ -8,6 +8,7 @@
 #include "mrpt/test_helpers.h"
 #include "roevo_mrpt/scene_builder.h"
 #include "roevo_mrpt/scene_objects.h"
+#include "roevo_mrpt/simple_map.h"
 
 namespace roevo {
 namespace {
@@ -331,13 +332,15 @@ TEST(SceneBuilder, PlyOfPointsHoldsPositionAndColour) {
     EXPECT_EQ(in.peek(), EOF);
 }
 
-TEST(SceneBuilder, UnwritableOutputIsNamed) {
-    EXPECT_NE(errorOf([] { savePointsPly("/nowhere/points.ply", {}); }).find("/nowhere/points.ply"),
-              std::string::npos);
-    EXPECT_NE(errorOf([] { savePly("/nowhere/map.ply", {}); }).find("/nowhere/map.ply"), std::string::npos);
-    EXPECT_NE(
-        errorOf([] { saveScene("/nowhere/map.3Dscene", *buildScene({})); }).find("/nowhere/map.3Dscene"),
-        std::string::npos);
+TEST(SceneBuilder, UnwritableOutputIsNamedWithTheReason) {
+    const std::string why = ": No such file or directory";
+    EXPECT_EQ(errorOf([] { savePointsPly("/nowhere/points.ply", {}); }),
+              "cannot write /nowhere/points.ply" + why);
+    EXPECT_EQ(errorOf([] { savePly("/nowhere/map.ply", {}); }), "cannot write /nowhere/map.ply" + why);
+    EXPECT_EQ(errorOf([] { saveScene("/nowhere/map.3Dscene", *buildScene({})); }),
+              "cannot write /nowhere/map.3Dscene" + why);
+    EXPECT_EQ(errorOf([] { saveSimpleMap("/nowhere/map.simplemap", {}); }),
+              "cannot write /nowhere/map.simplemap" + why);
 }
 
 }  // namespace

@@ -236,18 +236,28 @@ class Maps(unittest.TestCase):
         (folder / "text.map").write_text("not a map")
         with self.assertRaisesRegex(FileNotFoundError, "none.map"):
             roevo.Odometry(recording.camera).load_map(folder / "none.map")
-        for file, words in (("text.map", "text.map: "), (".", "folder")):
-            with self.assertRaisesRegex(RuntimeError, words) as raised:
-                roevo.Odometry(recording.camera).load_map(folder / file)
-            self.assertNotIn("\n", str(raised.exception))
+        with self.assertRaisesRegex(RuntimeError, "text.map: ") as raised:
+            roevo.Odometry(recording.camera).load_map(folder / "text.map")
+        self.assertNotIn("\n", str(raised.exception))
         os.mkfifo(folder / "pipe")
         for read, kind in ((roevo.Odometry(recording.camera).load_map, RuntimeError), (roevo.Options.read, ValueError)):
             with self.assertRaisesRegex(kind, "pipe"):
                 read(folder / "pipe")
         with self.assertRaisesRegex(RuntimeError, "keyframe"):
             roevo.Odometry(recording.camera).save_map(folder / "none.map")
-        with self.assertRaises(RuntimeError):
-            track()[0].save_map(folder / "no" / "such.map")
+
+    def test_files_that_cannot_be_read_or_written_are_as_for_open(self):
+        odometry, options = track()[0], roevo.Options()
+        os.mkfifo(folder / "fifo")
+        for read in (roevo.Odometry(recording.camera).load_map, roevo.Options.read):
+            with self.assertRaisesRegex(IsADirectoryError, str(folder)):
+                read(folder)
+        for save in (odometry.save_map, options.save):
+            with self.assertRaisesRegex(FileNotFoundError, "such.map"):
+                save(folder / "no" / "such.map")
+            for other in (folder, folder / "fifo"):
+                with self.assertRaisesRegex(OSError, f"cannot write {other}: it is a "):
+                    save(other)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ int saveMapFile(const Odometry& odometry, const std::string& file) {
     int keyframes = 0;
     writeWholeFile(file, [&](const std::string& temporary) {
         std::ofstream out(temporary, std::ios::binary);
-        if (!out) throw std::runtime_error("cannot write " + file + ": " + std::strerror(errno));
+        if (!out) return false;
         keyframes = odometry.saveMap(out);
         out.close();
         return !out.fail();

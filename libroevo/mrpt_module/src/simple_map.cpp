@@ -5,8 +5,6 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
-#include <cerrno>
-#include <cstring>
 #include <stdexcept>
 
 #include "coloured_points.h"
@@ -74,12 +72,7 @@ void buildSimpleMap(const std::vector<KeyframeInfo>& keyframes, const EdgeMap& k
 void saveSimpleMap(const std::string& file, const mrpt::maps::CSimpleMap& map) {
     writeWholeFile(file, [&](const std::string& temporary) {
         GzFile out;
-        errno = 0;
-        if (!out.open(temporary, kGzLevel))
-            throw std::runtime_error("cannot write " + file + ": " +
-                                     (errno ? std::strerror(errno) : "the file cannot be created"));
-        const bool written = out.write(map);
-        return out.close() && written;
+        return out.open(temporary, kGzLevel) && out.write(map) && out.close();
     });
 }
 

@@ -1,7 +1,8 @@
 #include "whole_file.h"
 
+#include <cerrno>
 #include <filesystem>
-#include <stdexcept>
+#include <system_error>
 
 #include "input/regular_file.h"
 
@@ -9,13 +10,20 @@ namespace roevo {
 
 void writeWholeFile(const std::string& file, const std::function<bool(const std::string&)>& write) {
     namespace fs = std::filesystem;
-    const std::string temporary = file + ".part";
-    std::error_code error;
     requireReplaceable(file);
+    const std::string temporary = temporaryBeside(file);
+    std::error_code error;
     try {
-        if (!write(temporary)) throw std::runtime_error("cannot write " + file + ": is the disk full?");
+        errno = 0;
+        if (!write(temporary)) {
+            const int why = errno;
+            // Of a file that was opened errno may not tell: much has been done since
+            const bool opened = why == 0 || fs::exists(temporary, error);
+            throw std::system_error(opened ? EIO : why, std::generic_category(),
+                                    "cannot write " + file + (opened ? " (is the disk full?)" : ""));
+        }
         fs::rename(temporary, file, error);
-        if (error) throw std::runtime_error("cannot write " + file + ": " + error.message());
+        if (error) throw std::system_error(error, "cannot write " + file);
     } catch (...) {
         fs::remove(temporary, error);
         throw;

@@ -1,4 +1,7 @@
 #pragma once
+#include <unistd.h>
+
+#include <atomic>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -37,6 +40,14 @@ inline void requireRegularInput(const std::filesystem::path& path) {
 inline void requireReplaceable(const std::filesystem::path& path) {
     if (const std::string other = otherThanFile(path); !other.empty())
         throw std::runtime_error("cannot write " + path.string() + ": " + other + "; give a file name");
+}
+
+/// A name in the same folder that nobody else has, with the same extension.
+inline std::string temporaryBeside(const std::filesystem::path& path) {
+    static std::atomic<unsigned> counter{0};
+    const std::string name = "." + path.stem().string() + ".partial-" + std::to_string(getpid()) + "-" +
+                             std::to_string(counter++) + path.extension().string();
+    return (path.parent_path() / name).string();
 }
 
 }  // namespace roevo
