@@ -148,6 +148,11 @@ TEST(PoseConversions, TheRobotsMotionFollowsTheCameras) {
     }
 }
 
+TEST(PoseConversions, ARobotWithoutMountsIsToldOf) {
+    EXPECT_THROW((void)RobotContext().mountAt(0), std::logic_error);
+    EXPECT_THROW((void)RobotContext().robotPose(0, Pose::Identity()), std::logic_error);
+}
+
 TEST(CameraConversions, RoundTripWithAndWithoutDistortion) {
     PinholeCamera camera{640, 480, 517.3, 516.5, 318.6, 255.3, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
     EXPECT_EQ(fromMrptCamera(toMrptCamera(camera, "a"), "colour camera"), camera);
@@ -208,6 +213,10 @@ TEST(ImageConversions, FilesThatAreMissingDamagedOrOfTheWrongKindAreNamed) {
     EXPECT_NE(error("eight.png").find("eight.png"), std::string::npos);
     EXPECT_NE(error("none.png").find("not found"), std::string::npos);
     EXPECT_NE(errorOf([&] { readColourFile(folder / "cut.png"); }).find("cut.png"), std::string::npos);
+    EXPECT_EQ(errorOf([&] { writeImageFile(folder / "none", noise); }),
+              "cannot write " + folder / "none" + ": the image cannot be encoded");
+    EXPECT_THROW(writeImageFile(folder / "a.zzz", noise), std::runtime_error);
+    EXPECT_THROW(writeImageFile(folder / "a.png", cv::Mat()), std::runtime_error);
 }
 
 }  // namespace

@@ -118,8 +118,12 @@ cv::Mat decodeDepth(std::string_view bytes, const std::string& name) {
 
 void writeImageFile(const std::string& file, const cv::Mat& image, const std::vector<int>& parameters) {
     std::vector<std::uint8_t> bytes;
-    if (!cv::imencode(std::filesystem::path(file).extension().string(), image, bytes, parameters))
-        throw std::runtime_error("cannot write " + file + ": the image cannot be encoded");
+    bool encoded = false;
+    try {
+        encoded = cv::imencode(std::filesystem::path(file).extension().string(), image, bytes, parameters);
+    } catch (const cv::Exception&) {  // whose words go over several lines
+    }
+    if (!encoded) throw std::runtime_error("cannot write " + file + ": the image cannot be encoded");
     errno = 0;
     std::ofstream out(file, std::ios::binary);
     out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));

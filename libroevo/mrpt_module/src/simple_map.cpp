@@ -26,6 +26,7 @@ Matrix6d turned(const Matrix6d& covariance, const Eigen::Matrix3d& R) {
 }  // namespace
 
 const Pose& RobotContext::mountAt(double timestamp) const {
+    if (mounts.empty()) throw std::logic_error("RobotContext: there is no mount of the camera on the robot");
     auto after = mounts.upper_bound(timestamp);
     if (after != mounts.begin()) --after;
     return after->second;

@@ -16,9 +16,10 @@ struct RobotContext {
     std::map<double, Pose> mounts;        ///< T_robot_camera (optical axes) from this time on; one at least
     std::map<double, Matrix6d> covariances;  ///< FrameResult::covariance by stamp; where there is none: zero
 
-    const Pose& mountAt(double timestamp) const;  ///< the last before, or else the first
+    /// The last before, or else the first. @throws std::logic_error where there is none
+    const Pose& mountAt(double timestamp) const;
 
-    /// The robot's pose with its covariance, given the camera's in the odometry's world.
+    /// The robot's pose with its covariance, given the camera's in the odometry's world. @throws as mountAt()
     mrpt::poses::CPose3DPDFGaussian robotPose(double timestamp, const Pose& T_world_camera) const;
 };
 
