@@ -171,6 +171,19 @@ TEST(RegisterDepth, RefusesAnImageOfAnotherSizeOrType) {
                  std::invalid_argument);
 }
 
+TEST(RegisterDepth, RefusesACameraOrAPoseThatIsNone) {
+    const cv::Mat depth(120, 160, CV_32FC1, cv::Scalar(1.0F));
+    PinholeCamera blind = kDepthCamera;
+    blind.fx = 0;
+    const Pose here = Pose::Identity();
+    EXPECT_THROW(registerDepth(depth, blind, kDepthCamera, here), std::invalid_argument);
+    EXPECT_THROW(registerDepth(depth, kDepthCamera, blind, here), std::invalid_argument);
+    EXPECT_THROW(registerDepth(depth, kDepthCamera, PinholeCamera(), here), std::invalid_argument);
+    EXPECT_THROW(registerDepth(depth, kDepthCamera, kDepthCamera, moved(0, NAN, 0)), std::invalid_argument);
+    cv::Mat range = depth.clone();
+    EXPECT_THROW(rangeToDepth(range, blind), std::invalid_argument);
+}
+
 TEST(RangeToDepth, RangesToAPlaneBecomeItsDepth) {
     const Eigen::Vector3d n(0.1, -0.2, 1);
     const cv::Mat depth = planeImage(kDepthCamera, n, 1.5);

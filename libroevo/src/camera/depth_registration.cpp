@@ -27,7 +27,12 @@ const cv::Mat& raysOf(const PinholeCamera& camera) {
     return rays;
 }
 
+void requireCamera(const PinholeCamera& camera) {
+    if (const std::string fault = camera.check(); !fault.empty()) throw std::invalid_argument(fault);
+}
+
 void requireDepth(const cv::Mat& depth, const PinholeCamera& camera) {
+    requireCamera(camera);
     if (depth.type() != CV_32FC1 || depth.cols != camera.width || depth.rows != camera.height) {
         throw std::invalid_argument("depth image must be 32-bit float of the depth camera's size " +
                                     std::to_string(camera.width) + "x" + std::to_string(camera.height));
@@ -39,6 +44,9 @@ void requireDepth(const cv::Mat& depth, const PinholeCamera& camera) {
 cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
                       const PinholeCamera& colour_camera, const Pose& T_colour_depth) {
     requireDepth(depth, depth_camera);
+    requireCamera(colour_camera);
+    if (!T_colour_depth.matrix().allFinite())
+        throw std::invalid_argument("the pose of the depth camera is not finite");
     const cv::Mat& rays = raysOf(depth_camera);
     const bool distorted = colour_camera.isDistorted();
     const double farthest = colour_camera.unfoldedRadiusSquared();
