@@ -17,8 +17,8 @@ void addCamera(pybind11::module_& module);
 void addOptions(pybind11::module_& module);
 void addOdometry(pybind11::module_& module);
 
-/// @param values  None: the defaults; Options: a copy; a dict of "section.key" and values: the defaults, and
-/// those on top
+/// @param values  None: the defaults; Options: a copy; a dict or another mapping of "section.key" and values:
+/// the defaults, and those on top
 /// @throws std::invalid_argument in one line, naming the option; py::type_error for anything else
 OdometryOptions toOptions(const pybind11::object& values);
 

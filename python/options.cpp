@@ -28,8 +28,14 @@ OptionField fieldOf(OdometryOptions& options, const std::string& name) {
     throw py::key_error(setOption(options, name, ""));  // which is the closest one
 }
 
+py::object mapping() {
+    return py::module_::import("collections.abc").attr("Mapping");
+}
+
 void set(OdometryOptions& options, const std::string& name, const py::handle& value) {
     std::string text = py::str(value);
+    const bool is_whole = text.size() > 2 && text.compare(text.size() - 2, 2, ".0") == 0;
+    if (is_whole && !py::isinstance<py::str>(value)) text.resize(text.size() - 2);    // a float for an int
     if (text == "True" || text == "False") text = text == "True" ? "true" : "false";  // NumPy's, too
     if (const std::string fault = setOption(options, name, text); !fault.empty())
         throw std::invalid_argument(fault);
@@ -62,8 +68,12 @@ bool has(OdometryOptions& options, const std::string& name) {
     return false;
 }
 
-void update(OdometryOptions& options, const py::dict& values) {
-    for (const auto& [name, value] : values) set(options, py::str(name), value);
+void update(OdometryOptions& options, const py::object& values) {
+    if (!py::isinstance(values, mapping()))
+        throw py::type_error("options must be roevo.Options or a dict, not " + nameOfType(values));
+    OdometryOptions changed = options;
+    for (const auto& [name, value] : py::dict(values)) set(changed, py::str(name), value);
+    options = changed;
 }
 
 /// Those that are not as by default.
@@ -87,10 +97,7 @@ py::dict changed(OdometryOptions& options) {
 OdometryOptions toOptions(const py::object& values) {
     if (py::isinstance<OdometryOptions>(values)) return values.cast<OdometryOptions>();
     OdometryOptions options;
-    if (values.is_none()) return options;
-    if (!py::isinstance<py::dict>(values))
-        throw py::type_error("options must be roevo.Options or a dict, not " + nameOfType(values));
-    update(options, values);
+    if (!values.is_none()) update(options, values);
     return options;
 }
 
@@ -150,7 +157,8 @@ void addOptions(py::module_& module) {
         .def("__contains__", &has, py::arg("name"))
         .def("__len__", [](OdometryOptions& self) { return optionFields(self).size(); })
         .def("__iter__", [](OdometryOptions& self) { return py::iter(names(self)); })
-        .def("update", &update, py::arg("values"), "Sets those that the dict names.")
+        .def("update", &update, py::arg("values"),
+             "Sets those that a dict or another mapping names, all or none.")
         .def("__repr__",
              [](OdometryOptions& self) {
                  const py::dict own = changed(self);
@@ -160,10 +168,9 @@ void addOptions(py::module_& module) {
                         [](const py::tuple& state) { return toOptions(py::object(state[0])); }))
         .def("describe", &describe, py::arg("name"), "What the option is, its unit and its range.");
     // The rest of what a mapping can
-    const py::object mapping = py::module_::import("collections.abc").attr("Mapping");
-    mapping.attr("register")(options);
+    mapping().attr("register")(options);
     for (const char* name : {"keys", "values", "items", "get", "__eq__"})
-        options.attr(name) = mapping.attr(name);
+        options.attr(name) = mapping().attr(name);
     options.attr("__hash__") = py::none();  // it can be changed
 }
 

@@ -66,6 +66,7 @@ for folder in "$prefix"/lib/python3*/dist-packages; do
 done
 export PYTHONPATH="${PYTHONPATH-}"
 if [ -z "${WITHOUT_PYTHON-}" ]; then
+    ls "$prefix"/lib/python3*/dist-packages/roevo-stubs/__init__.pyi  # where type checkers look
     /usr/bin/python3 -B -c "import roevo; print('roevo', roevo.__version__)"
     /usr/bin/python3 -B "$sources/examples/recording.py" "$work/room" >"$work/python.txt"
     same "$work/python.txt" "$work/out/trajectory.txt"

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+import types
 import unittest
 
 import numpy as np
@@ -75,6 +76,26 @@ class OptionsAndCamera(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "sensor.max_depth"):
             roevo.Odometry(recording.camera, options)
 
+    def test_any_mapping_of_options_is_taken_wholly_or_not_at_all(self):
+        values = types.MappingProxyType({"odometry.mode": "tr", "fine.max_points": 2000.0})
+        options, other = roevo.Options(values), roevo.Options()
+        self.assertEqual(options["fine.max_points"], 2000)
+        self.assertIs(type(options["fine.max_points"]), int)
+        self.assertEqual(roevo.Odometry(recording.camera, values).options, options)
+        other.update(options)
+        self.assertEqual(other, options)
+        with self.assertRaisesRegex(ValueError, "fine.chi2"):
+            other.update({"odometry.mode": "ct", "fine.chi2": -5})
+        self.assertEqual(other, options)
+        options["fine.max_points"] = np.float32(3000)
+        self.assertEqual(options["fine.max_points"], 3000)
+        for value in (3000.5, "3000.0"):
+            with self.assertRaisesRegex(ValueError, "is not a whole number"):
+                options["fine.max_points"] = value
+        for none in ("tr", [("odometry.mode", "tr")], None):
+            with self.assertRaisesRegex(TypeError, "^options must be "):
+                other.update(none)
+
     def test_cameras_and_starts_are_checked(self):
         with self.assertRaisesRegex(ValueError, "fx"):
             roevo.Camera(640, 480, -525, 525, 319.5, 239.5)
@@ -116,6 +137,8 @@ class OptionsAndCamera(unittest.TestCase):
         stub = ast.parse((pathlib.Path(__file__).resolve().parents[2] / "python" / "roevo.pyi").read_text())
         named = {node.name: node for node in stub.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
         self.assertEqual(set(named), public(vars(roevo)))
+        assigned = {target.id for node in stub.body if isinstance(node, ast.Assign) for target in node.targets}
+        self.assertEqual(public(assigned), set())  # what only the stub has is nobody's to import
         inherited = {"keys", "values", "items", "get"}  # of Mapping
         for name, node in named.items():
             if not isinstance(node, ast.ClassDef):
