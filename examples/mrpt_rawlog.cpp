@@ -11,10 +11,17 @@
 namespace {
 
 int run(const std::string& config_file, const std::string& rawlog) {
+    if (!mrpt::system::fileExists(config_file)) throw std::runtime_error("there is no file " + config_file);
     const mrpt::config::CConfigFile config(config_file);
     const std::string section = "MappingApplication";
-    const std::string input = rawlog.empty() ? config.read_string(section, "rawlog_file", "", true) : rawlog;
-    const std::string out = config.read_string(section, "logOutput_dir", "", true);
+    // MRPT would tell of a value that is not there with its stack of calls
+    const auto required = [&](const std::string& key) {
+        const std::string value = config.read_string(section, key, "");
+        if (value.empty()) throw std::runtime_error(config_file + ": no " + key + " in [" + section + "]");
+        return value;
+    };
+    const std::string input = rawlog.empty() ? required("rawlog_file") : rawlog;
+    const std::string out = required("logOutput_dir");
     const std::string label = config.read_string(section, "sensor_label", "");
 
     roevo::CRoevoOdometry odometry;

@@ -59,6 +59,11 @@ sed "s|LOG_ROEVO|$work/mrpt|" "$sources/config_ini/mrpt_application.ini" >"$work
 "$work/examples/mrpt_rawlog" "$work/application.ini" "$work/room.rawlog"
 [ "$(grep -vc '^%' "$work/mrpt/path.txt")" -eq 8 ] || fail "$work/mrpt/path.txt: not a pose for every frame"
 [ -s "$work/mrpt/map.simplemap" ] && [ -s "$work/mrpt/map.3Dscene" ] || fail "$work/mrpt: no map"
+echo "[MappingApplication]" >"$work/empty.ini"
+for ini in none empty; do
+    "$work/examples/mrpt_rawlog" "$work/$ini.ini" 2>"$work/$ini.txt" && fail "mrpt_rawlog does without $ini.ini"
+    [ "$(grep -c . "$work/$ini.txt")" -eq 1 ] || fail "$work/$ini.txt: more than one line"
+done
 
 # Debian's Python finds by itself what is below /usr
 for folder in "$prefix"/lib/python3*/dist-packages; do
