@@ -50,13 +50,15 @@ class FrameSource {
 };
 
 /// Opens a rawlog, a bag or a dataset (folder).
-/// @throws std::runtime_error in one line; UsageError for a choice that is not for such an input
+/// @throws std::runtime_error in one line, also for a choice that is not for such an input: it is named as
+/// the programs' option, such as --sensor-label (and is a UsageError to them)
 std::unique_ptr<FrameSource> openSource(const std::string& input, const InputChoice& choice = {});
 
 /// Decodes ahead in a thread of its own (programs/ahead.h), in order.
 std::unique_ptr<FrameSource> prefetch(std::unique_ptr<FrameSource> source);
 
-/// Leaves out the first frames, of a source of openSource(). @throws std::runtime_error when none is left
+/// Leaves out the first frames, of a source of openSource(). @throws std::runtime_error when none is left,
+/// which speaks of the programs' option --skip
 /// @param input  name of the source for the message
 void skipFrames(FrameSource& source, std::size_t count, const std::string& input);
 
