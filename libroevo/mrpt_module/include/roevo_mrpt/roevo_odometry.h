@@ -25,7 +25,7 @@ namespace roevo {
 
 /// roevo::Odometry with the habits of MRPT's mapping classes (the verbs of mrpt::slam::CMetricMapBuilder).
 /// Poses are those of the robot (x forward, z up): each observation's sensorPose tells where its camera sits.
-/// Not thread-safe.
+/// Not thread-safe. It can be neither copied nor moved: keep it by a std::unique_ptr where that is wanted.
 class CRoevoOdometry : public mrpt::system::COutputLogger {
   public:
     /// The odometry's options as MRPT loads and saves them. Option "sensor.max_depth" is key `max_depth` of
