@@ -1,8 +1,6 @@
 #include "index.h"
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "programs/atomic_file.h"
 #include "programs/program.h"
@@ -14,20 +12,6 @@ namespace {
 
 bool isPlot(const std::string& file) {
     return std::filesystem::path(file).extension() == ".svg";
-}
-
-// Files of an earlier study that this one has no link to: they would be taken for its own.
-void removeOthers(const std::filesystem::path& index, const std::string& text) {
-    std::ifstream in(index);
-    const std::string old(std::istreambuf_iterator<char>(in), {});
-    for (std::size_t at = 0; (at = old.find("](", at)) != std::string::npos; ++at) {
-        const std::string name = old.substr(at + 2, old.find(')', at) - at - 2);
-        const bool is_ours = isPlot(name) || std::filesystem::path(name).extension() == ".csv";
-        std::error_code ignored;
-        if (is_ours && name.find('/') == std::string::npos &&
-            text.find("](" + name + ")") == std::string::npos)
-            std::filesystem::remove(index.parent_path() / name, ignored);
-    }
 }
 
 std::string machineLines() {
@@ -90,9 +74,7 @@ void writeIndex(const std::string& folder, const std::vector<StudyInput>& inputs
     for (const std::string& line : damageLines(inputs)) text += "- " + line + "\n\n";
     text += protocolText();
     for (const IndexEntry& entry : index.entries) text += entryText(entry);
-    const std::filesystem::path file = std::filesystem::path(folder) / "study.md";
-    removeOthers(file, text);
-    writeTextAtomically(file.string(), text);
+    writeTextAtomically((std::filesystem::path(folder) / "study.md").string(), text);
 }
 
 }  // namespace roevo

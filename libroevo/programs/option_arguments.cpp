@@ -9,10 +9,11 @@
 namespace roevo {
 
 std::string faultOfNumber(const std::string& word) {
+    constexpr double kMost = 1e12;
     double number = 0;
     const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (fault == std::errc() && end == word.data() + word.size() && !(number < 0)) return {};
-    return "'" + word + "' is not a number of 0 or more";
+    if (fault == std::errc() && end == word.data() + word.size() && number >= 0 && number <= kMost) return {};
+    return "'" + word + "' is not a number from 0 to 1e12";
 }
 
 std::string faultOfCount(const std::string& word, std::size_t least) {

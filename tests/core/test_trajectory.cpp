@@ -183,18 +183,24 @@ TEST(Trajectory, WhatWasMeasuredInAnotherTrackIsBentToWhereTheLongestOneHasIt) {
     for (const double t : {0.0, 1.0}) trajectory.addFrame(t, from(0, at(t)));
     trajectory.addFrame(2, from(0, at(-7)), false);
     beginTrack(trajectory, 3, at(50));
-    for (const double t : {3.0, 4.0, 5.0}) {
+    for (const double t : {3.0, 4.0, 4.5, 5.0}) {  // one of them without a pose
         Pose beside = at(t - 3);
         beside.translation().y() = 1 - std::abs(t - 4);
-        trajectory.addFrame(t, from(1, beside));
+        trajectory.addFrame(t, from(1, t == 4.5 ? at(-9) : beside), t != 4.5);
     }
     trajectory.addFrame(6, from(1, at(-9)), false);
     for (const double t : {7.0, 8.0, 9.0}) trajectory.addFrame(t, from(0, at(t)));
     for (const bool smooth : {false, true}) {
         const std::vector<StampedPose> frames = trajectory.frames(smooth);
         for (const StampedPose& frame : frames) {
-            EXPECT_NEAR(frame.T_world_camera.translation().x(), frame.timestamp, 1e-3) << smooth;
-            EXPECT_NEAR(frame.T_world_camera.translation().y(), frame.timestamp == 4 ? 1 : 0, 1e-3)
+            const bool measured = frame.timestamp != 4.5;
+            const Eigen::Vector3d& position = frame.T_world_camera.translation();
+            EXPECT_NEAR(position.x(), frame.timestamp, measured ? 1e-3 : 0.05) << smooth;
+            EXPECT_NEAR(position.y(),
+                        frame.timestamp == 4 ? 1
+                        : measured           ? 0
+                                             : 0.6,
+                        measured ? 1e-3 : 0.11)
                 << frame.timestamp << ": its own motion stays";
         }
     }
@@ -228,6 +234,48 @@ TEST(Trajectory, AMomentInAnotherTrackAtAnEndHangsAtTheLongestOne) {
     trajectory.addFrame(2.5, from(2, at(1.6)));
     EXPECT_NEAR(trajectory.frames()[9].T_world_camera.translation().x(), -50, 1e-3)
         << "a longer one stays where the map has its edges";
+}
+
+TEST(Trajectory, AMomentInAnotherTrackStaysWhereItIsBehindFramesThatWereLost) {
+    Trajectory trajectory;
+    beginTrack(trajectory, 0, at(0));
+    for (int i = 0; i < 7; ++i) trajectory.addFrame(0.1 * i, from(0, at(0.1 * i)));
+    trajectory.addFrame(0.7, from(0, at(0.7)), false);
+    beginTrack(trajectory, 0.8, at(0.8));
+    trajectory.addFrame(0.8, from(1, at(0)));
+    for (const StampedPose& frame : trajectory.frames())
+        EXPECT_NEAR(frame.T_world_camera.translation().x(), frame.timestamp, 1e-3);
+}
+
+/// Frames of one track, more of another, and one of the first again; the end of the recording.
+Trajectory homeAtTheEnd(Trajectory trajectory) {
+    const int home = beginTrack(trajectory, 0, at(0));
+    for (const double t : {0.0, 0.1, 0.2}) trajectory.addFrame(t, from(home, at(t)));
+    const int elsewhere = beginTrack(trajectory, 0.3, at(50));
+    for (int i = 3; i < 9; ++i) trajectory.addFrame(0.1 * i, from(elsewhere, at(0.1 * i)));
+    trajectory.addFrame(0.9, from(home, at(0.9)));
+    return trajectory;
+}
+
+TEST(Trajectory, ATrackThatIsElsewhereTooStaysWhole) {
+    const std::vector<StampedPose> frames = homeAtTheEnd({}).frames();
+    for (const std::size_t k : {0U, 1U, 2U, 9U})
+        EXPECT_NEAR(frames[k].T_world_camera.translation().x(), frames[k].timestamp, 1e-3);
+}
+
+TEST(Trajectory, TheWorldIsThatOfAMapThatWasLoaded) {
+    Trajectory map;
+    beginTrack(map, -9, at(0));
+    Trajectory trajectory;
+    trajectory.load(map.graph(), false);
+    beginTrack(trajectory, 0, at(50));
+    for (int i = 0; i < 6; ++i) trajectory.addFrame(0.1 * i, from(1, at(0.1 * i)));
+    trajectory.addFrame(0.6, from(0, at(0.6)));  // recognised in the map
+    trajectory.addFrame(0.7, from(0, at(0.7)));
+    const std::vector<StampedPose> frames = trajectory.frames();
+    for (const std::size_t k : {6U, 7U})
+        EXPECT_NEAR(frames[k].T_world_camera.translation().x(), frames[k].timestamp, 1e-3);
+    EXPECT_NEAR(frames[0].T_world_camera.translation().x(), 0.1, 1e-3) << "a moment before";
 }
 
 TEST(Trajectory, MotionIsKnownBetweenAllFramesOfATrack) {

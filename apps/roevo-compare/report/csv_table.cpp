@@ -117,8 +117,8 @@ std::vector<std::vector<std::optional<int>>> allRanks(const SequenceResults& res
 }
 
 Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
-            const std::vector<std::vector<std::optional<int>>>& ranks,
-            const std::vector<std::string>& stages) {
+            const std::vector<std::vector<std::optional<int>>>& ranks, const std::vector<std::string>& stages,
+            bool one_configuration) {
     const SequenceComparison& sequence = *results.sequence;
     const MethodRun* run = index ? &sequence.runs[*index] : nullptr;
     const EvaluatedRun* evaluated = index ? &results.evaluated[*index] : nullptr;
@@ -167,6 +167,7 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
     row.text("not_pinned", run ? run->not_pinned : "");
     Conditions conditions = conditionsOf({results});
     conditions.pinned = !run || run->not_pinned.empty();
+    conditions.config = one_configuration;
     row.text("protocol", errorProtocol(conditions) + " " + costProtocol(conditions));
     return row;
 }
@@ -175,11 +176,12 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
 
 std::string csvTable(const std::vector<SequenceResults>& results) {
     const auto stages = stageNames(results);
+    const bool one_configuration = !optionsRemark(results);
     std::string head, rows;
     for (const SequenceResults& result : results) {
         const auto ranks = allRanks(result);
         const auto add = [&](std::optional<std::size_t> run) {
-            const Row row = makeRow(result, run, ranks, stages);
+            const Row row = makeRow(result, run, ranks, stages, one_configuration);
             head = row.names();
             rows += row.values();
         };

@@ -157,9 +157,8 @@ std::string PinholeCamera::check() const {
             !std::all_of(denominator.begin(), denominator.end(), finite))
             fault << "camera: a distortion coefficient is not finite";
         else if (const double moved = farthestMoved(*this); !(moved <= kMostMoved))
-            fault << "camera: the lens moves the image's border by "
-                  << std::lround(moved < 1e4 ? 100 * moved : 1e6)
-                  << " % of its distance from the centre: are its terms in the order k1 k2 p1 p2 k3?";
+            fault << "camera: the lens moves the image by " << std::lround(moved < 1e4 ? 100 * moved : 1e6)
+                  << " % of the distance from its centre: are its terms in the order k1 k2 p1 p2 k3?";
     }
     return fault.str();
 }

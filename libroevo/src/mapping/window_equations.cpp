@@ -153,7 +153,7 @@ void WindowEquations::build(const std::vector<WindowKeyframe>& window, std::vect
             ++inliers[slot];
             ++count;
         }
-        const std::size_t every = std::max(stride, 1 + touched_.size() / kManyViews);
+        const std::size_t every = std::max(stride, 1 + (touched_.size() - 1) / kManyViews);
         const auto counts_for = static_cast<double>(every) / static_cast<double>(stride);
         if (count >= 2) addPoint(at(points, points_[p]), p % every == 0 ? counts_for : 0);
         for (const std::int32_t slot : touched_) at(point_blocks_, slot).used = false;

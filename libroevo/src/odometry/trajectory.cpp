@@ -2,23 +2,18 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
-#include "odometry/motion_smoother.h"
 #include "tracking/se3.h"
 
 namespace roevo {
 namespace {
 
 constexpr double kMostContradiction = 50;  // squared sigmas, of a loop
-constexpr double kSameView = 0.02;         // m; less change of view than this is hardly any
-constexpr double kRecent = 4.25;     // s; of frames since then it is kept which edges their errors come from
-constexpr double kTypicalDepth = 2;  // m; at this depth a turn by 1 rad changes a view like so many metres
+constexpr double kRecent = 4.25;  // s; of frames since then it is kept which edges their errors come from
 
 /// Puts what these clusters do to what is independent.
 template <class Chosen>
@@ -49,10 +44,6 @@ void makeRoom(Items& items) {
     if (items.size() == items.capacity()) items.reserve(2 * items.size() + 1);
 }
 
-double changeOfView(const Pose& motion) {
-    return motion.translation().norm() + kTypicalDepth * rotationAngle(motion);
-}
-
 }  // namespace
 
 void Trajectory::load(KeyframeGraph graph, bool held) {
@@ -62,7 +53,8 @@ void Trajectory::load(KeyframeGraph graph, bool held) {
     related_ = std::move(graph.related);
     loops_ = std::move(graph.loops);
     findTracks();
-    if (held) held_ = static_cast<int>(keyframes_.size());
+    loaded_ = static_cast<int>(keyframes_.size());
+    if (held) held_ = loaded_;
 }
 
 KeyframeGraph Trajectory::graph() const {
@@ -281,107 +273,6 @@ void Trajectory::takePosterior(const WindowPosterior& posterior, int keyframe) {
     for (std::size_t id = seen + 1; id < links_.size(); ++id)
         if (links_[id].keyframe >= keyframe) in_world_[id] = inWorld(links_[id]).uncertainty;
     for (std::size_t id = seen; id + 1 < in_world_.size(); ++id) forgetAll(in_world_[id]);
-}
-
-Pose Trajectory::finalPose(const Frame& frame) const {
-    const RelativePose& link = frame.pose;
-    const Pose from_parent = worldPose(link);
-    const auto next = static_cast<std::size_t>(link.keyframe) + 1;
-    if (next >= links_.size() || links_[next].keyframe != link.keyframe) return from_parent;
-    if (frame.timestamp < keyframes_[next - 1].timestamp) return from_parent;  // tracked backwards
-    const Pose T_next_camera = links_[next].T_keyframe_camera.inverse() * link.T_keyframe_camera;
-    const Pose from_next = keyframes_[next].T_world_camera * T_next_camera;
-    // Where the camera hardly moves, changes are noise of tracking, and time shares better
-    const double begin = keyframes_[next - 1].timestamp, end = keyframes_[next].timestamp;
-    const double passed = end > begin ? std::clamp((frame.timestamp - begin) / (end - begin), 0.0, 1.0) : 1;
-    const double since = changeOfView(link.T_keyframe_camera) + kSameView * passed;
-    const double left = changeOfView(T_next_camera) + kSameView * (1 - passed);
-    return interpolate(from_parent, from_next, since / (since + left));
-}
-
-/// Whether it became one, itself or when the next frame had come.
-bool Trajectory::isKeyframe(const Frame& frame) const {
-    const auto next = static_cast<std::size_t>(frame.pose.keyframe) + 1;
-    return keyframes_[next - 1].timestamp == frame.timestamp ||
-           (next < keyframes_.size() && keyframes_[next].timestamp == frame.timestamp);
-}
-
-bool Trajectory::isMeasured(std::size_t frame, int track) const {
-    return frames_[frame].measured && beginOfTrack(frames_[frame].pose.keyframe) == track;
-}
-
-/// Smooths or bridges poses, from the first to the last frame of a track that was measured.
-void Trajectory::bridge(int track, const std::vector<std::size_t>& indices, bool smooth,
-                        std::vector<StampedPose>& poses) const {
-    const auto measured = [&](std::size_t k) { return isMeasured(k, track); };
-    const auto begin = std::find_if(indices.begin(), indices.end(), measured);
-    const auto end = std::find_if(indices.rbegin(), indices.rend(), measured).base();
-    std::vector<MotionSample> samples;
-    for (auto k = begin; k < end; ++k) {
-        const Frame& frame = frames_[*k];
-        // A keyframe is where the map has it
-        const Matrix6d covariance = isKeyframe(frame) ? Matrix6d::Zero() : frame.pose.uncertainty.own();
-        samples.push_back({frame.timestamp, poses[*k].T_world_camera, covariance, measured(*k)});
-    }
-    (smooth ? smoothMotion : bridgeMotion)(samples);
-    for (std::size_t k = 0; k < samples.size(); ++k)
-        poses[*(begin + static_cast<std::ptrdiff_t>(k))].T_world_camera = samples[k].T_world_camera;
-}
-
-/// Where other tracks were begun was a guess. The longest track knows where the camera was before and after.
-void Trajectory::fitToTrack(int longest, bool smooth, std::vector<StampedPose>& poses) const {
-    std::vector<std::size_t> all(frames_.size()), known, others;
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    const auto isKnown = [&](std::size_t k) { return isMeasured(k, longest); };
-    std::copy_if(all.begin(), all.end(), std::back_inserter(known), isKnown);
-    std::vector<StampedPose> bridged = poses;
-    bridge(longest, all, smooth, bridged);
-    const auto inverse = [&](std::size_t k) { return poses[k].T_world_camera.inverse(); };
-    for (std::size_t i = 0; i <= known.size(); ++i) {  // what is before this one, and after the one before
-        const bool has_before = i > 0, has_after = i < known.size();
-        const std::size_t begin = has_before ? known[i - 1] + 1 : 0, end = has_after ? known[i] : all.size();
-        others.clear();
-        for (std::size_t k = begin; k < end; ++k)
-            if (frames_[k].measured) others.push_back(k);
-        if (others.empty()) continue;
-        const std::size_t first = others.front(), last = others.back();
-        const double seconds =
-            poses[end - (has_after ? 0 : 1)].timestamp - poses[begin - (has_before ? 1 : 0)].timestamp;
-        const bool is_short = seconds <= kLongestGap;
-        if (has_before && has_after) {
-            // In a short piece another track saw what hid the scene; a long one knows how the camera moved
-            const Pose from_first = bridged[first].T_world_camera * inverse(first);
-            const Pose from_last = bridged[last].T_world_camera * inverse(last);
-            for (std::size_t k = begin; k < end; ++k) {
-                const bool bent = !is_short && frames_[k].measured;
-                const double share = first < last ? (poses[k].timestamp - poses[first].timestamp) /
-                                                        (poses[last].timestamp - poses[first].timestamp)
-                                                  : 0;
-                Pose& pose = poses[k].T_world_camera;
-                pose = bent ? interpolate(from_first * pose, from_last * pose, share)
-                            : bridged[k].T_world_camera;
-            }
-        } else if (is_short) {
-            const Pose moved = has_after ? poses[end].T_world_camera * inverse(last)
-                                         : poses[begin - 1].T_world_camera * inverse(first);
-            for (std::size_t k = begin; k < end; ++k)
-                poses[k].T_world_camera = moved * poses[k].T_world_camera;
-        }
-    }
-}
-
-std::vector<StampedPose> Trajectory::frames(bool smooth) const {
-    std::vector<StampedPose> poses;
-    for (const Frame& frame : frames_) poses.push_back({frame.timestamp, finalPose(frame)});
-    std::map<int, std::vector<std::size_t>> of_tracks;
-    for (std::size_t k = 0; k < frames_.size(); ++k)
-        of_tracks[beginOfTrack(frames_[k].pose.keyframe)].push_back(k);
-    for (const auto& [track, indices] : of_tracks) bridge(track, indices, smooth, poses);
-    const auto longest =
-        std::max_element(of_tracks.begin(), of_tracks.end(),
-                         [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
-    if (of_tracks.size() > 1) fitToTrack(longest->first, smooth, poses);
-    return poses;
 }
 
 }  // namespace roevo

@@ -1,4 +1,8 @@
 #pragma once
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "mapping/local_mapper.h"
@@ -49,7 +53,10 @@ class Trajectory {
     Correction join(int keyframe, const RelativePose& pose);
     /// Two keyframes, the older one first, show the same place, and are where that is: no loop moves them
     /// apart.
-    void relate(int older, int newer) { related_.emplace_back(older, newer); }
+    void relate(int older, int newer) {
+        const std::pair<int, int> pair(older, newer);
+        if (std::find(related_.rbegin(), related_.rend(), pair) == related_.rend()) related_.push_back(pair);
+    }
     /// Moves the keyframes of a track, all a little, so that those that were recognised are where they were
     /// seen: a pose graph of tracked motions, of what is related, and of all loops so far.
     /// @param recognised  keyframes and their poses relative to older ones of the same track
@@ -101,12 +108,13 @@ class Trajectory {
     Pose finalPose(const Frame& frame) const;
     bool isKeyframe(const Frame& frame) const;
     bool isMeasured(std::size_t frame, int track) const;
+    std::map<int, std::ptrdiff_t> measuredOfTracks() const;
     void bridge(int track, const std::vector<std::size_t>& indices, bool smooth,
                 std::vector<StampedPose>& poses) const;
-    void fitToTrack(int longest, bool smooth, std::vector<StampedPose>& poses) const;
+    void fitOthers(int track, const std::vector<StampedPose>& bridged, std::vector<StampedPose>& poses) const;
     std::vector<PoseConstraint> constraintsOf(int track) const;
 
-    int held_ = 0;  ///< so many keyframes do not move
+    int loaded_ = 0, held_ = 0;  ///< so many keyframes were loaded; do not move
     std::vector<KeyframeInfo> keyframes_;
     std::vector<Correction> corrections_;       ///< that updates to come do not know of yet
     std::vector<std::pair<int, int>> related_;  ///< see relate()
