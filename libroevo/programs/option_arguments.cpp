@@ -13,7 +13,7 @@ std::string faultOfNumber(const std::string& word) {
     double number = 0;
     const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (fault == std::errc() && end == word.data() + word.size() && number >= 0 && number <= kMost) return {};
-    return "'" + word + "' is not a number from 0 to 1e12";
+    return "'" + word + "' is not a finite number from 0 to 1e12";
 }
 
 std::string faultOfCount(const std::string& word, std::size_t least) {

@@ -12,7 +12,7 @@ class App;
 namespace roevo {
 
 /// Checks for CLI11, whose own would print the largest number that there is, of 309 digits.
-/// @return empty when it is a number from 0 to 1e12, or a whole one of `least` or more
+/// @return empty when it is a finite number from 0 to 1e12, or a whole one of `least` or more
 std::string faultOfNumber(const std::string& word);
 std::string faultOfCount(const std::string& word, std::size_t least);
 

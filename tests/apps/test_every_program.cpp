@@ -70,8 +70,8 @@ TEST(TextOfOptions, MustNotBeEmpty) {
 
 TEST(NumbersOfOptions, AreRefusedInWords) {
     for (const auto& [name, option, words] :
-         {std::tuple("roevo-compare", "--memory", "'-5' is not a number from 0 to 1e12"),
-          {"roevo-study", "--truth-sigma", "'-5' is not a number from 0 to 1e12"},
+         {std::tuple("roevo-compare", "--memory", "'-5' is not a finite number from 0 to 1e12"),
+          {"roevo-study", "--truth-sigma", "'-5' is not a finite number from 0 to 1e12"},
           {"roevo-study", "--gap", "'-5' is not a whole number of 1 or more"}})
         expectError(test::runProgram(name, {"--input", "in", "--output", "out", option, "-5"}), 2, name,
                     {std::string(option) + ": " + words});
