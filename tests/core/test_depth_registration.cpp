@@ -182,6 +182,8 @@ TEST(RegisterDepth, RefusesACameraOrAPoseThatIsNone) {
     EXPECT_THROW(registerDepth(depth, kDepthCamera, kDepthCamera, moved(0, NAN, 0)), std::invalid_argument);
     cv::Mat range = depth.clone();
     EXPECT_THROW(rangeToDepth(range, blind), std::invalid_argument);
+    const PinholeCamera few{8, 8, 8, 8, 3.5, 3.5, {}};
+    EXPECT_NO_THROW(registerDepth(cv::Mat(8, 8, CV_32FC1, cv::Scalar(1.0F)), few, kDepthCamera, here));
 }
 
 TEST(RangeToDepth, RangesToAPlaneBecomeItsDepth) {

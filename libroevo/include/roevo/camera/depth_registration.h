@@ -11,8 +11,8 @@ namespace roevo {
 /// where several fall on one pixel the nearest wins (z-buffer).
 /// @param depth  CV_32FC1 metres along the optical axis, 0 where unknown, of size `depth_camera`
 /// @return CV_32FC1 of size `colour_camera`, 0 where nothing fell.
-/// @throws std::invalid_argument for a camera that fails PinholeCamera::check(), an image of another size or
-/// type than the depth camera's, and a pose that is not finite
+/// @throws std::invalid_argument for a camera without size or intrinsics, an image of another size or type
+/// than the depth camera's, and a pose that is not finite
 cv::Mat registerDepth(const cv::Mat& depth, const PinholeCamera& depth_camera,
                       const PinholeCamera& colour_camera, const Pose& T_colour_depth);
 
