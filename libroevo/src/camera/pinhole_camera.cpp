@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -27,22 +28,29 @@ struct Cubic {
         : value(1 + r2 * (k1 + r2 * (k2 + r2 * k3))), slope(k1 + r2 * (2 * k2 + r2 * 3 * k3)) {}
 };
 
+/// Pixels: corners, middles of borders, and the middle.
+std::array<Eigen::Vector2d, 9> spreadOver(const PinholeCamera& camera) {
+    std::array<Eigen::Vector2d, 9> pixels;
+    auto next = pixels.begin();
+    for (const double u : {0.0, 0.5 * camera.width, camera.width - 1.0})
+        for (const double v : {0.0, 0.5 * camera.height, camera.height - 1.0}) *next++ = {u, v};
+    return pixels;
+}
+
 /// How far the lens moves a ray near the image's border, as a share of its distance from the axis. Terms
 /// hold where they were calibrated: up to there at most. A fish-eye may move rays by any amount.
 double farthestMoved(const PinholeCamera& camera) {
     constexpr double kCalibrated = 0.5;  // focal lengths from the axis
     double farthest = 0;
     if (camera.lens == LensModel::kKannalaBrandt) return farthest;
-    for (const double u : {0.0, 0.5 * camera.width, camera.width - 1.0}) {
-        for (const double v : {0.0, 0.5 * camera.height, camera.height - 1.0}) {
-            const Eigen::Vector2d border(u - camera.cx, v - camera.cy);
-            if (border.norm() < 1) continue;  // px
-            const Eigen::Vector2d ray = border * std::min(1.0, kCalibrated * camera.fx / border.norm());
-            const Eigen::Vector2d centre(camera.cx, camera.cy);
-            const double moved = (camera.distortPixel(centre + ray) - centre - ray).norm() / ray.norm();
-            if (!std::isfinite(moved)) return moved;
-            farthest = std::max(farthest, moved);
-        }
+    const Eigen::Vector2d centre(camera.cx, camera.cy);
+    for (const Eigen::Vector2d& pixel : spreadOver(camera)) {
+        const double distance = (pixel - centre).norm();
+        if (distance < 1) continue;  // px
+        const Eigen::Vector2d ray = (pixel - centre) * std::min(1.0, kCalibrated * camera.fx / distance);
+        const double moved = (camera.distortPixel(centre + ray) - centre - ray).norm() / ray.norm();
+        if (!std::isfinite(moved)) return moved;
+        farthest = std::max(farthest, moved);
     }
     return farthest;
 }
@@ -167,12 +175,10 @@ bool PinholeCamera::seesAs(const PinholeCamera& other) const {
     constexpr double kSame = 0.01;  // px
     if (*this == other) return true;
     if (width != other.width || height != other.height || lens != other.lens) return false;
-    for (const double u : {0.0, 0.5 * width, width - 1.0}) {
-        for (const double v : {0.0, 0.5 * height, height - 1.0}) {
-            const Eigen::Vector2d here = distortPixel({u, v});
-            const Eigen::Vector2d there = other.distortPixel(other.project(backProject(u, v, 1)));
-            if (!((here - there).norm() <= kSame)) return false;
-        }
+    for (const Eigen::Vector2d& pixel : spreadOver(*this)) {
+        const Eigen::Vector2d here = distortPixel(pixel);
+        const Eigen::Vector2d there = other.distortPixel(other.project(backProject(pixel.x(), pixel.y(), 1)));
+        if (!((here - there).norm() <= kSame)) return false;
     }
     return true;
 }
