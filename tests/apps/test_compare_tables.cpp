@@ -277,6 +277,9 @@ TEST(Remarks, OptionsOfVariantsAreMeantToDiffer) {
     sequences.push_back(makeSequence("u", {few}));
     EXPECT_TRUE(contains(*optionsRemark(evaluateAll(sequences)), "differ in edges.canny_factor@few (3, 4):"));
     EXPECT_FALSE(conditionsOf(evaluateAll(sequences)).config);
+    const std::string csv = WrittenComparison(sequences).csv;  // although no recording has both
+    EXPECT_TRUE(contains(csv, "Runs of ROEVO differ in edges.canny_factor@few (3, 4)"));
+    EXPECT_FALSE(contains(csv, "one configuration for all"));
 }
 
 TEST(CompareTable, RunsThatAreNotPinnedAreNotSaidToBeOnOneCore) {

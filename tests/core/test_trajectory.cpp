@@ -247,18 +247,14 @@ TEST(Trajectory, AMomentInAnotherTrackStaysWhereItIsBehindFramesThatWereLost) {
         EXPECT_NEAR(frame.T_world_camera.translation().x(), frame.timestamp, 1e-3);
 }
 
-/// Frames of one track, more of another, and one of the first again; the end of the recording.
-Trajectory homeAtTheEnd(Trajectory trajectory) {
-    const int home = beginTrack(trajectory, 0, at(0));
-    for (const double t : {0.0, 0.1, 0.2}) trajectory.addFrame(t, from(home, at(t)));
-    const int elsewhere = beginTrack(trajectory, 0.3, at(50));
-    for (int i = 3; i < 9; ++i) trajectory.addFrame(0.1 * i, from(elsewhere, at(0.1 * i)));
-    trajectory.addFrame(0.9, from(home, at(0.9)));
-    return trajectory;
-}
-
 TEST(Trajectory, ATrackThatIsElsewhereTooStaysWhole) {
-    const std::vector<StampedPose> frames = homeAtTheEnd({}).frames();
+    Trajectory trajectory;  // which comes home at its end
+    beginTrack(trajectory, 0, at(0));
+    for (const double t : {0.0, 0.1, 0.2}) trajectory.addFrame(t, from(0, at(t)));
+    beginTrack(trajectory, 0.3, at(50));
+    for (int i = 3; i < 9; ++i) trajectory.addFrame(0.1 * i, from(1, at(0.1 * i)));
+    trajectory.addFrame(0.9, from(0, at(0.9)));
+    const std::vector<StampedPose> frames = trajectory.frames();
     for (const std::size_t k : {0U, 1U, 2U, 9U})
         EXPECT_NEAR(frames[k].T_world_camera.translation().x(), frames[k].timestamp, 1e-3);
 }

@@ -118,7 +118,7 @@ std::vector<std::vector<std::optional<int>>> allRanks(const SequenceResults& res
 
 Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
             const std::vector<std::vector<std::optional<int>>>& ranks, const std::vector<std::string>& stages,
-            bool one_configuration) {
+            Conditions conditions, const std::optional<std::string>& options) {
     const SequenceComparison& sequence = *results.sequence;
     const MethodRun* run = index ? &sequence.runs[*index] : nullptr;
     const EvaluatedRun* evaluated = index ? &results.evaluated[*index] : nullptr;
@@ -163,11 +163,9 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
     row.text("note", run ? run->note : "");
     row.text("sequence_part", run ? run->part : "");
     row.text("sequence_note", joined(sequence.notes));
-    row.text("warning", run ? joined(warningsOf(*run, *evaluated, results)) : "");
+    row.text("warning", run ? joined(warningsOf(*run, *evaluated, sequence, options)) : "");
     row.text("not_pinned", run ? run->not_pinned : "");
-    Conditions conditions = conditionsOf({results});
     conditions.pinned = !run || run->not_pinned.empty();
-    conditions.config = one_configuration;
     row.text("protocol", errorProtocol(conditions) + " " + costProtocol(conditions));
     return row;
 }
@@ -176,12 +174,14 @@ Row makeRow(const SequenceResults& results, std::optional<std::size_t> index,
 
 std::string csvTable(const std::vector<SequenceResults>& results) {
     const auto stages = stageNames(results);
-    const bool one_configuration = !optionsRemark(results);
+    const auto options = optionsRemark(results);
     std::string head, rows;
     for (const SequenceResults& result : results) {
         const auto ranks = allRanks(result);
+        Conditions conditions = conditionsOf({result});
+        conditions.config = !options;
         const auto add = [&](std::optional<std::size_t> run) {
-            const Row row = makeRow(result, run, ranks, stages, one_configuration);
+            const Row row = makeRow(result, run, ranks, stages, conditions, options);
             head = row.names();
             rows += row.values();
         };

@@ -94,11 +94,12 @@ std::map<std::string, std::string> optionsOf(const std::string& config) {
 }  // namespace
 
 std::vector<std::string> warningsOf(const MethodRun& run, const EvaluatedRun& evaluated,
-                                    const SequenceResults& results) {
+                                    const SequenceComparison& sequence,
+                                    const std::optional<std::string>& options) {
     std::vector<std::string> all = run.warnings;
     if (!evaluated.scale_warning.empty()) all.push_back(evaluated.scale_warning);
-    if (const auto remark = framesRemark(*results.sequence)) all.push_back(*remark);
-    if (const auto remark = optionsRemark({results}); remark && isOurs(run.method)) all.push_back(*remark);
+    if (const auto remark = framesRemark(sequence)) all.push_back(*remark);
+    if (options && isOurs(run.method)) all.push_back(*options);
     return all;
 }
 

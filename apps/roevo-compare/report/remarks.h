@@ -17,9 +17,11 @@ std::vector<std::string> remarks(const std::vector<SequenceResults>& results);
 /// frames, damage, a scale that cannot be right.
 std::vector<std::string> odditiesOf(const SequenceResults& results);
 
-/// What is odd about one run: its own warnings, that on the scale, and what sets it apart from the others.
+/// What is odd about one run of a sequence: its own warnings, that on the scale, and what sets it apart.
+/// @param options  see optionsRemark()
 std::vector<std::string> warningsOf(const MethodRun& run, const EvaluatedRun& evaluated,
-                                    const SequenceResults& results);
+                                    const SequenceComparison& sequence,
+                                    const std::optional<std::string>& options);
 
 /// That ROEVO was run with several configurations, variants apart, and by which options they differ.
 std::optional<std::string> optionsRemark(const std::vector<SequenceResults>& results);

@@ -52,7 +52,7 @@ class Trajectory {
     /// @param pose  of the keyframe, relative to one of another track
     Correction join(int keyframe, const RelativePose& pose);
     /// Two keyframes, the older one first, show the same place, and are where that is: no loop moves them
-    /// apart.
+    /// apart. A pair counts once.
     void relate(int older, int newer) {
         const std::pair<int, int> pair(older, newer);
         if (std::find(related_.rbegin(), related_.rend(), pair) == related_.rend()) related_.push_back(pair);
@@ -87,7 +87,8 @@ class Trajectory {
     const Pose& keyframePose(int id) const { return at(keyframes_, id).T_world_camera; }
     /// Poses of the frames. What the map found to be wrong with the tracked motion to the next keyframe was
     /// wrong with the motions of the frames between in part: tracking errs the more the view differs from the
-    /// keyframe's. Where they were not measured, they are between those that were.
+    /// keyframe's. Where they were not measured, they are between those that were; so are tracks that were
+    /// never joined (fitOthers()).
     /// @param smooth  see smoothMotion()
     std::vector<StampedPose> frames(bool smooth = true) const;
     /// As they were known when they were added.
