@@ -35,12 +35,12 @@ TEST(MotionModel, PredictsConstantVelocityInTheCamerasOwnFrame) {
 TEST(MotionModel, TheFirstIntervalMayBeAGap) {
     MotionModel model = makeModel();
     model.expect(10);
-    model.begin(10);
+    model.anchor(10, Pose());
     model.expect(20);
     EXPECT_TRUE(model.predict(20).blind);
     model = makeModel();
     model.expect(10);
-    model.begin(10);
+    model.anchor(10, Pose());
     model.expect(11);
     EXPECT_FALSE(model.predict(11).blind) << "a frame a second";
 }
@@ -314,7 +314,7 @@ TEST(MotionModel, FastCamerasHaveAVelocityToo) {
     const auto place = [&](double time) { return poseOf({kSpeed * time, 0, 0}, 0, {0, 0, 1}); };
     for (int i = 0; i < 5; ++i) {
         model.expect(i * kInterval);
-        if (i == 0) model.begin(0);
+        if (i == 0) model.anchor(0, Pose());
         model.measure(i * kInterval, place(i * kInterval));
     }
     const Prediction next = model.predict(5 * kInterval);

@@ -349,7 +349,7 @@ void Odometry::Impl::trackBack(const Tracking& tracking) {
 Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {
     const Fault fault = world.beginTrack(*frame, motion.stillRows(), T_world_camera, covariance, lost_for);
     if (fault) return fault;
-    motion.begin(frame->timestamp());
+    motion.anchor(frame->timestamp(), Pose::Identity());
     candidate.reset();
     return {};
 }

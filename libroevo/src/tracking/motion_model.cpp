@@ -47,18 +47,13 @@ void MotionModel::expect(double timestamp) {
     last_frame_ = timestamp;
 }
 
-void MotionModel::begin(double timestamp) {
-    anchor(timestamp, Pose());
-    brightness_ = Brightness();
-}
-
 void MotionModel::anchor(double timestamp, const Pose& T_reference_camera) {
     T_reference_last_ = T_reference_assumed_ = T_reference_camera;
     uncertainty_ = {};
     covariance_.setZero();
     covariance_before_.setZero();
+    brightness_ = Brightness();
     last_timestamp_ = timestamp;
-    has_last_ = true;
     interval_ = 0;
 }
 
@@ -138,7 +133,7 @@ RollingShutter MotionModel::shutter(double timestamp) const {
     shutter.rows = stillRows().at(secondsPerRow());
     if (sensor_.estimate_readout) shutter.readout_sigma = readout_.sigma();
     const double dt = timestamp - last_timestamp_;
-    const bool known = has_last_ && dt >= shortestStep() && dt <= kLongestStep;
+    const bool known = dt >= shortestStep() && dt <= kLongestStep;
     // A mean velocity is that of half the time ago
     shutter.velocity_variance =
         known ? squared(motion_.acceleration * dt / 2, motion_.angular_acceleration_deg * dt / 2)

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <optional>
 
 #include "roevo/options.h"
@@ -27,8 +28,6 @@ class MotionModel {
 
     /// A frame has come, whatever becomes of it: what is usual between frames shows what is a gap.
     void expect(double timestamp);
-    /// The first frame of a track, which is the reference.
-    void begin(double timestamp);
     /// A pose whose motion since the last one was not measured: first frame, re-anchored, or recognised.
     void anchor(double timestamp, const Pose& T_reference_camera);
     /// A measured pose; with the one before it gives the velocity, unless their stamps nearly coincide (then
@@ -78,13 +77,13 @@ class MotionModel {
     /// Of the last two poses as they were measured: how far the velocity may be off, and where it starts.
     Matrix6d covariance_ = Matrix6d::Zero(), covariance_before_ = Matrix6d::Zero();
     double design_effect_ = 1;  ///< of the poses so far
-    double last_timestamp_ = 0;
+    /// s; before the first pose it is long ago
+    double last_timestamp_ = -std::numeric_limits<double>::infinity();
     std::optional<double> last_frame_;  ///< s
     double interval_before_ = 0;        ///< s
     double usual_interval_ = 0;         ///< s, mean of those before the last frame; 0: none yet
-    bool has_last_ = false;
-    Pose step_ = Pose::Identity();  ///< T_last_current over interval_ seconds
-    double interval_ = 0;           ///< s; 0 when no velocity is known
+    Pose step_ = Pose::Identity();      ///< T_last_current over interval_ seconds
+    double interval_ = 0;               ///< s; 0 when no velocity is known
     ReadoutEstimator readout_;
 };
 
