@@ -62,6 +62,7 @@ cv::Mat FramePreparer::sceneOf(RgbdFrame& images) const {
 void FramePreparer::findEdges(Frame& frame) {
     const cv::Mat& grey = undistorter_.apply(frame.images.grey, frame.ideal_grey);
     extractor_.extract(grey, frame.edges, frame.mask, sceneOf(frame.images));
+    keepLongest(frame.edges, grey.total() / kPixelsPerPoint);
     frame.grid.build(frame.edges, grey.cols, grey.rows);
     frame.pyramid.build(grey, levels_);
 }
@@ -91,14 +92,8 @@ PreparedFrame::Content FramePreparer::prepare(RgbdFrame images) {
     if (out.fault) return out;
     last_timestamp_ = images.timestamp;
     out.frame = spare();
-    Frame& frame = *out.frame;
-    frame.images = std::move(images);
-    findEdges(frame);
-    const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
-    if (frame.edges.size() * kPixelsPerPoint > pixels) {
-        keepLongest(frame.edges, pixels / kPixelsPerPoint);
-        frame.grid.build(frame.edges, camera_.width, camera_.height);
-    }
+    out.frame->images = std::move(images);
+    findEdges(*out.frame);
     out.milliseconds = watch.milliseconds();
     return out;
 }
