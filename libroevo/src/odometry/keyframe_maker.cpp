@@ -7,6 +7,7 @@
 
 #include "mapping/semi_dense.h"
 #include "nearest.h"
+#include "tracking/robust.h"
 #include "tracking/se3.h"
 
 namespace roevo {
@@ -20,12 +21,10 @@ std::string wrongUnit(const cv::Mat& depth, const SensorOptions& sensor) {
         for (int u = 0; u < depth.cols; u += 4)
             if (const float z = depth.at<float>(v, u); std::isfinite(z) && z > 0) known.push_back(z);
     if (known.empty()) return "";
-    const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-    std::nth_element(known.begin(), middle, known.end());
-    const double median = *middle;
+    const double median = medianOf(known);
     if (median >= sensor.min_depth / kFarOff && median <= sensor.depth_limit * kFarOff) return "";
     std::ostringstream text;
-    text << "; its depths are about " << *middle << " m: are they in metres?";
+    text << "; its depths are about " << median << " m: are they in metres?";
     return text.str();
 }
 
