@@ -73,12 +73,7 @@ TEST(MapKeyframe, PointsGoWhereAnotherMotionOfTheRowsPutsThemAndBack) {
 TEST(PackedKeyframe, PointsComeBackFarBelowTheNoise) {
     const MapKeyframe original = someKeyframe();
     ASSERT_GT(original.size(), 200U);
-    MapKeyframe keyframe = original;
-    keyframe.image = {};
-    keyframe.points = {};
-    keyframe.weight.clear(), keyframe.slope.clear(), keyframe.colours.clear();
-    ASSERT_EQ(keyframe.size(), 0U);
-    PackedKeyframe(original).unpackInto(keyframe, mappingCamera(), SensorOptions());
+    const KeyframeEdges keyframe = PackedKeyframe(original).unpacked(mappingCamera(), SensorOptions());
     ASSERT_EQ(keyframe.size(), original.size());
     EXPECT_EQ(keyframe.image.begin, original.image.begin);
     EXPECT_EQ(keyframe.image.edge_of, original.image.edge_of);
@@ -99,8 +94,7 @@ TEST(PackedKeyframe, PointsComeBackFarBelowTheNoise) {
 
 TEST(PackedKeyframe, WhatTheKernelsReadBeyondTheEndIsPaddedAsInANewKeyframe) {
     const MapKeyframe original = someKeyframe();
-    MapKeyframe keyframe;
-    PackedKeyframe(original).unpackInto(keyframe, mappingCamera(), SensorOptions());
+    const KeyframeEdges keyframe = PackedKeyframe(original).unpacked(mappingCamera(), SensorOptions());
     ASSERT_EQ(keyframe.points.z.size(), kernels::paddedSize(original.size()));
     for (std::size_t i = keyframe.size(); i < keyframe.points.z.size(); ++i) {
         EXPECT_EQ(keyframe.points.x[i], 0);
@@ -109,8 +103,7 @@ TEST(PackedKeyframe, WhatTheKernelsReadBeyondTheEndIsPaddedAsInANewKeyframe) {
 }
 
 TEST(PackedKeyframe, WithoutPointsIsNotAFault) {
-    MapKeyframe empty, back;
-    PackedKeyframe(empty).unpackInto(back, mappingCamera(), SensorOptions());
+    const KeyframeEdges back = PackedKeyframe(MapKeyframe()).unpacked(mappingCamera(), SensorOptions());
     EXPECT_EQ(back.size(), 0U);
     EXPECT_EQ(back.image.numEdges(), 0);
 }

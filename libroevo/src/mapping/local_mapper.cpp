@@ -45,7 +45,7 @@ std::vector<const MapKeyframe*> LocalMapper::recentOf(const MapKeyframe& newest)
 void LocalMapper::unpack(MapKeyframe& keyframe) const {
     if (keyframe.size() > 0) return;
     if (const auto packed = packed_.find(keyframe.id); packed != packed_.end())
-        packed->second.unpackInto(keyframe, camera_, options_.sensor);
+        static_cast<KeyframeEdges&>(keyframe) = packed->second.unpacked(camera_, options_.sensor);
 }
 
 /// Whether the points were moved.
@@ -75,11 +75,7 @@ void LocalMapper::leaveWindow(MapKeyframe& newest) {
         if (keyframe.size() == 0 || std::find(held.begin(), held.end(), &keyframe) != held.end()) continue;
         // What was unpacked has not changed since
         if (packed_.find(id) == packed_.end()) packed_.emplace(id, PackedKeyframe(keyframe));
-        keyframe.image = OrganizedEdges();
-        keyframe.points = Points3();
-        keyframe.weight = std::vector<float>();
-        keyframe.slope = std::vector<float>();
-        keyframe.colours = std::vector<Rgb>();
+        static_cast<KeyframeEdges&>(keyframe) = {};
     }
 }
 

@@ -10,9 +10,9 @@ constexpr float kLeastSpread = 1.0f;   ///< px^2 times points^2; less and a slop
 
 }  // namespace
 
-void computeSlopes(MapKeyframe& keyframe) {
-    const OrganizedEdges& image = keyframe.image;
-    keyframe.slope.assign(keyframe.size(), 0);
+void computeSlopes(KeyframeEdges& edges) {
+    const OrganizedEdges& image = edges.image;
+    edges.slope.assign(edges.size(), 0);
     for (int e = 0; e < image.numEdges(); ++e) {
         const IndexRange own = image.pointsOf(e);
         for (std::size_t i = own.first; i < own.end; ++i) {
@@ -21,8 +21,8 @@ void computeSlopes(MapKeyframe& keyframe) {
             for (std::size_t j = first; j < end; ++j)
                 line.add(image.normal_x[i] * (image.y[j] - image.y[i]) -
                              image.normal_y[i] * (image.x[j] - image.x[i]),
-                         keyframe.points.z[j] - keyframe.points.z[i]);
-            if (line.spread() > kLeastSpread) keyframe.slope[i] = line.slope();
+                         edges.points.z[j] - edges.points.z[i]);
+            if (line.spread() > kLeastSpread) edges.slope[i] = line.slope();
         }
     }
 }

@@ -66,10 +66,9 @@ class CollectingMapper : public Mapper {
 void CollectingMapper::load(const std::vector<KeyframeInfo>& poses, std::vector<KeptKeyframe> keyframes) {
     loaded_ = std::move(keyframes);
     for (std::size_t k = 0; k < loaded_.size(); ++k) {
-        MapKeyframe keyframe;
-        loaded_[k].points.unpackInto(keyframe, camera_, sensor_);
-        add(static_cast<int>(k), keyframe.image, keyframe.colours, [&](std::size_t i) -> Eigen::Vector3f {
-            return (poses[k].T_world_camera * keyframe.points.at(i)).cast<float>();
+        const KeyframeEdges edges = loaded_[k].points.unpacked(camera_, sensor_);
+        add(static_cast<int>(k), edges.image, edges.colours, [&](std::size_t i) -> Eigen::Vector3f {
+            return (poses[k].T_world_camera * edges.points.at(i)).cast<float>();
         });
     }
 }

@@ -22,39 +22,38 @@ QuantizedArray::QuantizedArray(const std::vector<float>& values) {
             static_cast<std::uint16_t>(std::min(std::round((values[i] - first_) / step_), kMostSteps));
 }
 
-PackedKeyframe::PackedKeyframe(const MapKeyframe& keyframe)
-    : u_(keyframe.image.x), v_(keyframe.image.y), colours_(keyframe.colours), begin_(keyframe.image.begin) {
-    std::vector<float> values(keyframe.size());
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1 / keyframe.points.z[i];
+PackedKeyframe::PackedKeyframe(const KeyframeEdges& edges)
+    : u_(edges.image.x), v_(edges.image.y), colours_(edges.colours), begin_(edges.image.begin) {
+    std::vector<float> values(edges.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 1 / edges.points.z[i];
     inverse_depth_ = QuantizedArray(values);
     for (std::size_t i = 0; i < values.size(); ++i)
-        values[i] = std::atan2(keyframe.image.normal_y[i], keyframe.image.normal_x[i]);
+        values[i] = std::atan2(edges.image.normal_y[i], edges.image.normal_x[i]);
     normal_angle_ = QuantizedArray(values);
 }
 
-void PackedKeyframe::unpackInto(MapKeyframe& keyframe, const PinholeCamera& camera,
-                                const SensorOptions& sensor) const {
+KeyframeEdges PackedKeyframe::unpacked(const PinholeCamera& camera, const SensorOptions& sensor) const {
+    KeyframeEdges edges;
     const std::size_t size = colours_.size();
-    OrganizedEdges& image = keyframe.image;
-    for (auto* array : {&image.x, &image.y, &image.normal_x, &image.normal_y, &keyframe.weight})
+    OrganizedEdges& image = edges.image;
+    for (auto* array : {&image.x, &image.y, &image.normal_x, &image.normal_y, &edges.weight})
         array->resize(size);
-    keyframe.points = Points3();
     for (std::size_t i = 0; i < size; ++i) {
         image.x[i] = u_.at(i);
         image.y[i] = v_.at(i);
         const float angle = normal_angle_.at(i), z = 1 / inverse_depth_.at(i);
         image.normal_x[i] = std::cos(angle);
         image.normal_y[i] = std::sin(angle);
-        keyframe.points.add((image.x[i] - static_cast<float>(camera.cx)) / static_cast<float>(camera.fx) * z,
-                            (image.y[i] - static_cast<float>(camera.cy)) / static_cast<float>(camera.fy) * z,
-                            z);
-        keyframe.weight[i] = static_cast<float>(depthWeight(z, sensor));
+        edges.points.add((image.x[i] - static_cast<float>(camera.cx)) / static_cast<float>(camera.fx) * z,
+                         (image.y[i] - static_cast<float>(camera.cy)) / static_cast<float>(camera.fy) * z, z);
+        edges.weight[i] = static_cast<float>(depthWeight(z, sensor));
     }
-    keyframe.points.pad();
+    edges.points.pad();
     image.begin = begin_;
     image.numberPoints();
-    keyframe.colours = colours_;
-    computeSlopes(keyframe);
+    edges.colours = colours_;
+    computeSlopes(edges);
+    return edges;
 }
 
 bool QuantizedArray::isWithin(float smallest, float largest, std::size_t count) const {

@@ -32,11 +32,10 @@ class QuantizedArray {
 class PackedKeyframe {
   public:
     PackedKeyframe() = default;
-    explicit PackedKeyframe(const MapKeyframe& keyframe);
+    explicit PackedKeyframe(const KeyframeEdges& edges);
 
-    /// Puts the points back, within half a step. Touches nothing else of
-    /// `keyframe`.
-    void unpackInto(MapKeyframe& keyframe, const PinholeCamera& camera, const SensorOptions& sensor) const;
+    /// As they were, within half a step.
+    KeyframeEdges unpacked(const PinholeCamera& camera, const SensorOptions& sensor) const;
 
     int numEdges() const { return begin_.empty() ? 0 : static_cast<int>(begin_.size()) - 1; }
     /// Whether this can be a keyframe of a camera; files can hold anything.

@@ -123,8 +123,7 @@ void Relocaliser::collect() {
 
 Keyframe Relocaliser::unpacked(int id) const {
     const KnownPlace& place = places_[static_cast<std::size_t>(id)];
-    MapKeyframe edges;
-    place.edges.unpackInto(edges, ideal_, options_.sensor);
+    KeyframeEdges edges = place.edges.unpacked(ideal_, options_.sensor);
     Keyframe keyframe;
     keyframe.id = id;
     keyframe.edges.image = std::move(edges.image);
