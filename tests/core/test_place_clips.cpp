@@ -78,7 +78,8 @@ class PlaceClips : public ::testing::Test {
         Found best;
         for (const PlaceCandidate& candidate : index_.query(view.points, 5, wanted)) {
             const PlaceView& other = viewOf(candidate.id);
-            const auto points = verifier_.verify(view.points, view.keyframe.id, other.points, candidate.id);
+            const auto points =
+                verifyPlaces(view.points, view.keyframe.id, other.points, candidate.id, SensorOptions());
             if (!points) continue;
             const EdgeRegistration edges = registrar.registerEdges(
                 other.keyframe, view.frame, view.keyframe.edges, points->T_candidate_query.inverse());
@@ -93,7 +94,6 @@ class PlaceClips : public ::testing::Test {
 
     inline static std::vector<PlaceClip> clips_;
     inline static PlaceIndex index_;
-    PlaceVerifier verifier_{SensorOptions()};
 };
 
 TEST_F(PlaceClips, KeyframesAroundTheCabinetAreFoundByTheirNeighbours) {

@@ -46,7 +46,6 @@ Relocaliser::Relocaliser(const PinholeCamera& camera, const OdometryOptions& opt
       ideal_(camera.undistorted()),
       options_(scaledTo(camera, options)),
       describer_(camera),
-      verifier_(options.sensor),
       registrar_(camera, options, true),
       confirmer_(camera, options, false) {}
 
@@ -202,7 +201,7 @@ std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, i
     std::vector<Alike> alike;
     for (const PlaceCandidate& candidate : index_.query(points, kCandidates, wanted)) {
         const auto& place = places_[static_cast<std::size_t>(candidate.id)];
-        const auto found = verifier_.verify(points, query_id, place.points, candidate.id);
+        const auto found = verifyPlaces(points, query_id, place.points, candidate.id, options_.sensor);
         if (found) alike.emplace_back(*found, candidate.id);
     }
     std::stable_sort(alike.begin(), alike.end(),

@@ -126,7 +126,6 @@ class Relocaliser {
     OdometryOptions options_;  // scaled to the camera
     PlaceDescriber describer_;
     PlaceIndex index_;
-    PlaceVerifier verifier_;
     EdgeRegistrar registrar_;         ///< to what is remembered of keyframes
     EdgeRegistrar confirmer_;         ///< to a whole one
     std::vector<KnownPlace> places_;  ///< of each keyframe, by its id

@@ -1,6 +1,4 @@
 #pragma once
-
-#include "place/place_verifier.h"
 #include "tracking/edge_term.h"
 
 namespace roevo {

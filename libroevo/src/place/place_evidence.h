@@ -1,6 +1,7 @@
 #pragma once
 #include "place/edge_registration.h"
 #include "place/place_describer.h"
+#include "place/place_verifier.h"
 
 namespace roevo {
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "indexing.h"
+#include "place/place_matches.h"
 #include "tracking/se3.h"
 
 namespace roevo {
@@ -22,6 +24,14 @@ constexpr double kMissedSample = 1e-3;      ///< probability that no sample was 
 constexpr int kRefinements = 4;
 constexpr int kLeastInliers = 8;
 constexpr double kLeastExtent = 0.05;  ///< m
+
+/// Similar points of both.
+struct PointPair {
+    Eigen::Vector3d query, candidate;  ///< positions in their own frames, m
+    double turn;                       ///< of the normal from query to candidate in the image, rad
+    double information;                ///< 1/m^2, of their distance
+};
+using PointPairs = std::vector<PointPair>;  ///< the most similar ones first
 
 double angleBetween(double a, double b) {
     return std::abs(std::remainder(a - b, 2 * kPi));
@@ -41,55 +51,32 @@ bool isSlim(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vec
     return ab.cross(ac).norm() < kLeastSine * ab.norm() * ac.norm();
 }
 
-}  // namespace
-
-std::optional<Verification> PlaceVerifier::verify(const PlacePoints& query, int query_id,
-                                                  const PlacePoints& candidate, int candidate_id) {
-    collect(query, candidate);
-    if (static_cast<int>(pairs_.size()) < kLeastInliers) return std::nullopt;
-    constexpr std::uint32_t kSpread = 2654435761U;  // ids are small numbers: their seeds shall not be
-    const std::uint32_t seed = (static_cast<std::uint32_t>(query_id) * kSpread) ^
-                               (static_cast<std::uint32_t>(candidate_id) + kSpread);
-    int inliers = 0;
-    Pose best = sample(seed, inliers);
-    for (int k = 0; k < kRefinements && inliers >= 3; ++k) {
-        const Pose refined = refine(best);
-        const int count = countInliers(refined);
-        if (count < inliers) break;
-        best = refined;
-        inliers = count;
-    }
-    if (inliers < kLeastInliers) return std::nullopt;
-    const Verification result = describe(best);
-    if (result.extent < kLeastExtent || !best.isFinite()) return std::nullopt;
-    return result;
-}
-
-void PlaceVerifier::collect(const PlacePoints& query, const PlacePoints& candidate) {
-    pairs_.clear();
+PointPairs pairsOf(const PlacePoints& query, const PlacePoints& candidate, const SensorOptions& sensor) {
+    PointPairs pairs;
     for (const PlaceMatch& match : matchPlaces(query, candidate)) {
         const PlacePoint &q = at(query, match.query), &c = at(candidate, match.candidate);
-        const double of_query = sensor_.depthSigma(q.z), of_candidate = sensor_.depthSigma(c.z);
+        const double of_query = sensor.depthSigma(q.z), of_candidate = sensor.depthSigma(c.z);
         const double variance = of_query * of_query + of_candidate * of_candidate + kPlaceNoise * kPlaceNoise;
-        pairs_.push_back({{q.x, q.y, q.z},
-                          {c.x, c.y, c.z},
-                          static_cast<double>(c.normal_angle) - q.normal_angle,
-                          1 / variance});
+        pairs.push_back({{q.x, q.y, q.z},
+                         {c.x, c.y, c.z},
+                         static_cast<double>(c.normal_angle) - q.normal_angle,
+                         1 / variance});
     }
+    return pairs;
 }
 
-bool PlaceVerifier::explains(const Pose& T, double roll, const Pair& pair) const {
+bool explains(const Pose& T, double roll, const PointPair& pair) {
     return (T * pair.query - pair.candidate).squaredNorm() * pair.information < kMostSigmas * kMostSigmas &&
            angleBetween(pair.turn, roll) < kMostTurn;
 }
 
-int PlaceVerifier::countInliers(const Pose& T) const {
+int countInliers(const PointPairs& pairs, const Pose& T) {
     const double roll = rollOf(T);
-    return static_cast<int>(std::count_if(pairs_.begin(), pairs_.end(),
-                                          [&](const Pair& pair) { return explains(T, roll, pair); }));
+    return static_cast<int>(std::count_if(pairs.begin(), pairs.end(),
+                                          [&](const PointPair& pair) { return explains(T, roll, pair); }));
 }
 
-bool PlaceVerifier::mayBeOfOnePose(const Pair& a, const Pair& b) const {
+bool mayBeOfOnePose(const PointPair& a, const PointPair& b) {
     const double in_query = (a.query - b.query).norm(), in_candidate = (a.candidate - b.candidate).norm();
     const double variance = 1 / a.information + 1 / b.information, difference = in_query - in_candidate;
     return std::min(in_query, in_candidate) > kLeastBase &&
@@ -97,20 +84,20 @@ bool PlaceVerifier::mayBeOfOnePose(const Pair& a, const Pair& b) const {
            angleBetween(a.turn, b.turn) < kMostTurn;
 }
 
-Pose PlaceVerifier::sample(std::uint32_t seed, int& best_inliers) const {
+Pose sample(const PointPairs& pairs, std::uint32_t seed, int& best_inliers) {
     std::mt19937 random(seed);
-    const auto count = static_cast<std::uint32_t>(pairs_.size());
+    const auto count = static_cast<std::uint32_t>(pairs.size());
     // Similar pairs come first and are more often right: they are drawn more often
-    const auto draw = [&]() -> const Pair& {
+    const auto draw = [&]() -> const PointPair& {
         const auto one = static_cast<std::uint32_t>(random()) % count,
                    other = static_cast<std::uint32_t>(random()) % count;
-        return pairs_[std::min(one, other)];
+        return pairs[std::min(one, other)];
     };
     Pose best;
     best_inliers = 0;
     int enough = kMostSamples;
     for (int k = 0; k < enough; ++k) {
-        const Pair &a = draw(), &b = draw(), &c = draw();
+        const PointPair &a = draw(), &b = draw(), &c = draw();
         if (!mayBeOfOnePose(a, b) || !mayBeOfOnePose(a, c) || !mayBeOfOnePose(b, c)) continue;
         if (isSlim(a.query, b.query, c.query) || isSlim(a.candidate, b.candidate, c.candidate)) continue;
         const Eigen::Matrix3d rotation =
@@ -118,7 +105,7 @@ Pose PlaceVerifier::sample(std::uint32_t seed, int& best_inliers) const {
         const Eigen::Vector3d translation =
             (a.candidate + b.candidate + c.candidate - rotation * (a.query + b.query + c.query)) / 3;
         const Pose pose(Eigen::Quaterniond(rotation), translation);
-        const int inliers = countInliers(pose);
+        const int inliers = countInliers(pairs, pose);
         if (inliers <= best_inliers) continue;
         best_inliers = inliers;
         best = pose;
@@ -133,11 +120,11 @@ Pose PlaceVerifier::sample(std::uint32_t seed, int& best_inliers) const {
     return best;
 }
 
-Pose PlaceVerifier::refine(const Pose& T) const {
+Pose refine(const PointPairs& pairs, const Pose& T) {
     const double roll = rollOf(T);
     double sum = 0;
     Eigen::Vector3d query = Eigen::Vector3d::Zero(), candidate = Eigen::Vector3d::Zero();
-    for (const Pair& pair : pairs_) {
+    for (const PointPair& pair : pairs) {
         if (!explains(T, roll, pair)) continue;
         sum += pair.information;
         query += pair.information * pair.query;
@@ -146,7 +133,7 @@ Pose PlaceVerifier::refine(const Pose& T) const {
     query /= sum;
     candidate /= sum;
     Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
-    for (const Pair& pair : pairs_)
+    for (const PointPair& pair : pairs)
         if (explains(T, roll, pair))
             correlation += pair.information * (pair.candidate - candidate) * (pair.query - query).transpose();
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -155,14 +142,14 @@ Pose PlaceVerifier::refine(const Pose& T) const {
     return {Eigen::Quaterniond(rotation), candidate - rotation * query};
 }
 
-Verification PlaceVerifier::describe(const Pose& T) const {
+Verification describe(const PointPairs& pairs, const Pose& T) {
     Verification out;
     out.T_candidate_query = T;
-    out.matches = static_cast<int>(pairs_.size());
+    out.matches = static_cast<int>(pairs.size());
     const double roll = rollOf(T);
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-    for (const Pair& pair : pairs_) {
+    for (const PointPair& pair : pairs) {
         if (!explains(T, roll, pair)) continue;
         ++out.inliers;
         mean += pair.candidate;
@@ -173,6 +160,30 @@ Verification PlaceVerifier::describe(const Pose& T) const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
     out.extent = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
     return out;
+}
+
+}  // namespace
+
+std::optional<Verification> verifyPlaces(const PlacePoints& query, int query_id, const PlacePoints& candidate,
+                                         int candidate_id, const SensorOptions& sensor) {
+    const PointPairs pairs = pairsOf(query, candidate, sensor);
+    if (static_cast<int>(pairs.size()) < kLeastInliers) return std::nullopt;
+    constexpr std::uint32_t kSpread = 2654435761U;  // ids are small numbers: their seeds shall not be
+    const std::uint32_t seed = (static_cast<std::uint32_t>(query_id) * kSpread) ^
+                               (static_cast<std::uint32_t>(candidate_id) + kSpread);
+    int inliers = 0;
+    Pose best = sample(pairs, seed, inliers);
+    for (int k = 0; k < kRefinements && inliers >= 3; ++k) {
+        const Pose refined = refine(pairs, best);
+        const int count = countInliers(pairs, refined);
+        if (count < inliers) break;
+        best = refined;
+        inliers = count;
+    }
+    if (inliers < kLeastInliers) return std::nullopt;
+    const Verification result = describe(pairs, best);
+    if (result.extent < kLeastExtent || !best.isFinite()) return std::nullopt;
+    return result;
 }
 
 }  // namespace roevo
