@@ -121,7 +121,7 @@ void Relocaliser::collect() {
 }
 
 Keyframe Relocaliser::unpacked(int id) const {
-    const KnownPlace& place = places_[static_cast<std::size_t>(id)];
+    const KnownPlace& place = at(places_, id);
     KeyframeEdges edges = place.edges.unpacked(ideal_, options_.sensor);
     Keyframe keyframe;
     keyframe.id = id;
@@ -140,6 +140,11 @@ EdgePoints3D Relocaliser::lifted(const Frame& frame, const RowMotion& rows) cons
     return liftEdges(frame.edges, frame.images.depth, camera_, rows, options_.edges, options_.sensor);
 }
 
+Likeness Relocaliser::likenessOf(int keyframe, const Frame& frame, const Pose& T_frame_keyframe) {
+    return describer_.compare(at(places_, keyframe).points, T_frame_keyframe, frame.pyramid.level(0),
+                              frame.images);
+}
+
 std::optional<RelativePose> Relocaliser::confirm(const Keyframe& keyframe, const Frame& frame,
                                                  const Pose& T_keyframe_camera, const RowMotion& rows) {
     const EdgePoints3D edges = lifted(frame, rows);
@@ -147,10 +152,7 @@ std::optional<RelativePose> Relocaliser::confirm(const Keyframe& keyframe, const
     const EdgeRegistration found =
         confirmer_.registerEdges(keyframe, frame, edges, T_keyframe_camera.inverse(), rows);
     collect();
-    const PlacePoints& points = places_[static_cast<std::size_t>(keyframe.id)].points;
-    const Likeness likeness =
-        describer_.compare(points, found.T_frame_keyframe, frame.pyramid.level(0), frame.images);
-    if (!confirms(found, likeness)) return std::nullopt;
+    if (!confirms(found, likenessOf(keyframe.id, frame, found.T_frame_keyframe))) return std::nullopt;
     return poseOf(found, keyframe.id);
 }
 
@@ -200,8 +202,8 @@ std::vector<Relocaliser::Alike> Relocaliser::lookUp(const PlacePoints& points, i
                                                     const std::function<bool(int)>& wanted) {
     std::vector<Alike> alike;
     for (const PlaceCandidate& candidate : index_.query(points, kCandidates, wanted)) {
-        const auto& place = places_[static_cast<std::size_t>(candidate.id)];
-        const auto found = verifyPlaces(points, query_id, place.points, candidate.id, options_.sensor);
+        const PlacePoints& place = at(places_, candidate.id).points;
+        const auto found = verifyPlaces(points, query_id, place, candidate.id, options_.sensor);
         if (found) alike.emplace_back(*found, candidate.id);
     }
     std::stable_sort(alike.begin(), alike.end(),
@@ -218,9 +220,7 @@ std::vector<RecognisedPlace> Relocaliser::registered(const std::vector<Alike>& a
         const EdgeRegistration found =
             registrar_.registerEdges(unpacked(id), frame, edges, of_points.T_candidate_query.inverse(), rows);
         if (!found.held) continue;
-        const Likeness likeness =
-            describer_.compare(places_[static_cast<std::size_t>(id)].points, found.T_frame_keyframe,
-                               frame.pyramid.level(0), frame.images);
+        const Likeness likeness = likenessOf(id, frame, found.T_frame_keyframe);
         const Evidence evidence = evidenceOf(of_points, found, likeness);
         if (evidence == Evidence::kNone) continue;
         const double matched = std::min(found.keyframe_matched, found.frame_matched);

@@ -120,6 +120,7 @@ class Relocaliser {
                                             const EdgePoints3D& edges, const RowMotion& rows);
     void collect();
     Keyframe unpacked(int id) const;
+    Likeness likenessOf(int keyframe, const Frame& frame, const Pose& T_frame_keyframe);
     EdgePoints3D lifted(const Frame& frame, const RowMotion& rows) const;
 
     PinholeCamera camera_, ideal_;
