@@ -113,7 +113,7 @@ void World::advance(double timestamp, double seconds_per_row) {
     timestamp_ = timestamp;
     seconds_per_row_ = seconds_per_row;
     for (const MapUpdate& update : mapper_->due(timestamp, change_.ms.waiting)) takeUpdate(update);
-    if (recognising_ && timestamp >= recognised_at_) recognise();
+    if (recognised_at_ && timestamp >= *recognised_at_) recognise();
     if (reference_) reference_->setRowMotion(reference_->row_motion.at(seconds_per_row));
 }
 
@@ -193,7 +193,6 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
         relocaliser_.add(*fresh, of, colours, trajectory_.tracks(),
                          closesLoops() ? fresh->id - kStillInView : 0);
         recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
-        recognising_ = true;
         waitForNextLook();
     }
     semi_dense_.add(fresh->edges.image, of.images, fresh->row_motion);
@@ -265,7 +264,7 @@ Whereabouts World::whereabouts(const RelativePose& pose, double lost_for) const 
 
 /// What older keyframe the newest one shows.
 void World::recognise() {
-    if (!std::exchange(recognising_, false)) return;
+    if (!std::exchange(recognised_at_, std::nullopt)) return;
     const RelativePose newest{reference_->id, Pose::Identity(), {}};
     const Whereabouts near = whereabouts(newest, 0);
     if (options_.loss.recognise && joinElsewhere(near)) return;
@@ -354,7 +353,7 @@ std::optional<RelativePose> World::find(const Frame& frame, const RelativePose& 
 
 bool World::lookForOtherTrack(const Frame& frame, const RelativePose& pose) {
     // The newest keyframe is looked up itself
-    if (!options_.loss.recognise || recognising_ || timestamp_ < next_look_) return false;
+    if (!options_.loss.recognise || recognised_at_ || timestamp_ < next_look_) return false;
     waitForNextLook();
     if (!hasOtherTracks(trajectory_.tracks())) return false;
     return relocaliser_.find(frame, Among::kOtherTracks, trajectory_, whereabouts(pose, 0)).has_value();

@@ -135,8 +135,7 @@ class World {
     std::map<int, Reach> misplacements_;         // of tracks that were begun after a loss
     double track_begun_at_ = 0;                  // s
     double next_look_ = 0;                       // s; not before are frames looked up among other tracks
-    double recognised_at_ = 0;                   // s; when the place of the newest keyframe is to be known
-    bool recognising_ = false;                   // it is not known yet
+    std::optional<double> recognised_at_;        // s; the place of the newest keyframe is to be known by then
     std::optional<Look> join_look_, loop_look_;  // that a second one must agree with
     FrameResult change_;
 };
