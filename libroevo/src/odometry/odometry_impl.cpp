@@ -134,14 +134,8 @@ Outcome Odometry::Impl::start() {
         }
     }
     Outcome outcome;
-    outcome.tracking.fault = beginTrack(T_world_start, Matrix6d::Zero());
-    if (outcome.tracking.fault) {
-        outcome.status = FrameStatus::kRejected;
-        return outcome;
-    }
-    outcome.status = FrameStatus::kInitialised;
-    outcome.tracking.pose.keyframe = world.reference().id;
-    outcome.new_keyframe = true;
+    outcome.tracking.fault = beginTrack(T_world_start, Matrix6d::Zero(), 0, outcome);
+    if (outcome.tracking.fault) outcome.status = FrameStatus::kRejected;
     return outcome;
 }
 
@@ -243,13 +237,9 @@ Outcome Odometry::Impl::bridge(Outcome outcome, double since_measured) {
     pose = {world.reference().id, motion.lastPose(), motion.predict(frame->timestamp()).prior.errors};
     pose.uncertainty.independent += 1e-2 * kFrameRate * since_measured * Matrix6d::Identity();
     outcome.status = bridging ? FrameStatus::kPredicted : FrameStatus::kLost;
-    if (!bridging && !beginTrack(world.trajectory().worldPose(pose), world.trajectory().worldCovariance(pose),
-                                 since_measured)) {
-        outcome.status = FrameStatus::kInitialised;
-        outcome.new_keyframe = true;
-        lost_frames = 0;
-        pose = {world.reference().id, Pose::Identity(), {}};
-    }
+    if (!bridging)
+        beginTrack(world.trajectory().worldPose(pose), world.trajectory().worldCovariance(pose),
+                   since_measured, outcome);
     return outcome;
 }
 
@@ -346,11 +336,17 @@ void Odometry::Impl::trackBack(const Tracking& tracking) {
     }
 }
 
-Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for) {
+/// @param outcome  of the frame, which is the reference now, if it can be
+Fault Odometry::Impl::beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for,
+                                 Outcome& outcome) {
     const Fault fault = world.beginTrack(*frame, motion.stillRows(), T_world_camera, covariance, lost_for);
     if (fault) return fault;
     motion.anchor(frame->timestamp(), Pose::Identity());
     candidate.reset();
+    lost_frames = 0;
+    outcome.status = FrameStatus::kInitialised;
+    outcome.tracking.pose = {world.reference().id, Pose::Identity(), {}};
+    outcome.new_keyframe = true;
     return {};
 }
 

@@ -77,7 +77,8 @@ struct Odometry::Impl {
     void learn(Tracking& tracking, const Prediction& prediction);
     MotionModel startingHere(const Pose& T_keyframe_camera) const;
     void trackBack(const Tracking& tracking);
-    Fault beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for = 0);
+    Fault beginTrack(const Pose& T_world_camera, const Matrix6d& covariance, double lost_for,
+                     Outcome& outcome);
     Fault promote(const Frame& promoted, const Tracking& tracked);
     FrameResult report(const Outcome& outcome);
 };
