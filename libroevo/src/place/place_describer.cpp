@@ -16,7 +16,6 @@ constexpr double kPatchRadius = 0.15;                  ///< m
 constexpr double kLeastRadius = 10, kMostRadius = 48;  ///< px; of what is far away or near
 constexpr int kCornerWindow = 3;  ///< px to each side, that the second moments are taken over
 constexpr int kCornerStep = 2;    ///< points of an edge from one that is looked at to the next
-constexpr int kApart = 1;         ///< steps to each side that a chosen point is the most distinct of
 constexpr double kCellSize = 40;  ///< px, of the grid over the image
 // Whether a point of a place is seen again
 constexpr double kLeastInside = 0.5;  ///< radii of its patch, from the image's border
@@ -108,13 +107,10 @@ void PlaceDescriber::findCorners(const OrganizedEdges& edges, const cv::Mat& gre
         const int count = static_cast<int>(strengths.size());
         for (int k = 0; k < count; ++k) {
             const float own = at(strengths, k);
-            bool largest = own > 0;
-            for (int other = std::max(0, k - kApart); largest && other < std::min(count, k + kApart + 1);
-                 ++other) {
-                const float strength = at(strengths, other);
-                largest = other < k ? strength < own : strength <= own;  // of equal ones the first
-            }
-            if (largest) corners_.push_back({static_cast<std::int32_t>(first) + k * kCornerStep, own, 0});
+            // Those that are more distinct than the ones before and after; of equal ones the first
+            if (own > 0 && (k == 0 || at(strengths, k - 1) < own) &&
+                (k + 1 == count || at(strengths, k + 1) <= own))
+                corners_.push_back({static_cast<std::int32_t>(first) + k * kCornerStep, own, 0});
         }
     }
 }
