@@ -14,19 +14,14 @@ constexpr int kMostGraphIterations = 20;
 constexpr double kSmallStep = 1e-7;       // m and rad
 constexpr double kVarianceFloor = 1e-12;  // m^2, rad^2
 
-/// Rotation vector.
-Eigen::Vector3d logarithm(const Eigen::Quaterniond& q) {
-    const Eigen::AngleAxisd turn(q);
-    return turn.angle() * turn.axis();
-}
-
 /// Position and orientation of `to` as the poses have it against the constraint, along its axes.
 Vector6d residual(const std::vector<Pose>& poses, const PoseConstraint& c) {
     const Pose T_from_to = at(poses, c.from).inverse() * at(poses, c.to);
     const Pose error = c.T_from_to.inverse() * T_from_to;
+    const Eigen::AngleAxisd turn(error.rotation());
     Vector6d out;
     // Along the axes of `to` as it is, so that steps enter with the identity
-    out << error.linear().transpose() * error.translation(), logarithm(error.rotation());
+    out << error.linear().transpose() * error.translation(), turn.angle() * turn.axis();
     return out;
 }
 
