@@ -1,6 +1,5 @@
 #include "input_check.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 

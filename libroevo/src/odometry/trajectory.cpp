@@ -3,11 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <stdexcept>
 #include <utility>
-
-#include "tracking/se3.h"
 
 namespace roevo {
 namespace {
