@@ -47,9 +47,8 @@ template <class Accept>
 bool EdgeGrid::any(float u, float v, float radius, Accept&& accept) const {
     const int left = column(u - radius), right = column(u + radius), bottom = row(v + radius);
     for (int y = row(v - radius); y <= bottom; ++y) {
-        const std::size_t cells = static_cast<std::size_t>(y * columns_);
-        const auto first = static_cast<std::size_t>(first_[cells + static_cast<std::size_t>(left)]),
-                   end = static_cast<std::size_t>(first_[cells + static_cast<std::size_t>(right) + 1]);
+        const auto first = static_cast<std::size_t>(at(first_, y * columns_ + left)),
+                   end = static_cast<std::size_t>(at(first_, y * columns_ + right + 1));
         for (std::size_t k = first; k < end; ++k) {
             const float du = x_[k] - u, dv = y_[k] - v;
             if (du * du + dv * dv < radius * radius && accept(static_cast<std::size_t>(index_[k])))

@@ -23,8 +23,7 @@ OdometryOptions scaledTo(const PinholeCamera& camera, OdometryOptions options) {
     options.edges.depth_patch_radius = points(options.edges.depth_patch_radius);
     const double finer = kAperture * std::sqrt(sampling * sampling - 1);
     options.edges.blur_sigma = std::hypot(options.edges.blur_sigma, finer);
-    const int levels = static_cast<int>(std::lround(std::log2(sampling)));
-    options.coarse.levels = options.coarse.levels + levels;
+    options.coarse.levels += static_cast<int>(std::lround(std::log2(sampling)));
     return options;
 }
 
