@@ -216,9 +216,8 @@ void addMapParts(py::module_& module) {
             "T_world_camera, 4 x 4");
 }
 
-/// Of a result that has a pose.
+/// Whatever it is: the odometry says which frames there are.
 std::size_t toIndex(py::ssize_t index) {
-    if (index < 0) throw py::index_error("a frame that was rejected has no pose");
     return static_cast<std::size_t>(index);
 }
 

@@ -210,6 +210,21 @@ TEST_F(OdometryStatus, NoMotionIsKnownExactly) {
     EXPECT_THROW((void)odometry_.motionCovariance(3, 3), std::out_of_range);
 }
 
+TEST_F(OdometryStatus, AnIndexThatIsNoneIsNamedWithTheNumberOfFrames) {
+    feedRoom(0, 3);
+    const auto rejected = static_cast<std::size_t>(FrameResult().index);
+    for (const auto& [index, named] : {std::pair{std::size_t{3}, "frame 3:"}, {rejected, "frame -1:"}})
+        for (const bool covariance : {false, true}) try {
+                if (covariance) (void)odometry_.motionCovariance(0, index);
+                (void)odometry_.motion(0, index);
+                FAIL() << index;
+            } catch (const std::out_of_range& error) {
+                const std::string text = error.what();
+                EXPECT_NE(text.find(named), std::string::npos) << text;
+                EXPECT_NE(text.find("3 frames have a pose"), std::string::npos) << text;
+            }
+}
+
 TEST_F(OdometryStatus, ALongLossIsHeldAndReanchoredWithAReason) {
     feedRoom(0, 10);
     double time = frameAt(9).timestamp;

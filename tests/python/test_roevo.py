@@ -48,8 +48,8 @@ class SameAsTheProgram(unittest.TestCase):
         self.assertTrue((np.linalg.eigvalsh(covariance) > 0).all())
         np.testing.assert_array_equal(odometry.motion_covariance(4, 4), np.zeros((6, 6)))
         for wrong in (odometry.motion, odometry.motion_covariance):
-            for index in (16, -1):  # the result of a frame that was rejected has -1
-                with self.assertRaises(IndexError):
+            for index in (16, -1, -5):  # the result of a frame that was rejected has -1
+                with self.assertRaisesRegex(IndexError, f"no frame {index}: 16 frames have a pose"):
                     wrong(0, index)
 
 class Example(unittest.TestCase):

@@ -117,6 +117,13 @@ void Trajectory::measureAfterwards(double timestamp, const RelativePose& pose) {
     if (frame - frames_.begin() < static_cast<std::ptrdiff_t>(recent_)) forgetAll(frame->pose.uncertainty);
 }
 
+const Trajectory::Frame& Trajectory::frame(std::size_t index) const {
+    if (index < frames_.size()) return frames_[index];
+    throw std::out_of_range("there is no frame " + std::to_string(static_cast<std::ptrdiff_t>(index)) + ": " +
+                            std::to_string(frames_.size()) +
+                            " frames have a pose, and their indices begin with 0 (-1: a rejected one)");
+}
+
 RelativePose Trajectory::inWorld(const RelativePose& pose) const {
     return compose({-1, keyframePose(pose.keyframe), at(in_world_, pose.keyframe)}, pose);
 }
@@ -132,7 +139,7 @@ Matrix6d Trajectory::worldCovariance(const RelativePose& pose) const {
 }
 
 Matrix6d Trajectory::motionCovariance(std::size_t from, std::size_t to) const {
-    RelativePose first = frames_.at(from).pose, last = frames_.at(to).pose;
+    RelativePose first = frame(from).pose, last = frame(to).pose;
     while (first.keyframe != last.keyframe) {  // back to the newest keyframe that both come from
         RelativePose& later = first.keyframe > last.keyframe ? first : last;
         const RelativePose& link = at(links_, later.keyframe);

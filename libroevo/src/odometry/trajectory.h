@@ -80,7 +80,7 @@ class Trajectory {
 
     /// T_from_to of these frames.
     Pose motion(std::size_t from, std::size_t to) const {
-        return worldPose(frames_.at(from).pose).inverse() * worldPose(frames_.at(to).pose);
+        return worldPose(frame(from).pose).inverse() * worldPose(frame(to).pose);
     }
 
     const std::vector<KeyframeInfo>& keyframes() const { return keyframes_; }
@@ -100,6 +100,8 @@ class Trajectory {
         RelativePose pose;
         bool measured = true;
     };
+    /// @throws std::out_of_range
+    const Frame& frame(std::size_t index) const;
     /// @param link  to the one before
     int add(double timestamp, const Pose& T_world_camera, const RelativePose& link, PoseUncertainty in_world);
     void findTracks();
