@@ -225,11 +225,11 @@ void addPoses(py::class_<Session>& session) {
     session
         .def(
             "trajectory", [](Session& self) { return toArray(self.get(&Odometry::trajectory)); },
-            "Poses of all frames as they are known by now: N x 8, timestamp tx ty tz qx qy qz qw, as TUM's "
-            "files.")
+            "Final poses of all frames as known by now, smoothed, and bridged where tracking failed: N x 8, "
+            "timestamp tx ty tz qx qy qz qw, as TUM's files.")
         .def(
             "live_trajectory", [](Session& self) { return toArray(self.get(&Odometry::liveTrajectory)); },
-            "The same, as they were known when their frames were processed.")
+            "The poses as they were known when their frames were processed, in the same form.")
         .def(
             "keyframes", [](Session& self) { return self.get(&Odometry::keyframes); },
             "List of Keyframe; those of a map that was loaded come first, once the camera was recognised in "
@@ -240,9 +240,11 @@ void addPoses(py::class_<Session>& session) {
                 return self.get(&Odometry::motion, toIndex(from), toIndex(to)).matrix();
             },
             py::arg("from_index"), py::arg("to_index"),
-            R"(T_from_to, 4 x 4: how the camera moved between two frames (FrameResult.index), as both are known by now.
+            R"(T_from_to, 4 x 4: how the camera moved between two frames (FrameResult.index), as tracked and as the map has it by now.
 
-The poses of two results do not make a motion where the map moved between them. Raises IndexError.)")
+Neither smoothed nor bridged, so that between poses of trajectory(), which err less, it is another one by millimetres;
+motion_covariance() is of this one. The poses of two results do not make a motion where the map moved between them.
+Raises IndexError.)")
         .def(
             "motion_covariance",
             [](Session& self, py::ssize_t from, py::ssize_t to) {

@@ -38,6 +38,15 @@ class SameAsTheProgram(unittest.TestCase):
             np.testing.assert_allclose(result.covariance, result.covariance.T, rtol=1e-12, atol=1e-18)
             self.assertTrue((np.linalg.eigvalsh(result.covariance) >= -1e-15).all())
 
+    def test_motions_are_said_to_be_others_than_those_of_the_trajectory(self):
+        odometry, _ = track()
+        odometry.refine_all()
+        poses = odometry.trajectory()[:, 1:4]
+        moved = [np.linalg.norm(odometry.motion(k, k + 1)[:3, 3]) for k in range(15)]
+        self.assertGreater(np.abs(moved - np.linalg.norm(np.diff(poses, axis=0), axis=1)).max(), 1e-6)
+        self.assertIn("trajectory()", roevo.Odometry.motion.__doc__)
+        self.assertIn("smoothed", roevo.Odometry.trajectory.__doc__)
+
     def test_motions_are_those_between_two_frames(self):
         odometry, results = track(odometry=roevo.Odometry(recording.camera, {**OPTIONS, "odometry.mode": "tr"}))
         poses = [result.pose for result in results]
