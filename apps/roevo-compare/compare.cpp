@@ -69,7 +69,9 @@ std::vector<SequenceComparison> openAll(const CompareSettings& settings) {
 std::vector<std::string> childCommand(const CompareSettings& settings, const SequenceInput& sequence,
                                       const MethodInfo& method, const std::string& folder) {
     const std::string config = (fs::path(folder) / "config_used.ini").string();
-    saveConfigFile(config, settings.options);
+    OdometryOptions options = settings.options;
+    options.mode = method.mode.value_or(options.mode);
+    saveConfigFile(config, options);
     // Not the path of this program: it may be another one by now, had it been built anew
     std::vector<std::string> command{"/proc/self/exe", "--run-method", method.name};
     const auto add = [&](const std::string& option, const std::string& value) {

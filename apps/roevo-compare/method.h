@@ -49,12 +49,13 @@ class Method {
 
 /// What a table has to say of a method, and how it is made.
 struct MethodInfo {
-    std::string name;          ///< as on the command line: "roevo-ba", "difodo-480", …
-    std::string label;         ///< as in tables: "ROEVO TR+BA", "DIFODO 480x640", …
-    std::string note;          ///< one sentence: what it is, and what is fair or weak about the comparison
-    std::string unavailable;   ///< why this build cannot run it (a library lacks it); empty when it can
-    bool ours = false;         ///< one of ROEVO's own modes
-    std::string trajectory{};  ///< file with poses that another program made: not to be run; else empty
+    std::string name;            ///< as on the command line: "roevo-ba", "difodo-480", …
+    std::string label;           ///< as in tables: "ROEVO TR+BA", "DIFODO 480x640", …
+    std::string note;            ///< one sentence: what it is, and what is fair or weak about the comparison
+    std::string unavailable;     ///< why this build cannot run it (a library lacks it); empty when it can
+    bool ours = false;           ///< one of ROEVO's own modes
+    std::optional<Mode> mode{};  ///< which of them
+    std::string trajectory{};    ///< file with poses that another program made: not to be run; else empty
     /// @param options  of ROEVO, for its own modes and those that share its front end
     /// @throws std::invalid_argument for a camera that it cannot use
     std::function<std::unique_ptr<Method>(const PinholeCamera& camera, const OdometryOptions& options)>

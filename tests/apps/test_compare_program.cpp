@@ -49,8 +49,11 @@ TEST_F(Compare, RunsEveryMethodAsRoevoOdometryWould) {
         EXPECT_EQ(readFile(runFolder("clip", method) + "/trajectory.txt"),
                   readFile(folder / "alone/trajectory.txt"))
             << method;
+        EXPECT_EQ(readFile(runFolder("clip", method) + "/config_used.ini"),
+                  readFile(folder / "alone/config_used.ini"));
         EXPECT_NE(result.err.find("clip, " + method + ": 8 frames"), std::string::npos) << result.err;
     }
+    EXPECT_NE(readFile(output() + "/table.md").find("One configuration for all"), std::string::npos);
     EXPECT_LT(table().find("\nclip,roevo-ba,"), table().find("\nclip,roevo-ct,")) << "in the order asked for";
     EXPECT_NE(result.out.find("ATE cm"), std::string::npos) << result.out;
     for (const char* file : {"table.md", "report.html", "config_used.ini"})

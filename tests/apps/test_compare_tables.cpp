@@ -270,7 +270,10 @@ TEST(Remarks, OptionsOfVariantsAreMeantToDiffer) {
     few.config = foreign.config = "[edges]\ncanny_factor = 4\n";
     std::vector<SequenceComparison> sequences{makeSequence("s", {plain, few, foreign})};
     EXPECT_EQ(optionsRemark(evaluateAll(sequences)), std::nullopt);
-    plain.config += "[map]\nnew_option = 1\n";  // of a later version
+    auto coarse = makeRun("roevo-ct", 0.01);  // the mode is the method's
+    coarse.config = "[odometry]\nmode = ct\n" + plain.config;
+    sequences.push_back(makeSequence("modes", {coarse, plain}));
+    plain.config += "[odometry]\nmode = tr\n[map]\nnew_option = 1\n";  // of a later version
     sequences.push_back(makeSequence("t", {plain}));
     EXPECT_EQ(optionsRemark(evaluateAll(sequences)), std::nullopt);
     few.config = "[edges]\ncanny_factor = 3\n";

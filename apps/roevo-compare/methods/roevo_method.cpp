@@ -109,10 +109,13 @@ std::vector<MethodInfo> roevoMethods() {
     ba.note =
         "tracking with local mapping in a second thread, which shares the one core; its trajectory is the "
         "refined one, as known at the end";
-    ct.make = makerOf<RoevoMethod>(Mode::kCoarse);
-    tr.make = makerOf<RoevoMethod>(Mode::kTracking);
-    ba.make = makerOf<RoevoMethod>(Mode::kBundleAdjustment);
-    for (MethodInfo* info : {&ct, &tr, &ba}) info->ours = true;
+    ct.mode = Mode::kCoarse;
+    tr.mode = Mode::kTracking;
+    ba.mode = Mode::kBundleAdjustment;
+    for (MethodInfo* info : {&ct, &tr, &ba}) {
+        info->ours = true;
+        info->make = makerOf<RoevoMethod>(*info->mode);
+    }
     return {ct, tr, ba};
 }
 

@@ -77,7 +77,7 @@ std::optional<std::string> framesRemark(const SequenceComparison& sequence) {
            std::to_string(*counts.rbegin()) + " frames, so their figures are not of the same frames";
 }
 
-// By "section.key".
+// By "section.key", but for the mode, which is the method's own.
 std::map<std::string, std::string> optionsOf(const std::string& config) {
     std::map<std::string, std::string> options;
     std::istringstream lines(config);
@@ -88,6 +88,7 @@ std::map<std::string, std::string> optionsOf(const std::string& config) {
         if (line[0] != ';' && equals != std::string::npos)
             options[section + line.substr(0, equals)] = line.substr(equals + 3);
     }
+    options.erase("odometry.mode");
     return options;
 }
 
