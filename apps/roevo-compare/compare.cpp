@@ -236,7 +236,10 @@ ComparisonReport reportRows(const std::vector<std::string>& rows, const std::vec
             read.notes.push_back(sentence);
     prepareOutputFolder(output);
     const FolderLock lock(output);
-    return writeReport(std::move(read.sequences), output, command, read.notes, earlier);
+    ComparisonReport report = writeReport(std::move(read.sequences), output, command, read.notes, earlier);
+    std::error_code ignored;  // an earlier comparison's, which the rows may not be of; each has its own
+    fs::remove(fs::path(output) / "config_used.ini", ignored);
+    return report;
 }
 
 }  // namespace roevo

@@ -69,7 +69,10 @@ TEST_F(MixedRows, OtherOptionsAreNamed) {
     make(input, "roevo-tr", {"--set", "edges.canny_factor=4"});
     make(input, "roevo-ct");
     make(input, "distance-field");
+    fs::create_directories(folder / "all");
+    test::writeFile(folder / "all/config_used.ini", "of an earlier comparison");
     const std::string printed = report();
+    EXPECT_FALSE(fs::exists(folder / "all/config_used.ini")) << "each row has its own";
     expectInAll(printed, "Runs of ROEVO differ in edges.canny");
     expectInAll(printed, "factor (1.5, 4)");
     EXPECT_NE(row("roevo-ct").at("warning").find("edges.canny_factor (1.5, 4)"), std::string::npos);
