@@ -6,6 +6,8 @@
 
 #include "programs/process.h"
 #include "report_fixture.h"
+#include "roevo-compare/report/distributions.h"
+#include "roevo-compare/report/metrics.h"
 #include "roevo-compare/report/plots.h"
 
 namespace roevo {
@@ -93,6 +95,41 @@ TEST_F(Plots, TheCumulativeCurveRisesWhereTheErrorsAre) {
     EXPECT_LT(top, 45) << "all of the poses are at the top of 300 px";
     EXPECT_GT(widest, 0.5 * (curve.back().x - curve.front().x));
     EXPECT_NEAR((bottom - level) / (bottom - top), 0.5, 0.02);
+}
+
+TEST_F(Plots, WhereNoErrorIsDrawnAsTheLeastOneThatIsSaid) {
+    const auto notes = [&] {
+        const SequenceResults r = results();
+        const Legend legend = legendOf(r);
+        std::string all;
+        std::vector<Figure> figures = relativeErrorFigures(r, legend);
+        EXPECT_EQ(figures.size(), 2u);
+        figures.push_back(errorFigure(r, legend));
+        figures.push_back(angularErrorFigure(r, legend));
+        figures.push_back(cumulativeErrorFigure(r, legend));
+        figures.push_back(boxFigure(shownMetrics()[0], {r}, legend));
+        figures.push_back(cumulativeFigure(shownMetrics()[0], {r}, legend));
+        for (const Figure& figure : figures) all += figure.note + '\n';
+        return all;
+    };
+    const auto count = [](const std::string& text, const std::string& words) {
+        std::size_t found = 0;
+        for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
+            ++found;
+        return found;
+    };
+    auto poses = walk();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        Pose& pose = poses[i].T_world_camera;
+        pose.translation().z() += i % 2 ? 0.01 : -0.01;
+        const double turn = 0.02 + 0.01 * std::sin(0.3 * static_cast<double>(i));
+        pose = pose * Pose(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
+    }
+    add("off", poses);
+    EXPECT_EQ(count(notes(), "is drawn as that"), 0u) << notes();
+    add("gt", walk());
+    EXPECT_EQ(count(notes(), "Less than 0.001 is drawn as that."), 5u) << notes();
+    EXPECT_EQ(count(notes(), "Less than 0.0001 is drawn as that."), 2u) << notes();
 }
 
 TEST_F(Plots, ErrorsAlongTheAxesAreThoseOfTheAxes) {

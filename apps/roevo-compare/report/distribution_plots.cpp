@@ -34,15 +34,18 @@ std::vector<Sample> samplesOf(const Metric& metric, const std::vector<SequenceRe
     return samples;
 }
 
+double lowestOf(const std::vector<Sample>& samples) {
+    double low = HUGE_VAL;
+    for (const Sample& sample : samples)
+        if (!sample.values.empty()) low = std::min(low, sample.values.front());
+    return low;
+}
+
 // The range of all, on a logarithmic axis whose figures stand at 1, 2 and 5 where there is room.
 std::string axis(const Metric& metric, const std::vector<Sample>& samples) {
-    double low = HUGE_VAL, high = 0;
+    double low = lowestOf(samples) / 1.15, high = 0;
     for (const Sample& sample : samples)
-        if (!sample.values.empty()) {
-            low = std::min(low, sample.values.front());
-            high = std::max(high, sample.values.back());
-        }
-    low /= 1.15, high *= 1.15;
+        if (!sample.values.empty()) high = std::max(high, 1.15 * sample.values.back());
     std::string tics;
     for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10)
         for (const double step : {1.0, 2.0, 5.0})
@@ -102,7 +105,8 @@ Figure boxFigure(const Metric& metric, const std::vector<SequenceResults>& resul
     }
     return drawFigure(script + plot + "\n", kFigureWidth, kBoxHead + kBoxHeight * count,
                       metric.title + ", a box for each method",
-                      "Box: half of the recordings; whiskers: 5 and 95 %; points: those beyond.");
+                      withLeast("Box: half of the recordings; whiskers: 5 and 95 %; points: those beyond.",
+                                lowestOf(samples), kLeastValue));
 }
 
 Figure cumulativeFigure(const Metric& metric, const std::vector<SequenceResults>& results,
@@ -128,7 +132,9 @@ Figure cumulativeFigure(const Metric& metric, const std::vector<SequenceResults>
     }
     Figure figure = drawFigure(
         script + plot + "\n", kFigureWidth, kCurveHeight, metric.title + ", cumulative",
-        "Share of the recordings whose error is at most so much. One without a result never gets there.");
+        withLeast(
+            "Share of the recordings whose error is at most so much. One without a result never gets there.",
+            lowestOf(samples), kLeastValue));
     figure.lines = lines;
     return figure;
 }

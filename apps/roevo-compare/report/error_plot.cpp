@@ -100,13 +100,17 @@ std::string ticsOf(char axis, double low, double high) {
     return std::string("set ") + axis + "tics (" + tics + ")\n";
 }
 
-// All errors, with some room around them.
-std::pair<double, double> rangeOf(const std::vector<ErrorLine>& lines,
-                                  std::vector<double> ErrorLine::*values) {
+// The least and the largest error.
+std::pair<double, double> extremesOf(const std::vector<ErrorLine>& lines,
+                                     std::vector<double> ErrorLine::*values) {
     std::vector<double> all;
     for (const ErrorLine& line : lines) all.insert(all.end(), (line.*values).begin(), (line.*values).end());
-    const double low = percentile(all, 0);
-    return {low / 1.2, std::max(percentile(all, 1) * 1.2, 10 * low)};
+    return {percentile(all, 0), percentile(all, 1)};
+}
+
+// With some room around them.
+std::pair<double, double> roomFor(const std::pair<double, double>& extremes) {
+    return {extremes.first / 1.2, std::max(extremes.second * 1.2, 10 * extremes.first)};
 }
 
 Rows cumulative(const ErrorLine& line) {
@@ -157,12 +161,13 @@ Figure overTime(const SequenceResults& results, const Legend& legend, std::vecto
                 const std::string& what, const std::string& unit, const std::string& note = {}) {
     const std::vector<ErrorLine> lines = linesOf(results, legend);
     if (lines.empty()) return kNothing;
+    const auto extremes = extremesOf(lines, values);
     const std::string script =
         kMargins + timeRange(lines) + "set xlabel 'time [s]' offset 0,0.4\nset ylabel '" + what + " [" +
-        unit + "]'\n" + logarithmic('y', rangeOf(lines, values)) +
+        unit + "]'\n" + logarithmic('y', roomFor(extremes)) +
         plotOf(lines, [&](const ErrorLine& line) { return thinned(line.times, line.*values); });
     return draw(lines, script, kFigureWidth, kHeight, results.sequence->name + ": " + what + " over time",
-                note);
+                withLeast(note, extremes.first, kMinError));
 }
 
 // The largest of 1, 2, 5 times a power of ten up to the extent: three to five tics from -extent to extent.
@@ -212,7 +217,7 @@ Figure driftFigure(const std::vector<ErrorLine>& lines, const std::vector<Drift>
         "set xlabel 'path length [m]' offset 0,0.4\nset ylabel '" + label + "'\n" +
         plotOf(
             lines, [&](const ErrorLine&) { return drifts[i++].*rows; }, "linespoints pt 7 ps 0.4 ");
-    return draw(lines, script, kDriftWidth, kHeight, name);
+    return draw(lines, script, kDriftWidth, kHeight, name, withLeast("", low, kMinDrift));
 }
 
 }  // namespace
@@ -261,12 +266,14 @@ Figure axisErrorFigure(const SequenceResults& results, const Legend& legend) {
 Figure cumulativeErrorFigure(const SequenceResults& results, const Legend& legend) {
     const std::vector<ErrorLine> lines = linesOf(results, legend);
     if (lines.empty()) return kNothing;
-    const std::string script = kMargins + logarithmic('x', rangeOf(lines, &ErrorLine::errors)) +
+    const auto extremes = extremesOf(lines, &ErrorLine::errors);
+    const std::string script = kMargins + logarithmic('x', roomFor(extremes)) +
                                "set xlabel 'position error [cm]' offset 0,0.4\nset ylabel 'poses [%]'\n"
                                "set yrange [0:100]\n" +
                                plotOf(lines, cumulative);
-    return draw(lines, script, kFigureWidth, kHeight, results.sequence->name + ": cumulative position error",
-                "Share of the paired poses whose error is at most so much.");
+    return draw(
+        lines, script, kFigureWidth, kHeight, results.sequence->name + ": cumulative position error",
+        withLeast("Share of the paired poses whose error is at most so much.", extremes.first, kMinError));
 }
 
 std::vector<Figure> relativeErrorFigures(const SequenceResults& results, const Legend& legend) {

@@ -54,6 +54,11 @@ Figure drawFigure(const std::string& script, int width, int height, const std::s
     }
 }
 
+std::string withLeast(const std::string& note, double lowest, double least) {
+    if (lowest > least) return note;
+    return note + (note.empty() ? "" : " ") + "Less than " + plainNumber(least) + " is drawn as that.";
+}
+
 std::string standaloneSvg(const Figure& figure) {
     std::string items;
     int x = kLegendLeft, y = figure.height + kLegendLine / 2;

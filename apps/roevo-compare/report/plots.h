@@ -61,6 +61,10 @@ Figure stageFigure(const SequenceResults& results, std::vector<std::string>& sta
 Figure drawFigure(const std::string& script, int width, int height, const std::string& name,
                   const std::string& note);
 
+/// A note that also says, where the lowest of what is drawn is the least that is drawn on a logarithmic axis,
+/// that what is less stands there.
+std::string withLeast(const std::string& note, double lowest, double least);
+
 /// A document of its own, with a white ground and the figure's legend beneath it.
 std::string standaloneSvg(const Figure& figure);
 
