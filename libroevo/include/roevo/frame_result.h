@@ -36,7 +36,7 @@ struct FrameResult {
     /// error phi is meant as R <- exp(phi) R. Meaningless when rejected: ask hasPose() first.
     Matrix6d covariance = Matrix6d::Zero();
     int keyframe = -1;                  ///< id of the one that the pose is relative to; -1 when rejected
-    bool new_keyframe = false;          ///< this frame brought a new keyframe: itself or the frame before it
+    bool new_keyframe = false;          ///< brought a new keyframe: itself, the frame before it, or both
     int num_edges = 0, num_points = 0;  ///< organized edges and their points in this frame
     int found_at = -1;                  ///< keyframe that a lost camera was recognised by
     int joined_at = -1;                 ///< keyframe of another track; the younger of both tracks was moved
