@@ -35,29 +35,41 @@ std::string Losses::toText() const {
         return count == 1 ? std::string("once") : std::to_string(count) + " times";
     };
     std::string text = "lost " + times(lost);
+    if (found_in_map) text += ", found in the map";
     if (found_again > 0) text += ", found again " + times(found_again);
+    if (regained > 0) text += ", regained by tracking " + times(regained);
     if (joined > 0) text += ", begun anew and joined later " + times(joined);
     return to_the_end ? text + (lost == 1 ? ", to the end" : ", the last time to the end") : text;
 }
 
 Losses RunReport::losses() const {
     Losses out;
+    const FrameResult* const first_in_map = localised();
+    std::size_t joins = 0;
     bool tracked = false;
     for (const FrameRecord& f : frames) {
         const FrameResult& r = f.result;
         if (r.status == FrameStatus::kRejected) continue;
         const bool failed = r.status == FrameStatus::kPredicted || r.status == FrameStatus::kLost;
-        if ((failed || r.found_at >= 0) && tracked) ++out.lost;
-        tracked = !failed;
         const bool found = r.found_at >= 0, begun = r.status == FrameStatus::kInitialised;
+        const bool is_first_in_map = &r == first_in_map;
+        if ((failed || found) && tracked) ++out.lost;
+        if (!failed && !tracked && !found && !begun) ++out.regained;
+        tracked = !failed;
         if (begun && !found) ++out.pieces;
-        if (found && !begun) ++out.found_again;
-        if (r.joined_at >= 0) ++out.joined;
+        if (found && !begun) {
+            out.found_again += !is_first_in_map;
+            out.found_in_map |= is_first_in_map;
+        }
+        if (r.joined_at >= 0) {
+            ++joins;
+            out.joined += !is_first_in_map;
+        }
         if (r.closed_at >= 0) ++out.loops_closed;
     }
     out.to_the_end = out.lost > 0 && !tracked;
-    if (localised() != nullptr) ++out.pieces;  // the map's own
-    out.pieces -= std::min(out.pieces, out.joined);
+    if (first_in_map != nullptr) ++out.pieces;  // the map's own
+    out.pieces -= std::min(out.pieces, joins);
     return out;
 }
 

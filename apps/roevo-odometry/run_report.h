@@ -18,11 +18,13 @@ struct FrameRecord {
 struct Losses {
     std::size_t lost = 0;         ///< times that tracking failed after it had worked
     std::size_t found_again = 0;  ///< of them, those that ended at a keyframe that was recognised
+    std::size_t regained = 0;     ///< of them, those that tracking came out of by itself
     std::size_t joined = 0;       ///< tracks that were begun anew and later joined to an older one
     std::size_t loops_closed = 0;
     std::size_t pieces = 0;  ///< of the trajectory; where they are relative to each other was not measured
 
-    bool to_the_end = false;  ///< the last frame was lost
+    bool found_in_map = false;  ///< one ended where the camera was found in map_in, which is none of these
+    bool to_the_end = false;    ///< the last frame was lost
 
     /// "lost 3 times, found again once", for one loss at least.
     std::string toText() const;

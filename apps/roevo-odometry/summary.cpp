@@ -249,11 +249,9 @@ std::string summaryJson(const RunReport& report) {
     json["camera"] = cameraJson(report);
     json["frames"] = framesJson(report);
     const Losses losses = report.losses();
-    json["losses"] = {{"lost", losses.lost},
-                      {"found_again", losses.found_again},
-                      {"joined", losses.joined},
-                      {"loops_closed", losses.loops_closed},
-                      {"pieces", losses.pieces}};
+    json["losses"] = {
+        {"lost", losses.lost},     {"found_again", losses.found_again},   {"regained", losses.regained},
+        {"joined", losses.joined}, {"loops_closed", losses.loops_closed}, {"pieces", losses.pieces}};
     json["timings_ms"] = timingsJson(report);
     json["mapping"] = mappingJson(report);
     json["dropped_frames"] = report.dropped;

@@ -38,7 +38,13 @@ TEST(RunReport, APoseThatIsNotANumberIsAFailureThatSaysWhere) {
 TEST(RunReport, LossesReadWellOneAndMany) {
     Losses losses;
     losses.lost = 1;
-    EXPECT_EQ(losses.toText(), "lost once");  // and tracked on from the same keyframe
+    EXPECT_EQ(losses.toText(), "lost once");  // and begun anew
+    losses.regained = 1;
+    EXPECT_EQ(losses.toText(), "lost once, regained by tracking once");
+    losses.regained = 0;
+    losses.found_in_map = true;
+    EXPECT_EQ(losses.toText(), "lost once, found in the map");
+    losses.found_in_map = false;
     losses.to_the_end = true;
     EXPECT_EQ(losses.toText(), "lost once, to the end");
     losses.lost = 3;
@@ -79,6 +85,27 @@ TEST(RunReport, LossesAreCountedOnceEach) {
     EXPECT_EQ(report.losses().joined, 1U);
     EXPECT_EQ(report.losses().loops_closed, 1U);
     EXPECT_EQ(report.losses().pieces, 1U);
+}
+
+TEST(RunReport, ALossThatTrackingCameOutOfByItselfIsToldSo) {
+    RunReport report = trackedReport();
+    const auto add = [&](FrameStatus status) {
+        report.frames.emplace_back();
+        report.frames.back().result.status = status;
+    };
+    add(FrameStatus::kPredicted);  // a black frame
+    EXPECT_EQ(report.losses().regained, 0U);
+    EXPECT_EQ(report.losses().toText(), "lost once, to the end");
+    add(FrameStatus::kOk);
+    add(FrameStatus::kOk);
+    EXPECT_EQ(report.losses().regained, 1U);
+    EXPECT_EQ(report.losses().toText(), "lost once, regained by tracking once");
+    EXPECT_EQ(report.losses().pieces, 1U);
+    add(FrameStatus::kLost);
+    add(FrameStatus::kInitialised);
+    add(FrameStatus::kOk);
+    EXPECT_EQ(report.losses().lost, 2U);
+    EXPECT_EQ(report.losses().regained, 1U) << "begun anew";
 }
 
 TEST(RunReport, SegmentsAreTheTracksThatFramesAreInInTheEnd) {
@@ -140,6 +167,11 @@ TEST(RunReport, AMapIsOnePieceWithWhatWasRecognisedInIt) {
     report.frames[0].result.found_at = -1;
     report.frames[2].result.found_at = 3;
     EXPECT_EQ(report.losses().pieces, 2U) << "what came before was not joined";
+    EXPECT_EQ(report.losses().toText(), "lost once, found in the map");
+    EXPECT_EQ(report.losses().found_again, 0U) << "it was never there before";
+    report.frames[2].result.found_at = -1;
+    report.frames[2].result.joined_at = 3;
+    EXPECT_EQ(report.losses().joined, 0U) << "nothing was begun anew";
 }
 
 }  // namespace

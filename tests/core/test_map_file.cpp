@@ -152,11 +152,28 @@ TEST_P(MapFile, ARecordingThatBeginsElsewhereIsJoined) {
         const FrameResult result = odometry.processFrame(frame);
         EXPECT_TRUE(result.hasPose()) << result.reason;
         EXPECT_EQ(result.found_at, -1);
-        if (result.joined_at >= 0 && joined_at < 0) joined_at = result.joined_at;
+        const bool is_first = result.joined_at >= 0 && joined_at < 0;
+        if (is_first) joined_at = result.joined_at;
+        const std::string found = "found in the map at keyframe " + std::to_string(joined_at);
+        EXPECT_EQ(result.reason.find(found) != std::string::npos, is_first) << result.reason;
     }
     EXPECT_GE(joined_at, 0);
     EXPECT_LT(joined_at, keyframes);
     EXPECT_LT(worstError(odometry.trajectory(), wayBack()), 0.02) << "also before it was recognised";
+}
+
+TEST_P(MapFile, ACameraThatIsFirstFoundInTheMapAfterALossIsSaidToBe) {
+    Odometry odometry = odometryOf(today());
+    load(odometry, map());
+    const auto &room = today().frames, &corridor = elsewhere().frames;
+    std::vector<RgbdFrame> frames{corridor[0], corridor[1], corridor[2], room[0], corridor[2], room[8]};
+    std::vector<std::string> reasons;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        frames[i].timestamp = static_cast<double>(i) / 3;
+        reasons.push_back(odometry.processFrame(frames[i]).reason);
+    }
+    EXPECT_EQ(reasons[3].find("found in the map at keyframe "), 0U) << reasons[3];
+    EXPECT_EQ(reasons[5].find("found again at keyframe "), 0U) << reasons[5];
 }
 
 /// What a camera at rest shows is no keyframe; it is looked at all the same.

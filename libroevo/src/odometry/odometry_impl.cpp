@@ -378,7 +378,8 @@ FrameResult Odometry::Impl::report(const Outcome& outcome) {
     result.keyframe = tracking.pose.keyframe;
     result.T_world_camera = world.trajectory().worldPose(tracking.pose);
     result.covariance = world.covariance(tracking.pose);
-    result.reason = describe(outcome, result);
+    const bool is_first = world.isLocalised() && !std::exchange(localised, world.isLocalised());
+    result.reason = describe(outcome, result, is_first ? world.loaded() : 0);
     result.new_keyframe = outcome.new_keyframe;
     result.found_at = outcome.found_at;
     result.matched_ratio = tracking.matchedRatio();

@@ -40,6 +40,7 @@ struct Odometry::Impl {
     double edges_ms = 0;
     bool measured = false;   // the pose of what is in `frame` was
     bool is_frozen = false;  // images since then are the same
+    bool localised = false;  // as the last frame's reason told
     int lost_frames = 0;
     double lost_since = 0;  // s
 

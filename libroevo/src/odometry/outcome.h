@@ -19,8 +19,10 @@ struct Outcome {
 };
 
 /// The reason of a frame's status, and what became of the world, in words.
-/// @param change  see World::changes()
-std::string describe(const Outcome& outcome, const FrameResult& change);
+/// @param change    see World::changes()
+/// @param first_in  keyframes below this are those of a map that was loaded, in which the camera is for the
+///                  first time; else 0
+std::string describe(const Outcome& outcome, const FrameResult& change, int first_in);
 
 /// A frame that is not processed.
 FrameResult rejected(double timestamp, const Fault& fault);
