@@ -98,6 +98,11 @@ const FrameResult* RunReport::localised() const {
     return first == frames.end() ? nullptr : &first->result;
 }
 
+std::size_t RunReport::leftOut() const {
+    const int loaded = map_in ? map_in->keyframes : 0;
+    return keyframes.size() - static_cast<std::size_t>(map_out.keyframes - loaded);
+}
+
 std::string RunReport::mapWarning() const {
     if (!map_in || localised() != nullptr) return {};
     return map_in->file + ": never recognised in the map: the trajectory is in a world of its own" +

@@ -78,7 +78,8 @@ struct RunReport {
     const FrameResult* localised() const;
     /// The keyframe of that map that a frame was recognised by, or -1.
     int mapKeyframeOf(const FrameResult& frame) const;
-    /// What is to be known where there is no such frame; else empty.
+    /// Keyframes of pieces that are not in map_out.
+    std::size_t leftOut() const;
     std::string mapWarning() const;
     /// Where the errors are of less than half of the trajectory; else empty.
     std::string evaluationWarning() const;

@@ -108,6 +108,18 @@ TEST(RunReport, ALossThatTrackingCameOutOfByItselfIsToldSo) {
     EXPECT_EQ(report.losses().regained, 1U) << "begun anew";
 }
 
+TEST(RunReport, KeyframesThatTheMapDoesNotHaveAreCounted) {
+    RunReport report = trackedReport();
+    report.keyframes = {{0, 10, {}, 0}, {1, 15, {}, 1}, {2, 16, {}, 1}};
+    report.map_out = {"room.map", 3};
+    EXPECT_EQ(report.leftOut(), 0U);
+    report.map_out.keyframes = 2;
+    EXPECT_EQ(report.leftOut(), 1U);
+    report.map_in = LoadedMap{"old.map", 5, false};
+    report.map_out.keyframes = 5;
+    EXPECT_EQ(report.leftOut(), 3U) << "nothing of this recording";
+}
+
 TEST(RunReport, SegmentsAreTheTracksThatFramesAreInInTheEnd) {
     RunReport report = trackedReport();  // three frames of keyframe 0
     const auto add = [&](FrameStatus status, int keyframe) {
