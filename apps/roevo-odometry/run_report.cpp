@@ -103,6 +103,23 @@ std::size_t RunReport::leftOut() const {
     return keyframes.size() - static_cast<std::size_t>(map_out.keyframes - loaded);
 }
 
+double RunReport::pathLength() const {
+    const std::vector<int> pieces = segments();
+    double length = 0;
+    int before = 0;  // the piece of the pose before
+    std::size_t pose = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (!frames[i].result.hasPose()) continue;
+        if (pieces[i] == before)
+            length += (trajectory[pose].T_world_camera.translation() -
+                       trajectory[pose - 1].T_world_camera.translation())
+                          .norm();
+        before = pieces[i];
+        ++pose;
+    }
+    return length;
+}
+
 std::string RunReport::mapWarning() const {
     if (!map_in || localised() != nullptr) return {};
     return map_in->file + ": never recognised in the map: the trajectory is in a world of its own" +

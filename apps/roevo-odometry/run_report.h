@@ -80,6 +80,8 @@ struct RunReport {
     int mapKeyframeOf(const FrameResult& frame) const;
     /// Keyframes of pieces that are not in map_out.
     std::size_t leftOut() const;
+    /// Of the final trajectory, m, without what is between its pieces.
+    double pathLength() const;
     std::string mapWarning() const;
     /// Where the errors are of less than half of the trajectory; else empty.
     std::string evaluationWarning() const;

@@ -259,7 +259,7 @@ std::string summaryJson(const RunReport& report) {
     json["dropped_frames"] = report.dropped;
     json["wall_time_s"] = report.wall_seconds;
     json["memory_peak_mb"] = memoryPeakMb();
-    json["path_length_m"] = pathLength(report.trajectory);
+    json["path_length_m"] = report.pathLength();
     json["map"] = {{"edges", report.map_edges},
                    {"points", report.map_points},
                    {"semi_dense_points", report.semi_dense_points}};
@@ -311,7 +311,7 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
     if (report.dropped > 0)
         std::printf("dropped     %s came while tracking was busy\n",
                     counted(report.dropped, "frame").c_str());
-    std::printf("path        %.2f m\n", pathLength(report.trajectory));
+    std::printf("path        %.2f m\n", report.pathLength());
     std::printf("map         %s, %s; %s of the surface next to them\n",
                 counted(report.map_edges, "edge").c_str(), counted(report.map_points, "point").c_str(),
                 counted(report.semi_dense_points, "point").c_str());

@@ -108,6 +108,23 @@ TEST(RunReport, ALossThatTrackingCameOutOfByItselfIsToldSo) {
     EXPECT_EQ(report.losses().regained, 1U) << "begun anew";
 }
 
+TEST(RunReport, ThePathHasNoJumpsBetweenItsPieces) {
+    RunReport report = trackedReport();  // three poses, in one place
+    const auto add = [&](int keyframe, double x) {
+        report.frames.emplace_back();
+        report.frames.back().result.status = keyframe < 0 ? FrameStatus::kRejected : FrameStatus::kOk;
+        report.frames.back().result.keyframe = keyframe;
+        if (keyframe >= 0) report.trajectory.push_back({20 + x, Pose(Eigen::Translation3d(x, 0, 0))});
+    };
+    report.keyframes = {{0, 10, {}, 0}, {1, 15, {}, 1}};
+    add(0, 1), add(-1, 0), add(0, 2);  // on the way
+    EXPECT_NEAR(report.pathLength(), 2, 1e-12);
+    add(1, 5), add(1, 6.5);
+    EXPECT_NEAR(report.pathLength(), 3.5, 1e-12) << "without the 3 m between the pieces";
+    report.keyframes[1].track = 0;  // joined
+    EXPECT_NEAR(report.pathLength(), 6.5, 1e-12);
+}
+
 TEST(RunReport, KeyframesThatTheMapDoesNotHaveAreCounted) {
     RunReport report = trackedReport();
     report.keyframes = {{0, 10, {}, 0}, {1, 15, {}, 1}, {2, 16, {}, 1}};
