@@ -98,6 +98,12 @@ const FrameResult* RunReport::localised() const {
     return first == frames.end() ? nullptr : &first->result;
 }
 
+int RunReport::mapSegment() const {
+    const auto first = std::find_if(frames.begin(), frames.end(),
+                                    [&](const FrameRecord& f) { return mapKeyframeOf(f.result) >= 0; });
+    return first == frames.end() ? 0 : segments()[static_cast<std::size_t>(first - frames.begin())];
+}
+
 std::size_t RunReport::leftOut() const {
     const int loaded = map_in ? map_in->keyframes : 0;
     return keyframes.size() - static_cast<std::size_t>(map_out.keyframes - loaded);
@@ -121,9 +127,19 @@ double RunReport::pathLength() const {
 }
 
 std::string RunReport::mapWarning() const {
-    if (!map_in || localised() != nullptr) return {};
-    return map_in->file + ": never recognised in the map: the trajectory is in a world of its own" +
-           (map_out.file.empty() ? "" : ", and nothing is added to the map");
+    if (!map_in) return {};
+    const int segment = mapSegment();
+    if (segment == 0)
+        return map_in->file + ": never recognised in the map: the trajectory is in a world of its own" +
+               (map_out.file.empty() ? "" : ", and nothing is added to the map");
+    const std::vector<int> pieces = segments();
+    const int all = *std::max_element(pieces.begin(), pieces.end());
+    if (all < 2) return {};
+    return map_in->file +
+           format(
+               ": only segment %d of %d (see frames.csv) is in the map's world; where the rest is in it was "
+               "not measured",
+               segment, all);
 }
 
 std::string RunReport::evaluationWarning() const {
@@ -202,8 +218,12 @@ std::string covariancesText(const RunReport& report) {
         "# Covariance of each pose T_world_camera, as it was known when its frame was processed\n"
         "# order: position x y z, orientation x y z; both along the axes of the world of "
         "trajectory_live.txt\n"
-        "# units: m and rad, so m^2, m rad and rad^2; an orientation error phi is meant as R <- exp(phi) R\n"
-        "# timestamp, then the 6x6 matrix row by row: 37 columns\n";
+        "# units: m and rad, so m^2, m rad and rad^2; an orientation error phi is meant as R <- exp(phi) R\n";
+    if (const FrameResult* const found = report.localised())
+        text += format(
+            "# relative to the first keyframe of the map from %.6f on, and to the run's own start before\n",
+            found->timestamp);
+    text += "# timestamp, then the 6x6 matrix row by row: 37 columns\n";
     for (const FrameRecord& f : report.frames) {
         if (!f.result.hasPose()) continue;
         text += format("%.6f", f.result.timestamp);

@@ -78,10 +78,13 @@ struct RunReport {
     const FrameResult* localised() const;
     /// The keyframe of that map that a frame was recognised by, or -1.
     int mapKeyframeOf(const FrameResult& frame) const;
+    /// The segment that is in the world of map_in; 0 where there is none.
+    int mapSegment() const;
     /// Keyframes of pieces that are not in map_out.
     std::size_t leftOut() const;
     /// Of the final trajectory, m, without what is between its pieces.
     double pathLength() const;
+    /// Where not all of the trajectory is in the world of map_in; else empty.
     std::string mapWarning() const;
     /// Where the errors are of less than half of the trajectory; else empty.
     std::string evaluationWarning() const;

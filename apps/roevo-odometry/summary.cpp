@@ -178,8 +178,10 @@ Json mapInJson(const RunReport& report) {
     for (std::size_t i = 0; localised != nullptr && i < report.frames.size(); ++i) {
         const FrameResult& frame = report.frames[i].result;
         if (&frame != localised) continue;
-        json["localised"] = {
-            {"frame", i}, {"timestamp", frame.timestamp}, {"keyframe", report.mapKeyframeOf(frame)}};
+        json["localised"] = {{"frame", i},
+                             {"timestamp", frame.timestamp},
+                             {"keyframe", report.mapKeyframeOf(frame)},
+                             {"segment", report.mapSegment()}};
     }
     return json;
 }

@@ -19,18 +19,20 @@ class MapProgram : public OdometryProgram {
     std::string map() const { return folder_ / "wall.map"; }
     std::string recording() const { return folder_ / "recording"; }
 
+    static void mirror(test::TumFrame& frame) {
+        for (cv::Mat* image : {&frame.colour, &frame.depth})
+            for (int row = 0; row < image->rows / 2; ++row)
+                for (std::size_t k = 0; k < image->elemSize() * static_cast<std::size_t>(image->cols); ++k)
+                    std::swap(image->ptr(row)[k], image->ptr(image->rows - 1 - row)[k]);
+    }
+
     /// The same wall, played backwards from its middle, mirrored where it is to be another place.
     std::string otherRecording(bool another_place) const {
         std::vector<test::TumFrame> frames = slidingRecording(24), chosen;
         for (std::size_t i = 0; i < 12; ++i) {
             test::TumFrame frame = frames[frames.size() - 1 - i];
             frame.timestamp = 500 + frames[i].timestamp;
-            if (another_place)
-                for (cv::Mat* image : {&frame.colour, &frame.depth})
-                    for (int row = 0; row < image->rows / 2; ++row)
-                        for (std::size_t k = 0; k < image->elemSize() * static_cast<std::size_t>(image->cols);
-                             ++k)
-                            std::swap(image->ptr(row)[k], image->ptr(image->rows - 1 - row)[k]);
+            if (another_place) mirror(frame);
             chosen.push_back(frame);
         }
         test::writeTumFolder(folder_ / "other", chosen);
@@ -98,6 +100,37 @@ TEST_F(MapProgram, WhereItIsNotRecognisedThatIsSaid) {
         << result.all();
     EXPECT_EQ(summary()["map_in"]["localised"], nullptr);
     EXPECT_TRUE(readFile(folder_ / "more.map") == readFile(map())) << "nothing was added";
+}
+
+/// A wall, and then another one, as after a gap in the recording.
+TEST_F(MapProgram, WhatIsNotJoinedIsSaidToBeInNoMapAndNotInItsWorld) {
+    ASSERT_EQ(runFrames(slidingRecording(24), {"--map-out", map()}).exit_code, 0);
+    std::vector<test::TumFrame> frames = slidingRecording(24);
+    for (std::size_t i = 0; i < 16; ++i) mirror(frames[i]);
+    const std::vector<std::string> soon{"--set", "loss.max_predicted=0", "--map-out", folder_ / "two.map"};
+    auto result = runFrames(frames, soon);
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_EQ(summary()["losses"]["pieces"], 2) << "else it is no test";
+    const int left_out = summary()["map_out"]["left_out"];
+    EXPECT_GT(left_out, 0);
+    EXPECT_EQ(summary()["map_out"]["keyframes"].get<int>() + left_out, summary()["frames"]["keyframes"]);
+    EXPECT_NE(result.out.find(" of pieces that were not joined to these left out"), std::string::npos)
+        << result.out;
+    EXPECT_NEAR(summary()["path_length_m"].get<double>(), 0.22, 0.01) << "15 and 7 steps of 1 cm";
+
+    std::vector<std::string> with_map = soon;
+    with_map.insert(with_map.end(), {"--map-in", map(), "--covariances", folder_ / "covariances.txt"});
+    result = run(recording(), with_map);
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_EQ(reason(16).find("found in the map at keyframe "), 0U) << reason(16);
+    EXPECT_NE(result.out.find("lost once, found in the map"), std::string::npos) << result.out;
+    EXPECT_EQ(summary()["map_in"]["localised"]["frame"], 16);
+    EXPECT_EQ(summary()["map_in"]["localised"]["segment"], 2);
+    EXPECT_NE(result.err.find("wall.map: only segment 2 of 2 (see frames.csv) is in the map's world"),
+              std::string::npos)
+        << result.err;
+    EXPECT_NE(readFile(folder_ / "covariances.txt").find("# relative to the first keyframe of the map from "),
+              std::string::npos);
 }
 
 TEST_F(MapProgram, WhatIsNoMapIsRefusedInOneLine) {

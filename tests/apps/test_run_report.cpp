@@ -203,5 +203,25 @@ TEST(RunReport, AMapIsOnePieceWithWhatWasRecognisedInIt) {
     EXPECT_EQ(report.losses().joined, 0U) << "nothing was begun anew";
 }
 
+TEST(RunReport, ThePieceThatIsInTheMapsWorldIsNamed) {
+    RunReport report = trackedReport();
+    report.map_in = LoadedMap{"room.map", 5, false};
+    report.keyframes = {{5, 10, {}, 5}, {6, 15, {}, 0}};
+    for (const std::size_t i : {0U, 1U}) report.frames[i].result.keyframe = 5;
+    report.frames[2].result.keyframe = 6;
+    EXPECT_EQ(report.mapSegment(), 0);
+    report.frames[2].result.found_at = 3;
+    EXPECT_EQ(report.mapSegment(), 2);
+    const std::string warning = report.mapWarning();
+    EXPECT_NE(warning.find("room.map: only segment 2 of 2 "), std::string::npos) << warning;
+    EXPECT_NE(
+        covariancesText(report).find("# relative to the first keyframe of the map from 12.000000 on, and "
+                                     "to the run's own start before\n"),
+        std::string::npos);
+    report.keyframes[0].track = 0;  // joined later
+    EXPECT_EQ(report.mapSegment(), 1);
+    EXPECT_EQ(report.mapWarning(), "");
+}
+
 }  // namespace
 }  // namespace roevo
