@@ -25,6 +25,7 @@ void readSummary(const std::string& path, ResultFolder& result) {
             result.name = input.filename().string();
         }
         result.mode = json.at("mode").get<std::string>();
+        if (json.contains("path_length_m")) result.path_length = json.at("path_length_m").get<double>();
         const auto& camera = json.at("camera");
         PinholeCamera pinhole;
         pinhole.width = camera.at("width").get<int>(), pinhole.height = camera.at("height").get<int>();

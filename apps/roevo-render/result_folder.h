@@ -16,7 +16,8 @@ struct ResultFolder {
     std::vector<StampedPose> trajectory;
     std::vector<StampedPose> live, keyframes;  ///< may be empty
     std::optional<PinholeCamera> camera;
-    std::string ground_truth;  ///< file that the run was compared with; may be empty
+    std::optional<double> path_length;  ///< m, without what is between pieces, where the run told it
+    std::string ground_truth;           ///< file that the run was compared with; may be empty
     EdgeMap edges;
     std::vector<ColouredPoint> surface;
     std::vector<std::string> missing;  ///< names of files that are not there

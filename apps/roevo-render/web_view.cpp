@@ -106,8 +106,9 @@ Json layerJson(const char* id, const char* title, bool shown, const Cloud& cloud
 
 Json factsJson(const ResultFolder& result) {
     const double duration = result.trajectory.back().timestamp - result.trajectory.front().timestamp;
-    Json facts = {counted(result.trajectory.size(), "pose"), shownNumber(duration, 1) + " s",
-                  "path " + shownNumber(pathLength(result.trajectory), 2) + " m"};
+    Json facts = {
+        counted(result.trajectory.size(), "pose"), shownNumber(duration, 1) + " s",
+        "path " + shownNumber(result.path_length.value_or(pathLength(result.trajectory)), 2) + " m"};
     if (!result.keyframes.empty()) facts.push_back(counted(result.keyframes.size(), "keyframe"));
     if (!result.mode.empty()) facts.push_back("mode " + result.mode);
     return facts;

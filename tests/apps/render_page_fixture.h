@@ -64,10 +64,11 @@ class RenderPage : public testing::Test {
         writeSummary();
     }
 
-    void writeSummary() const {
+    void writeSummary(const nlohmann::json& more = nlohmann::json::object()) const {
         nlohmann::json summary = {{"input", {{"path", "data/some room/"}}}, {"mode", "ba"}};
         summary["camera"] = {{"width", 640}, {"height", 480}, {"fx", 525},
                              {"fy", 525},    {"cx", 319.5},   {"cy", 239.5}};
+        summary.update(more);
         writeFile(result() + "/summary.json", summary.dump());
     }
 

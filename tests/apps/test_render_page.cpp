@@ -234,6 +234,15 @@ TEST_F(RenderPage, ShowsWhatIsThereAndSaysWhatIsNot) {
     EXPECT_EQ(data()["title"], "result");
 }
 
+TEST_F(RenderPage, ThePathIsAsLongAsTheRunSays) {  // which knows what was not measured
+    writeSummary({{"path_length_m", 1.25}});
+    ASSERT_EQ(render().exit_code, 0);
+    EXPECT_EQ(data()["facts"][2], "path 1.25 m");
+    writeSummary();
+    ASSERT_EQ(render().exit_code, 0);
+    EXPECT_EQ(data()["facts"][2], "path 6.18 m");
+}
+
 TEST_F(RenderPage, FailuresAreOneLineAndLeaveNoPage) {
     const auto with = [&](const std::string& input, const std::vector<std::string>& more = {}) {
         std::vector<std::string> arguments{"--input", input, "--output", page()};
