@@ -99,8 +99,15 @@ const FrameResult* RunReport::localised() const {
 }
 
 int RunReport::mapSegment() const {
-    const auto first = std::find_if(frames.begin(), frames.end(),
-                                    [&](const FrameRecord& f) { return mapKeyframeOf(f.result) >= 0; });
+    // A keyframe may have been recognised only when the last frame had been
+    const auto isInMap = [&](const FrameResult& frame) {
+        return mapKeyframeOf(frame) >= 0 ||
+               std::any_of(keyframes.begin(), keyframes.end(), [&](const KeyframeInfo& k) {
+                   return k.id == frame.keyframe && map_in && k.track < map_in->keyframes;
+               });
+    };
+    const auto first =
+        std::find_if(frames.begin(), frames.end(), [&](const FrameRecord& f) { return isInMap(f.result); });
     return first == frames.end() ? 0 : segments()[static_cast<std::size_t>(first - frames.begin())];
 }
 

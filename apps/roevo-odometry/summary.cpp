@@ -173,16 +173,16 @@ Json mapInJson(const RunReport& report) {
     Json json = {{"file", report.map_in->file},
                  {"keyframes", report.map_in->keyframes},
                  {"localise_only", report.map_in->localise_only},
-                 {"localised", nullptr}};
+                 {"localised", nullptr},
+                 {"segment", nullptr}};
     const FrameResult* const localised = report.localised();
     for (std::size_t i = 0; localised != nullptr && i < report.frames.size(); ++i) {
         const FrameResult& frame = report.frames[i].result;
         if (&frame != localised) continue;
-        json["localised"] = {{"frame", i},
-                             {"timestamp", frame.timestamp},
-                             {"keyframe", report.mapKeyframeOf(frame)},
-                             {"segment", report.mapSegment()}};
+        json["localised"] = {
+            {"frame", i}, {"timestamp", frame.timestamp}, {"keyframe", report.mapKeyframeOf(frame)}};
     }
+    if (const int segment = report.mapSegment(); segment > 0) json["segment"] = segment;
     return json;
 }
 
@@ -295,6 +295,9 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
         std::printf("map in      %s, %s: recognised at keyframe %d, %.2f s after the first frame\n",
                     report.map_in->file.c_str(), keyframes(report.map_in->keyframes).c_str(),
                     report.mapKeyframeOf(*frame), frame->timestamp - report.frames.front().result.timestamp);
+    else if (report.mapSegment() > 0)
+        std::printf("map in      %s, %s: recognised after the last frame\n", report.map_in->file.c_str(),
+                    keyframes(report.map_in->keyframes).c_str());
     if (!report.map_out.file.empty())
         std::printf("map out     %s, %s\n", report.map_out.file.c_str(),
                     keyframes(report.map_out.keyframes).c_str());

@@ -206,11 +206,12 @@ TEST(RunReport, AMapIsOnePieceWithWhatWasRecognisedInIt) {
 TEST(RunReport, ThePieceThatIsInTheMapsWorldIsNamed) {
     RunReport report = trackedReport();
     report.map_in = LoadedMap{"room.map", 5, false};
-    report.keyframes = {{5, 10, {}, 5}, {6, 15, {}, 0}};
+    report.keyframes = {{5, 10, {}, 5}, {6, 15, {}, 6}};
     for (const std::size_t i : {0U, 1U}) report.frames[i].result.keyframe = 5;
     report.frames[2].result.keyframe = 6;
     EXPECT_EQ(report.mapSegment(), 0);
     report.frames[2].result.found_at = 3;
+    report.keyframes[1].track = 0;
     EXPECT_EQ(report.mapSegment(), 2);
     const std::string warning = report.mapWarning();
     EXPECT_NE(warning.find("room.map: only segment 2 of 2 "), std::string::npos) << warning;
@@ -219,6 +220,9 @@ TEST(RunReport, ThePieceThatIsInTheMapsWorldIsNamed) {
                                      "to the run's own start before\n"),
         std::string::npos);
     report.keyframes[0].track = 0;  // joined later
+    EXPECT_EQ(report.mapSegment(), 1);
+    EXPECT_EQ(report.mapWarning(), "");
+    report.frames[2].result.found_at = -1;  // or only when the last frame had been
     EXPECT_EQ(report.mapSegment(), 1);
     EXPECT_EQ(report.mapWarning(), "");
 }
