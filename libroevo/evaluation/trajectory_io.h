@@ -7,7 +7,8 @@
 
 namespace roevo {
 
-/// How files hold trajectories, a pose per line; `#` starts a comment.
+/// How files hold trajectories, a pose per line; `#` starts a comment. A first line may name the columns, as
+/// a comment or not; where its names tell whether qw is first or last of the quaternion, they count.
 enum class TrajectoryFormat {
     kTum,    ///< `timestamp tx ty tz qx qy qz qw`, s and m
     kKitti,  ///< twelve numbers, the rows of the 3 x 4 matrix [R t], m; no times
@@ -28,11 +29,11 @@ struct RowTimes {
 double unitOfThisCentury(double first, double last, std::size_t count);
 
 /// Reads a trajectory, sorted by time on return; of poses with one stamp the last counts.
-/// @param format  none: as its first row looks. @param times  for KITTI. Stamps that can only be ms, us or ns
-/// of this century become s.
+/// @param format  none: as its head and its first row look. @param times  for KITTI. Stamps that can only be
+/// ms, us or ns of this century become s.
 /// @throws std::runtime_error with file and line: not the numbers that the format has, a value that is not
 /// finite, a quaternion whose length is not one, a matrix that is no rotation, another number of rows than
-/// times; or a file with no pose at all
+/// times; a file with no pose at all; or rows of which nothing tells where qw is
 std::vector<StampedPose> readTrajectory(const std::string& path, std::optional<TrajectoryFormat> format = {},
                                         const RowTimes& times = {});
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -30,12 +31,71 @@ constexpr struct {
                 {TrajectoryFormat::kEuroc, "euroc",
                  "8 or more numbers with commas between (EuRoC: nanoseconds,x,y,z,qw,qx,qy,qz)"}};
 
+/// Which of a quaternion's numbers is the first.
+enum class Order { kWFirst, kXFirst };
+
 const char* rowOf(TrajectoryFormat format) {
     return kFormats[static_cast<std::size_t>(format)].row;
 }
 
-/// Rows of a text file without comments and blank lines, one after the other. Whether there are commas
-/// between the words the first row tells; in EuRoC's format there are.
+std::string_view trimmed(std::string_view word) {
+    const std::size_t begin = word.find_first_not_of(kBlank);
+    if (begin == std::string_view::npos) return {};
+    return word.substr(begin, word.find_last_not_of(kBlank) - begin + 1);
+}
+
+using Words = std::vector<std::string_view>;
+
+Words split(std::string_view content, bool commas) {
+    Words words;
+    if (commas) {
+        for (std::size_t end; (end = content.find(',')) != std::string_view::npos;
+             content.remove_prefix(end + 1))
+            words.push_back(trimmed(content.substr(0, end)));
+        words.push_back(trimmed(content));
+        return words;
+    }
+    for (content = trimmed(content); !content.empty();) {
+        words.push_back(content.substr(0, content.find_first_of(kBlank)));
+        content = trimmed(content.substr(words.back().size()));
+    }
+    return words;
+}
+
+std::string_view withoutPlus(std::string_view word) {
+    return word.substr(word.size() > 1 && word[0] == '+' && word[1] != '-' ? 1 : 0);
+}
+
+bool isNumber(std::string_view word) {
+    word = withoutPlus(word);
+    double value = 0;
+    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error != std::errc::invalid_argument && rest == word.data() + word.size();
+}
+
+/// Whether they name the columns of a pose.
+bool areNames(const Words& words) {
+    return words.size() >= kTumColumns && std::none_of(words.begin(), words.end(), [](std::string_view word) {
+               return word.empty() || isNumber(word);
+           });
+}
+
+/// What names ("q_RS_w []", "pose.orientation.x") say by their last letters, without a unit behind them.
+std::optional<Order> orderNamed(const Words& names) {
+    std::string letters;
+    for (std::size_t k = 1; k < kTumColumns; ++k) {
+        const std::string_view name = names[k].substr(0, names[k].find_first_of("[("));
+        const auto last =
+            std::find_if(name.rbegin(), name.rend(), [](unsigned char c) { return std::isalpha(c) != 0; });
+        letters += last == name.rend() ? '?' : static_cast<char>(std::tolower(*last));
+    }
+    if (letters == "xyzwxyz") return Order::kWFirst;
+    if (letters == "xyzxyzw") return Order::kXFirst;
+    return std::nullopt;
+}
+
+/// Rows of a text file without comments, blank lines and a first line of names, one after the other. Whether
+/// there are commas between the words the first row tells; in EuRoC's format there are.
 class Rows {
   public:
     explicit Rows(const std::string& path, std::optional<TrajectoryFormat> format = {}) : path_(path) {
@@ -50,22 +110,32 @@ class Rows {
     bool next() {
         while (std::getline(in_, text_)) {
             ++line_;
-            const std::string_view content = std::string_view(text_).substr(0, text_.find('#'));
-            if (content.find_first_not_of(kBlank) == std::string_view::npos) continue;
-            split(content);
+            const std::size_t hash = text_.find('#');
+            const std::string_view content = trimmed(std::string_view(text_).substr(0, hash));
+            if (content.empty()) {
+                if (columns_ == 0 && hash != std::string::npos)
+                    takeNames(std::string_view(text_).substr(hash + 1));
+                continue;
+            }
+            if (columns_ == 0 && !has_head_ && takeNames(content)) {
+                has_head_ = true;
+                continue;
+            }
+            if (!has_commas_) has_commas_ = content.find(',') != std::string_view::npos;
+            words_ = split(content, *has_commas_);
             if (columns_ == 0) columns_ = words_.size();
             return true;
         }
         return false;
     }
     bool hasCommas() const { return *has_commas_; }
-    const std::vector<std::string_view>& words() const { return words_; }
-    std::size_t columns() const { return columns_; }  // of the first row
+    const Words& words() const { return words_; }
+    std::size_t columns() const { return columns_; }       // of the first row
+    std::optional<Order> named() const { return named_; }  // by a head, or a comment like one
 
     template <class Number>
     Number number(std::size_t column, const char* what = "number") const {
-        std::string_view word = words_[column];
-        if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+        const std::string_view word = withoutPlus(words_[column]);
         Number value{};
         const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
         if (error != std::errc() || rest != word.data() + word.size())
@@ -84,36 +154,26 @@ class Rows {
     }
 
   private:
-    void split(std::string_view content) {
-        if (!has_commas_) has_commas_ = content.find(',') != std::string_view::npos;
-        const auto trimmed = [](std::string_view word) {
-            const std::size_t begin = word.find_first_not_of(kBlank);
-            if (begin == std::string_view::npos) return std::string_view();
-            return word.substr(begin, word.find_last_not_of(kBlank) - begin + 1);
-        };
-        words_.clear();
-        if (*has_commas_) {
-            for (std::size_t end; (end = content.find(',')) != std::string_view::npos;
-                 content.remove_prefix(end + 1))
-                words_.push_back(trimmed(content.substr(0, end)));
-            words_.push_back(trimmed(content));
-            return;
-        }
-        for (content = trimmed(content); !content.empty();) {
-            words_.push_back(content.substr(0, content.find_first_of(kBlank)));
-            content = trimmed(content.substr(words_.back().size()));
-        }
+    bool takeNames(std::string_view content) {
+        const Words names = split(content, content.find(',') != std::string_view::npos);
+        if (!areNames(names)) return false;
+        if (const auto order = orderNamed(names)) named_ = order;
+        return true;
     }
 
     std::string path_, text_;
     std::ifstream in_;
     std::size_t line_ = 0, columns_ = 0;
     std::optional<bool> has_commas_;
-    std::vector<std::string_view> words_;
+    bool has_head_ = false;
+    std::optional<Order> named_;
+    Words words_;
 };
 
 std::optional<TrajectoryFormat> recognise(const Rows& rows) {
-    if (rows.hasCommas()) return TrajectoryFormat::kEuroc;
+    const bool whole = rows.words().front().find('.') == std::string_view::npos;
+    if (rows.hasCommas() && (!rows.named() || (rows.named() == Order::kWFirst && whole)))
+        return TrajectoryFormat::kEuroc;
     if (rows.words().size() == kTumColumns) return TrajectoryFormat::kTum;
     if (rows.words().size() == kKittiColumns) return TrajectoryFormat::kKitti;
     return std::nullopt;
@@ -126,13 +186,19 @@ std::string anyRow() {
     return all;
 }
 
+constexpr char kNameThem[] =
+    "name the columns in a first line: timestamp,tx,ty,tz,qx,qy,qz,qw, or as they are";
+
 double eurocStamp(const Rows& rows) {
-    const auto ns = rows.number<std::int64_t>(
-        0, "time stamp in whole nanoseconds (EuRoC has commas; TUM's columns with commas: --format tum)");
+    static const std::string what =
+        std::string("time stamp in whole nanoseconds (EuRoC has commas); ") + kNameThem;
+    const auto ns = rows.number<std::int64_t>(0, what.c_str());
     return static_cast<double>(ns / kNanoseconds) + 1e-9 * static_cast<double>(ns % kNanoseconds);
 }
 
-Pose quaternionPose(const Rows& rows, std::size_t w, std::size_t x) {
+Pose quaternionPose(const Rows& rows, Order usual) {
+    const bool w_first = rows.named().value_or(usual) == Order::kWFirst;
+    const std::size_t w = w_first ? 4 : 7, x = w_first ? 5 : 4;
     const auto at = [&](std::size_t column) { return rows.number<double>(column); };
     const Eigen::Vector3d position(at(1), at(2), at(3));
     const Eigen::Quaterniond q(at(w), at(x), at(x + 1), at(x + 2));
@@ -158,12 +224,19 @@ StampedPose poseOf(const Rows& rows, TrajectoryFormat format) {
         if (count < kEurocColumns) rows.failAsRow(rowOf(format));
         if (count != rows.columns())
             rows.failAsRow(std::to_string(rows.columns()) + " numbers, as in the first row");
-        return {eurocStamp(rows), quaternionPose(rows, 4, 5)};
+        return {eurocStamp(rows), quaternionPose(rows, Order::kWFirst)};
     }
     if (count != (format == TrajectoryFormat::kTum ? kTumColumns : kKittiColumns))
         rows.failAsRow(rowOf(format));
     if (format == TrajectoryFormat::kKitti) return {0, matrixPose(rows)};
-    return {rows.number<double>(0), quaternionPose(rows, 7, 4)};
+    return {rows.number<double>(0), quaternionPose(rows, Order::kXFirst)};
+}
+
+// Rows of whole ns with commas are EuRoC's by custom. But trajectories often begin unturned, and hardly ever
+// turned by half about z: then the custom is likely to be wrong, and what the file means cannot be told.
+void refuseDoubt(const Rows& rows) {
+    if (rows.named() || rows.columns() != kTumColumns || std::abs(rows.number<double>(7)) < 1 - 1e-6) return;
+    rows.fail(std::string("qw,qx,qy,qz (EuRoC) or qx,qy,qz,qw (TUM)? ") + kNameThem);
 }
 
 // Gives the rows of a file that has no times those of another one.
@@ -173,7 +246,8 @@ void setTimes(std::vector<StampedPose>& poses, const RowTimes& times, const Rows
         const bool other = !times.source.empty() && times.source != path;
         throw std::runtime_error(
             path + ": a KITTI file has no times" + (other ? ", and neither has " + times.source : "") +
-            "; give one for each of its rows by roevo-eval --times FILE, or take another format");
+            "; give roevo-eval one for each of its rows by --times FILE, or write it with times: "
+            "timestamp tx ty tz qx qy qz qw");
     }
     if (poses.size() != times.stamps.size())
         at_end.fail("the last of " + std::to_string(poses.size()) +
@@ -199,9 +273,11 @@ std::vector<StampedPose> readAsWritten(const std::string& path, std::optional<Tr
     std::vector<StampedPose> poses;
     const std::string expected = format ? rowOf(*format) : anyRow();
     while (rows.next()) {
+        const bool guessed = !format;
         if (!format) format = recognise(rows);
         if (!format) rows.failAsRow(expected);
         poses.push_back(poseOf(rows, *format));
+        if (guessed && format == TrajectoryFormat::kEuroc) refuseDoubt(rows);
     }
     if (poses.empty()) throw std::runtime_error(path + ": no pose in it; expected lines of " + expected);
     if (*format == TrajectoryFormat::kKitti) setTimes(poses, times, rows, path);
@@ -256,8 +332,10 @@ RowTimes readRowTimes(const std::string& path) {
     Rows rows(path);
     RowTimes times{{}, path};
     while (rows.next()) {
-        if (!rows.hasCommas() && rows.words().size() == kKittiColumns) return {{}, path};
-        times.stamps.push_back(rows.hasCommas() ? eurocStamp(rows) : rows.number<double>(0));
+        const auto format = recognise(rows);
+        if (format == TrajectoryFormat::kKitti) return {{}, path};
+        times.stamps.push_back(format == TrajectoryFormat::kEuroc ? eurocStamp(rows)
+                                                                  : rows.number<double>(0));
     }
     if (times.stamps.empty()) throw std::runtime_error(path + ": no time in it; expected one per line");
     const double unit = unitOfThisCentury(times.stamps.front(), times.stamps.back(), times.stamps.size());

@@ -205,5 +205,79 @@ TEST_F(TrajectoryFormats, CommasMayStandBetweenTumsColumns) {
     EXPECT_THROW(readTrajectory(commas), std::runtime_error) << "EuRoC's, were it not told otherwise";
 }
 
+std::string csv(const std::string& head, bool w_first, double unit, int decimals) {
+    std::string text = head;
+    for (const StampedPose& pose : helix()) {
+        const Eigen::Vector3d p = pose.T_world_camera.translation();
+        const Eigen::Quaterniond q = pose.T_world_camera.rotation();
+        char row[300];
+        std::snprintf(row, sizeof row, "%.*f,%.9f,%.9f,%.9f,%.12f,%.12f,%.12f,%.12f\n", decimals,
+                      unit * pose.timestamp, p.x(), p.y(), p.z(), w_first ? q.w() : q.x(),
+                      w_first ? q.x() : q.y(), w_first ? q.y() : q.z(), w_first ? q.z() : q.w());
+        text += row;
+    }
+    return text;
+}
+
+TEST_F(TrajectoryFormats, NamesOfTheColumnsTellTheirOrder) {
+    const std::string p = "timestamp,px,py,pz,", t = "\"t\",\"tx (m)\",\"ty (m)\",\"tz (m)\",";
+    for (const std::string mark : {"", "#", "# made by hand\n# "})
+        for (const auto& [unit, decimals] : {std::make_pair(1.0, 6), std::make_pair(1e9, 0)}) {
+            for (const std::string& head : {p + "qx,qy,qz,qw\n", t + "q_x,q_y,q_z,q_w\n",
+                                            p + "orientation.x,orientation.y,orientation.z,orientation.w\n"})
+                expectSame(readTrajectory(file("t.csv", csv(mark + head, false, unit, decimals))), helix());
+            for (const std::string& head :
+                 {p + "qw,qx,qy,qz\n", t + "q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n"})
+                expectSame(readTrajectory(file("e.csv", csv(mark + head, true, unit, decimals))), helix());
+        }
+    std::string blanks = csv("t,x,y,z,w,x,y,z\n", true, 1, 6);
+    std::replace(blanks.begin(), blanks.end(), ',', ' ');
+    expectSame(readTrajectory(file("b.txt", blanks)), helix());
+    expectSame(readTrajectory(file("more.csv", "t,x,y,z,qw,qx,qy,qz,vx,vy\n" + test::eurocText(helix()))),
+               helix());
+    const std::string named = csv(p + "qx,qy,qz,qw\n", false, 1, 6);
+    expectSame(readTumTrajectory(file("groundtruth.txt", named)), helix());
+    EXPECT_EQ(readRowTimes(file("times.csv", named)).stamps.size(), 60u);
+    EXPECT_NEAR(readRowTimes(file("times.csv", named)).stamps[1], kStart + 0.05, 1e-6);
+    const auto run = eval(truth(), {folder_ / "t.csv", folder_ / "e.csv"});
+    EXPECT_EQ(run.exit_code, 0) << run.all();
+}
+
+TEST_F(TrajectoryFormats, HeadsAreOneLineOfNames) {
+    const std::string head = "timestamp,px,py,pz,qx,qy,qz,qw\n";
+    EXPECT_NE(complaint(head + head + "5,0,0,0,0,0,0,1\n").find("t:2: 'timestamp' is not a"),
+              std::string::npos);
+    EXPECT_NE(complaint("nan nan nan nan nan nan nan nan\n").find("t:1: 'nan' is not finite"),
+              std::string::npos);
+    EXPECT_NE(complaint("5,0,0,0,1,0,0,0\n" + head).find("t:2: "), std::string::npos);
+    EXPECT_NE(complaint(head).find("no pose in it"), std::string::npos);
+}
+
+TEST_F(TrajectoryFormats, CommasWithoutNamesThatBeginUnturnedInTumsOrderAreRefused) {
+    const std::string nanoseconds = csv("", false, 1e9, 0);
+    const std::string words = complaint(nanoseconds);
+    EXPECT_NE(words.find("t:1: qw,qx,qy,qz (EuRoC) or qx,qy,qz,qw (TUM)? "), std::string::npos) << words;
+    EXPECT_NE(words.find("name the columns in a first line: timestamp,tx,ty,tz,qx,qy,qz,qw"),
+              std::string::npos)
+        << words;
+    expectSame(readTrajectory(folder_ / "t", TrajectoryFormat::kTum), [] {
+        auto poses = helix();
+        for (StampedPose& pose : poses) pose.timestamp = std::round(1e6 * pose.timestamp) / 1e6;
+        return poses;
+    }());
+    EXPECT_NO_THROW(readTrajectory(file("t", nanoseconds), TrajectoryFormat::kEuroc)) << "as it was told";
+    expectSame(readTrajectory(file("t", csv("", true, 1e9, 0))), helix());
+    EXPECT_EQ(complaint("5,0,0,0,0,0,0,1,9,9\n"), "") << "TUM has no more columns";
+}
+
+TEST_F(TrajectoryFormats, WhatToDoCanBeDoneInEveryProgram) {
+    const std::string commas = complaint(csv("", false, 1, 6));
+    EXPECT_NE(commas.find("name the columns in a first line"), std::string::npos) << commas;
+    EXPECT_EQ(commas.find("--format"), std::string::npos) << commas;
+    const std::string times = complaint(kitti(helix()));
+    EXPECT_NE(times.find("or write it with times: timestamp tx ty tz qx qy qz qw"), std::string::npos)
+        << times;
+}
+
 }  // namespace
 }  // namespace roevo
