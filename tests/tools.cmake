@@ -26,7 +26,7 @@ roevo_test(test_datasets_readme SOURCES tools/test_datasets_readme.cpp LIBS roev
 target_include_directories(test_datasets_readme PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_include_directories(test_datasets_readme SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 add_dependencies(test_datasets_readme rgbd2rawlog bag2rawlog roevo-odometry roevo-eval roevo-compare)
-roevo_test(test_inputs SOURCES tools/test_inputs.cpp tools/test_inputs_bad.cpp tools/test_calibration_file.cpp tools/folder_kinds.cpp tools/folder_writer.cpp
+roevo_test(test_inputs SOURCES tools/test_inputs.cpp tools/test_inputs_bad.cpp tools/test_image_times.cpp tools/test_calibration_file.cpp tools/folder_kinds.cpp tools/folder_writer.cpp
            LIBS roevo_datasets roevo_mrpt roevo_programs SUITES)
 target_include_directories(test_inputs PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} SYSTEM PRIVATE ${OpenCV_INCLUDE_DIRS})
 add_dependencies(test_inputs rawlog-simulate rgbd2rawlog rawlog2rgbd roevo-odometry)

@@ -53,6 +53,7 @@ struct DatasetDescription {
     std::optional<DepthRegistration> registration;  ///< empty: depth and colour pixels are the same
     std::vector<std::string> notes;                 ///< what was assumed or converted, a line each
     std::vector<DatasetEntry> frames;
+    double time_unit = 1;                ///< per second, that the images' stamps were written in
     double frame_rate = 0;               ///< Hz, of images that are numbered; 0: they have times
     std::shared_ptr<ImageStore> images;  ///< none: images are files
     AssociationReport association;

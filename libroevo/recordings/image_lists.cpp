@@ -39,9 +39,14 @@ void matchLists(const std::string& colour_list, const std::string& depth_list, d
                 DatasetDescription& out) {
     const auto read = [&](const std::string& name) {
         const std::string file = (fs::path(out.folder) / name).string();
-        auto entries = readStampedList(file, out.association);
+        auto entries = readStampedList(file);
         if (entries.empty()) throw std::runtime_error(file + " lists no images");
-        for (ListEntry& entry : entries) entry.file = (fs::path(out.folder) / entry.file).string();
+        const double unit = unitOfImages(stampsOf(entries), out);
+        for (ListEntry& entry : entries) {
+            entry.timestamp /= unit;
+            entry.file = (fs::path(out.folder) / entry.file).string();
+        }
+        sortByTime(entries, out.association);
         return entries;
     };
     const auto colours = read(colour_list), depths = read(depth_list);
@@ -72,7 +77,7 @@ void readAssociations(const std::string& file_name, double max_difference, Datas
     for (const TextLine& line : readTable(file))
         pairs.push_back(pairOn(line, out.folder, file + ":" + std::to_string(line.number)));
     if (pairs.empty()) throw std::runtime_error(file + " lists no images");
-    const double unit = out.format == "icl" ? 1 : unitOfStamps(stampsOf(pairs));  // which counts frames
+    const double unit = out.format == "icl" ? 1 : unitOfImages(stampsOf(pairs), out);  // which counts frames
     double closest = INFINITY;
     for (DatasetEntry& entry : pairs) {
         entry.timestamp /= unit;

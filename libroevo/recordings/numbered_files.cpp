@@ -149,8 +149,8 @@ struct Numbered {
         stamps = decimal || far_apart || images.back().timestamp >= kFirstStamp;
     }
 
-    void toSeconds(double rate) {
-        const double unit = stamps ? unitOfStamps(stampsOf(images)) : rate;
+    void toSeconds(double rate, DatasetDescription& out) {
+        const double unit = stamps ? unitOfImages(stampsOf(images), out) : rate;
         for (ListEntry& image : images) image.timestamp /= unit;
     }
 
@@ -251,8 +251,8 @@ std::string pairByName(const NamedImages& colour_files, const NamedImages& depth
         out.notes.push_back(
             "warning: as many colour as depth images, and one kind is numbered from one more than the other: "
             "if the first ones belong together, every pair is a frame off; number both alike");
-    colours.toSeconds(rate);
-    depths.toSeconds(rate);
+    colours.toSeconds(rate, out);
+    depths.toSeconds(rate, out);
     matchEntries(colours.images, depths.images, colours.stamps ? max_difference : 0, out);
     out.frame_rate = colours.stamps ? 0 : rate;
     char text[100];

@@ -26,7 +26,7 @@ void requireImages(const NamedImages& images, const std::string& place);
 /// Pairs images by what their names tell into `out.frames`, and counts those without a partner. Their time is
 /// a date, else the last number in a name or, where others go back in its order, the last one that changes:
 /// with a point in it ("1305031453.359684"), or of at least ten digits, or where neighbours are more than
-/// 1000 apart, in the unit that unitOfStamps() tells; such are paired by nearest time. Smaller ones
+/// 1000 apart, in the unit that unitOfImages() tells; such are paired by nearest time. Smaller ones
 /// ("frame_0012", "12.color") are frames at `rate`, and paired where they are the same.
 /// @param rate  Hz; becomes `out.frame_rate` where names are numbers
 /// @return in words: what the names were taken for

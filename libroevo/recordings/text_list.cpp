@@ -8,11 +8,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "evaluation/association.h"
 #include "input/excerpt.h"
 #include "input/regular_file.h"
 #include "programs/byte_order_mark.h"
-#include "recordings/time_units.h"
 
 namespace roevo {
 namespace {
@@ -99,16 +97,13 @@ std::vector<TextLine> readTable(const std::string& file) {
     return lines;
 }
 
-std::vector<ListEntry> readStampedList(const std::string& file, AssociationReport& report) {
+std::vector<ListEntry> readStampedList(const std::string& file) {
     std::vector<ListEntry> entries;
     for (const TextLine& line : readTable(file)) {
         const std::string where = file + ":" + std::to_string(line.number);
         if (line.words.size() < 2) throw std::runtime_error(where + ": expected 'timestamp filename'");
         entries.push_back({parseNumber(line.words[0], where), parseFileName(line.words[1], where)});
     }
-    const double unit = unitOfStamps(stampsOf(entries));
-    for (ListEntry& entry : entries) entry.timestamp /= unit;
-    sortByTime(entries, report);
     return entries;
 }
 

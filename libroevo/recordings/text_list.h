@@ -37,7 +37,7 @@ std::vector<double> readNumbers(const std::string& file, std::size_t count, cons
 const std::string& parseFileName(const std::string& word, const std::string& where);
 
 struct ListEntry {
-    double timestamp = 0;  ///< s
+    double timestamp = 0;  ///< s, once its unit is known
     std::string file;      ///< as written
 };
 
@@ -55,8 +55,8 @@ void sortByTime(std::vector<Entry>& entries, AssociationReport& report) {
     entries.erase(last, entries.end());
 }
 
-/// "timestamp filename" lines after sortByTime(); stamps in the unit that unitOfStamps() tells.
+/// "timestamp filename" lines, stamps as they are written.
 /// @throws std::runtime_error with file and line number for a malformed line.
-std::vector<ListEntry> readStampedList(const std::string& file, AssociationReport& report);
+std::vector<ListEntry> readStampedList(const std::string& file);
 
 }  // namespace roevo

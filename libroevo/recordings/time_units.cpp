@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "evaluation/association.h"
 #include "evaluation/trajectory_io.h"
@@ -13,8 +14,8 @@
 namespace roevo {
 namespace {
 
-constexpr double kYear2100 = 4.1e9;  // s
-constexpr double kLongestStep = 10;  // s
+constexpr double kYear2000 = 9.5e8, kYear2100 = 4.1e9;    // s
+constexpr double kShortestStep = 2e-4, kLongestStep = 5;  // s; ms at 200 Hz are 5 apart
 constexpr double kMostlyShared = 0.5;
 
 /// Times of frames or poses, in some unit.
@@ -40,7 +41,6 @@ double sharedPart(const Span& a, const Span& b) {
 
 /// Whether `in_seconds` and the other, in another unit, are of one time, with a rate that there can be.
 bool fits(const Span& in_seconds, const Span& other) {
-    constexpr double kShortestStep = 2e-4;  // s
     return sharedPart(in_seconds, other) > kMostlyShared && other.step >= kShortestStep;
 }
 
@@ -80,8 +80,23 @@ double unitOfStamps(std::vector<double> stamps) {
     if (stamps.empty()) return 1;
     std::sort(stamps.begin(), stamps.end());
     const double step = medianStep(stamps), last = stamps.back();
+    // Whole numbers of today may as well count ms, us or ns since a machine was turned on, weeks ago
+    constexpr double kLongestLapse = 3600;  // s
+    const bool decimals =
+        std::any_of(stamps.begin(), stamps.end(), [](double t) { return t != std::floor(t); });
     double unit = 1;
-    while (last / unit > kYear2100 || step / unit > kLongestStep) unit *= 1000;
+    const auto longestStep = [&] {
+        return decimals && last / unit > kYear2000 ? kLongestLapse : kLongestStep;
+    };
+    while (unit < 1e9 && (last / unit > kYear2100 || step / unit > longestStep())) unit *= 1000;
+    return unit;
+}
+
+double unitOfImages(std::vector<double> stamps, DatasetDescription& dataset) {
+    const double unit = unitOfStamps(std::move(stamps));
+    if (unit == 1 || unit == dataset.time_unit) return unit;
+    dataset.time_unit = unit;
+    dataset.notes.push_back("times of the images are in " + unitName(unit) + ", as their size tells");
     return unit;
 }
 

@@ -6,10 +6,14 @@
 
 namespace roevo {
 
-/// Units per second of stamps, as their size tells: 1, 1e3, 1e6, 1e9 …, the least by which none is after the
-/// year 2100 (since 1970) and frames follow each other within 10 s.
+/// Units per second of stamps, as their size tells: 1, 1e3, 1e6 or 1e9, the least by which none is after the
+/// year 2100 (since 1970) and frames follow each other within 5 s; within an hour where they have decimals
+/// and are of this century.
 /// @param stamps  of the images of a recording, in any order
 double unitOfStamps(std::vector<double> stamps);
+
+/// The same of images of a dataset, which keeps the unit (`time_unit`) and notes another one than s.
+double unitOfImages(std::vector<double> stamps, DatasetDescription& dataset);
 
 /// Stamps that can only be ms, us or ns of this century become s, and `copyable` ends.
 /// @return the unit: "ms", "us" or "ns"; empty: s, or not told
