@@ -44,6 +44,13 @@ bool fits(const Span& in_seconds, const Span& other) {
     return sharedPart(in_seconds, other) > kMostlyShared && other.step >= kShortestStep;
 }
 
+/// Whether the ground truth is of the images' time, for however much longer, with a rate that there can be.
+bool covers(const Span& truth, const Span& images) {
+    const double common = std::min(truth.last, images.last) - std::max(truth.first, images.first);
+    return common >= kMostlyShared * (images.last - images.first) && truth.step >= kShortestStep &&
+           truth.step <= kLongestStep;
+}
+
 template <class Entry>
 void divideTimes(std::vector<Entry>& entries, double Entry::*time, double divisor) {
     for (Entry& entry : entries) entry.*time = roundToMicroseconds(entry.*time / divisor);
@@ -128,8 +135,10 @@ void settleClock(DatasetDescription& dataset) {
         dataset.notes.push_back("times of the ground truth are in " + unit);
         return settleClock(dataset);
     }
-    for (const double divisor : {1e3, 1e6, 1e9}) {
-        if (fits(images, truth.dividedBy(divisor))) {
+    const double own = dataset.time_unit;
+    for (const double divisor : {own, 1e3, 1e6, 1e9}) {
+        const Span divided = truth.dividedBy(divisor);
+        if (fits(images, divided) || (divisor == own && own > 1 && covers(divided, images))) {
             divideTimes(poses, &StampedPose::timestamp, divisor);
             dataset.ground_truth.copyable = false;
             dataset.notes.push_back("times of the ground truth are in " + unitName(divisor));

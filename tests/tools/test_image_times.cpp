@@ -107,5 +107,22 @@ TEST(ImageTimes, AnotherUnitThanSecondsIsSaidOnce) {
     EXPECT_EQ(count(openDataset(named.path()).summary(), "times of the images are in ms"), 1u);
 }
 
+TEST(ImageTimes, AGroundTruthThatIsMuchLongerHasTheUnitOfTheImages) {
+    const StampedFolder milliseconds(stamps(0, 32.003, 6, 3));
+    milliseconds.writeTruth(-495.4, 10, 600);
+    const DatasetReader ms = milliseconds.open();
+    EXPECT_CONTAINS(ms.summary(), "times of the ground truth are in ms");
+    EXPECT_NEAR(ms.groundTruth().poses.front().timestamp, -0.4954, 1e-9);
+    const StampedFolder nanoseconds(stamps(0, 32002926, 6, 0));
+    nanoseconds.writeTruth(-495409012, 1e7, 600, 0);
+    const DatasetReader ns = nanoseconds.open();
+    EXPECT_CONTAINS(ns.summary(), "times of the ground truth are in ns");
+    EXPECT_NEAR(ns.groundTruth().poses.back().timestamp, 5.494591, 1e-6);
+    nanoseconds.writeTruth(-0.495, 0.01, 6000);
+    const DatasetReader seconds = nanoseconds.open();
+    EXPECT_EQ(seconds.summary().find("times of the ground truth"), std::string::npos) << seconds.summary();
+    EXPECT_EQ(seconds.groundTruth().poses.front().timestamp, -0.495) << "it may have another unit";
+}
+
 }  // namespace
 }  // namespace roevo
