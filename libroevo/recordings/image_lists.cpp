@@ -35,6 +35,26 @@ void matchEntries(const std::vector<ListEntry>& colours, const std::vector<ListE
     out.association.dropped_depth = depth.size() - out.frames.size();
 }
 
+namespace {
+
+/// sortByTime() of what a list has, with a warning where many stamps are there more than once.
+/// @throws std::runtime_error where most are
+template <class Entry>
+void sortList(const std::string& file, std::vector<Entry>& entries, DatasetDescription& out) {
+    const std::size_t listed = entries.size();
+    sortByTime(entries, out.association);
+    const std::size_t repeated = listed - entries.size();
+    const std::string lines = std::to_string(repeated) + " of " + std::to_string(listed) + " lines";
+    if (2 * entries.size() < listed)
+        throw std::runtime_error(file + ": " + lines +
+                                 " repeat a time stamp: was it written with too few digits?");
+    if (10 * repeated >= listed)
+        out.notes.push_back("warning: " + lines + " of " + fs::path(file).filename().string() +
+                            " repeat a time stamp and are left out: was it written with too few digits?");
+}
+
+}  // namespace
+
 void matchLists(const std::string& colour_list, const std::string& depth_list, double max_difference,
                 DatasetDescription& out) {
     const auto read = [&](const std::string& name) {
@@ -46,7 +66,7 @@ void matchLists(const std::string& colour_list, const std::string& depth_list, d
             entry.timestamp /= unit;
             entry.file = (fs::path(out.folder) / entry.file).string();
         }
-        sortByTime(entries, out.association);
+        sortList(file, entries, out);
         return entries;
     };
     const auto colours = read(colour_list), depths = read(depth_list);
@@ -78,6 +98,7 @@ void readAssociations(const std::string& file_name, double max_difference, Datas
         pairs.push_back(pairOn(line, out.folder, file + ":" + std::to_string(line.number)));
     if (pairs.empty()) throw std::runtime_error(file + " lists no images");
     const double unit = out.format == "icl" ? 1 : unitOfImages(stampsOf(pairs), out);  // which counts frames
+    sortList(file, pairs, out);
     double closest = INFINITY;
     for (DatasetEntry& entry : pairs) {
         entry.timestamp /= unit;

@@ -124,5 +124,28 @@ TEST(ImageTimes, AGroundTruthThatIsMuchLongerHasTheUnitOfTheImages) {
     EXPECT_EQ(seconds.groundTruth().poses.front().timestamp, -0.495) << "it may have another unit";
 }
 
+TEST(ImageTimes, TooFewDigits) {
+    std::vector<std::string> fours, some = stamps(10, 0.1, 10, 1);
+    for (const std::string& stamp : stamps(10, 0.1, 3, 1)) fours.insert(fours.end(), 4, stamp);
+    const StampedFolder coarse(fours);
+    const std::string expected = ": 9 of 12 lines repeat a time stamp: was it written with too few digits?";
+    EXPECT_CONTAINS(errorOf([&] { coarse.open(); }), "rgb.txt" + expected);
+    std::string pairs;
+    for (int i = 0; i < 12; i++) {
+        const std::string& stamp = fours[static_cast<std::size_t>(i)];
+        pairs += stamp + " " + coarse.colour(i) + " " + stamp + " " + coarse.depth(i) + "\n";
+    }
+    coarse.write("associations.txt", pairs);
+    coarse.remove("rgb.txt");
+    EXPECT_CONTAINS(errorOf([&] { coarse.open(); }), "associations.txt" + expected);
+    some[3] = some[2];
+    some[7] = some[6];
+    const std::string summary = StampedFolder(some).open().summary();
+    EXPECT_CONTAINS(summary,
+                    "8 frames matched, 0 colour and 0 depth images dropped, 4 repeated stamps left out");
+    EXPECT_CONTAINS(summary, "warning: 2 of 10 lines of rgb.txt repeat a time stamp and are left out");
+    EXPECT_CONTAINS(summary, "warning: 2 of 10 lines of depth.txt repeat");
+}
+
 }  // namespace
 }  // namespace roevo
