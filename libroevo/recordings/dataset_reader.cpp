@@ -303,6 +303,7 @@ void checkFrameRate(double chosen, const DatasetDescription& found) {
 DatasetDescription load(const Format& format, const std::string& folder, const DatasetOptions& options) {
     DatasetDescription out = format.load(folder, options);
     if (const double scale = options.folder.depth_scale; scale > 0) out.depth_scale = scale;
+    settleCount(out, options.folder.frame_rate > 0 ? options.folder.frame_rate : out.told_rate);
     checkFrameRate(options.folder.frame_rate, out);
     if (!options.ground_truth.empty()) out.ground_truth = readNamedGroundTruth(options.ground_truth);
     if (format.convert_truth && !out.ground_truth.poses.empty()) format.convert_truth(out);

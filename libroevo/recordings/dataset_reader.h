@@ -55,6 +55,7 @@ struct DatasetDescription {
     std::vector<DatasetEntry> frames;
     double time_unit = 1;                ///< per second, that the images' stamps were written in
     double frame_rate = 0;               ///< Hz, of images that are numbered; 0: they have times
+    double told_rate = 0;                ///< Hz, that the camera's file says; 0: none
     std::shared_ptr<ImageStore> images;  ///< none: images are files
     AssociationReport association;
     GroundTruth ground_truth;    ///< of the colour camera, optical axes; empty when there is none

@@ -111,6 +111,7 @@ void setCamera(const CameraDescription& camera, DatasetDescription& out) {
     out.depth_scale = camera.depth_scale;
     out.camera_source = camera.source;
     out.registration = camera.registration;
+    out.told_rate = camera.frame_rate.value_or(0);
     out.notes.insert(out.notes.end(), camera.notes.begin(), camera.notes.end());
     if (out.camera.width == 0) {
         const cv::Size size = colourSize(out.frames);

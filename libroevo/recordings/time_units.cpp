@@ -7,6 +7,7 @@
 
 #include "evaluation/association.h"
 #include "evaluation/trajectory_io.h"
+#include "programs/text.h"
 #include "recordings/image_lists.h"
 #include "roevo_mrpt/time_conversions.h"
 #include "tracking/robust.h"
@@ -105,6 +106,27 @@ double unitOfImages(std::vector<double> stamps, DatasetDescription& dataset) {
     dataset.time_unit = unit;
     dataset.notes.push_back("times of the images are in " + unitName(unit) + ", as their size tells");
     return unit;
+}
+
+void settleCount(DatasetDescription& dataset, double rate) {
+    auto& frames = dataset.frames;
+    const bool whole = std::all_of(frames.begin(), frames.end(), [](const DatasetEntry& frame) {
+        return isFrameNumber(frame.timestamp) && isFrameNumber(frame.depth_timestamp) &&
+               frame.timestamp < kYear2000;
+    });
+    if (dataset.frame_rate > 0 || dataset.images || dataset.time_unit != 1 || frames.size() < 2 || !whole)
+        return;
+    if (!(rate > 0)) {
+        dataset.notes.emplace_back(
+            "warning: times of the images are whole numbers, which are taken as seconds: if they count "
+            "frames, --frame-rate says how many come in a second");
+        return;
+    }
+    divideTimes(frames, &DatasetEntry::timestamp, rate);
+    divideTimes(frames, &DatasetEntry::depth_timestamp, rate);
+    finishFrames(dataset);
+    dataset.frame_rate = rate;
+    dataset.notes.push_back("times are frame numbers at " + plainNumber(rate) + " Hz");
 }
 
 std::string toSeconds(GroundTruth& truth) {

@@ -15,6 +15,10 @@ double unitOfStamps(std::vector<double> stamps);
 /// The same of images of a dataset, which keeps the unit (`time_unit`) and notes another one than s.
 double unitOfImages(std::vector<double> stamps, DatasetDescription& dataset);
 
+/// Images that have no rate yet and whose stamps are whole numbers, too small for seconds since 1970: frames
+/// at `rate` (Hz), or with 0 a warning that they were taken for seconds.
+void settleCount(DatasetDescription& dataset, double rate);
+
 /// Stamps that can only be ms, us or ns of this century become s, and `copyable` ends.
 /// @return the unit: "ms", "us" or "ns"; empty: s, or not told
 std::string toSeconds(GroundTruth& truth);

@@ -147,5 +147,28 @@ TEST(ImageTimes, TooFewDigits) {
     EXPECT_CONTAINS(summary, "warning: 2 of 10 lines of depth.txt repeat");
 }
 
+TEST(ImageTimes, NumbersOfFramesInALineNeedARate) {
+    const StampedFolder folder(stamps(0, 1, 40, 0));
+    EXPECT_CONTAINS(folder.open().summary(),
+                    "warning: times of the images are whole numbers, which are taken as seconds: if they "
+                    "count frames, --frame-rate says how many come in a second");
+    EXPECT_EQ(folder.open().entry(3).timestamp, 3);
+    const DatasetReader chosen = folder.open(50);
+    EXPECT_EQ(chosen.entry(3).timestamp, 0.06);
+    EXPECT_EQ(chosen.entry(3).depth_timestamp, 0.06);
+    EXPECT_CONTAINS(chosen.summary(), "times are frame numbers at 50 Hz");
+    EXPECT_CONTAINS(chosen.summary(), "50.0 Hz");
+    EXPECT_EQ(chosen.summary().find("warning"), std::string::npos) << chosen.summary();
+    folder.writeTruth(0, 1, 40, 0);
+    EXPECT_NEAR(folder.open(50).groundTruth().poses[3].timestamp, 0.06, 1e-9) << "it counts them, too";
+    folder.writeTruth(-0.5, 0.01, 200);
+    EXPECT_NEAR(folder.open(50).groundTruth().poses[3].timestamp, -0.47, 1e-9);
+    folder.writeCamera("5000", "frame_rate: 20\n");
+    EXPECT_EQ(folder.open().entry(3).timestamp, 0.15);
+    const StampedFolder epoch(stamps(1305031105, 1, 4, 0));
+    EXPECT_EQ(epoch.open().summary().find("warning"), std::string::npos) << "which count seconds since 1970";
+    EXPECT_CONTAINS(errorOf([&] { epoch.open(30); }), " have times");
+}
+
 }  // namespace
 }  // namespace roevo
