@@ -22,7 +22,12 @@ cv::Mat readMask(const std::string& file, const PinholeCamera& camera) {
     cv::minMaxLoc(mask, nullptr, &brightest);
     if (brightest == 0)
         throw std::runtime_error("the mask " + file + " is all black, which leaves nothing of the images");
-    return mask > brightest / 2;  // of 0 and 1, too; black is not quite 0 in a JPEG
+    mask = mask > brightest / 2;  // of 0 and 1, too; black is not quite 0 in a JPEG
+    if (cv::countNonZero(mask) == static_cast<int>(mask.total()))
+        throw std::runtime_error("the mask " + file +
+                                 " is black nowhere (transparency does not count), which leaves nothing out: "
+                                 "paint black what is to be left out, or give no mask");
+    return mask;
 }
 
 class MaskedSource : public ForwardingSource {

@@ -82,6 +82,11 @@ TEST_F(MaskOption, WhatIsNoMaskIsRefusedByName) {
     expectError(with(mask(cv::Mat::ones(480, 640, CV_8UC1))), 1, kName,
                 {"mask.png is 640x480", "the colour images are 320x240"});
     expectError(with(mask(cv::Mat::zeros(240, 320, CV_8UC1))), 1, kName, {"mask.png is all black"});
+    cv::Mat transparent(240, 320, CV_8UC4, cv::Scalar::all(255));
+    transparent(kArm).setTo(cv::Scalar(255, 255, 255, 0));
+    for (const cv::Mat& nowhere : {transparent, cv::Mat(240, 320, CV_8UC1, cv::Scalar(255))})
+        expectError(with(mask(nowhere)), 1, kName,
+                    {"mask.png is black nowhere (transparency does not count), which leaves nothing out"});
     test::writeFile(folder_ / "text.png", "black and white");
     expectError(with(folder_ / "text.png"), 1, kName, {"text.png"});
 }
