@@ -187,7 +187,7 @@ std::string anyRow() {
 }
 
 constexpr char kNameThem[] =
-    "name the columns in a first line: timestamp,tx,ty,tz,qx,qy,qz,qw, or as they are";
+    "name the columns in a first line: timestamp,tx,ty,tz,qx,qy,qz,qw (or qw,qx,qy,qz)";
 
 double eurocStamp(const Rows& rows) {
     static const std::string what =
