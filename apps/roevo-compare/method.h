@@ -53,8 +53,7 @@ struct MethodInfo {
     std::string label;           ///< as in tables: "ROEVO TR+BA", "DIFODO 480x640", …
     std::string note;            ///< one sentence: what it is, and what is fair or weak about the comparison
     std::string unavailable;     ///< why this build cannot run it (a library lacks it); empty when it can
-    bool ours = false;           ///< one of ROEVO's own modes
-    std::optional<Mode> mode{};  ///< which of them
+    std::optional<Mode> mode{};  ///< of one of ROEVO's own; none: another method
     std::string trajectory{};    ///< file with poses that another program made: not to be run; else empty
     /// @param options  of ROEVO, for its own modes and those that share its front end
     /// @throws std::invalid_argument for a camera that it cannot use

@@ -112,6 +112,7 @@ int RunReport::mapSegment() const {
 }
 
 std::size_t RunReport::leftOut() const {
+    if (map_out.file.empty()) return 0;
     const int loaded = map_in ? map_in->keyframes : 0;
     return keyframes.size() - static_cast<std::size_t>(map_out.keyframes - loaded);
 }

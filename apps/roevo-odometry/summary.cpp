@@ -301,7 +301,7 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
     if (!report.map_out.file.empty())
         std::printf("map out     %s, %s\n", report.map_out.file.c_str(),
                     keyframes(report.map_out.keyframes).c_str());
-    if (const std::size_t left_out = report.leftOut(); left_out > 0 && !report.map_out.file.empty())
+    if (const std::size_t left_out = report.leftOut(); left_out > 0)
         std::printf("            %s of pieces that were not joined to these left out\n",
                     counted(left_out, "keyframe").c_str());
     if (losses.loops_closed > 0) std::printf("loops       %zu closed\n", losses.loops_closed);

@@ -356,7 +356,7 @@ TEST(BaselineList, EveryOneSaysWhatItIs) {
             ++found;
             EXPECT_FALSE(info.label.empty());
             EXPECT_FALSE(info.note.empty());
-            EXPECT_FALSE(info.ours);
+            EXPECT_FALSE(info.mode.has_value());
             EXPECT_EQ(info.note.find("weak") == 0, info.name.find("icp-") == 0) << name;
             if (!info.unavailable.empty()) {
                 EXPECT_THROW(makeMethod(name, plainCamera(), OdometryOptions()), std::invalid_argument);

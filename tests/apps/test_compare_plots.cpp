@@ -13,6 +13,7 @@
 namespace roevo {
 namespace {
 
+using test::count;
 using test::makeRun;
 using test::makeSequence;
 
@@ -111,12 +112,6 @@ TEST_F(Plots, WhereNoErrorIsDrawnAsTheLeastOneThatIsSaid) {
         figures.push_back(cumulativeFigure(shownMetrics()[0], {r}, legend));
         for (const Figure& figure : figures) all += figure.note + '\n';
         return all;
-    };
-    const auto count = [](const std::string& text, const std::string& words) {
-        std::size_t found = 0;
-        for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
-            ++found;
-        return found;
     };
     auto poses = walk();
     for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -304,7 +304,7 @@ TEST(DistanceFieldMethod, NamesAndCamerasAreChecked) {
     EXPECT_THROW(makeMethod("distance-field", PinholeCamera(), OdometryOptions()), std::invalid_argument);
     for (const MethodInfo& info : distanceFieldMethods()) {
         EXPECT_NE(makeMethod(info.name, sequence.camera, OdometryOptions()), nullptr);
-        EXPECT_FALSE(info.ours);
+        EXPECT_FALSE(info.mode.has_value());
         EXPECT_NE(info.label, "");
         EXPECT_NE(info.note, "");
     }

@@ -112,10 +112,7 @@ std::vector<MethodInfo> roevoMethods() {
     ct.mode = Mode::kCoarse;
     tr.mode = Mode::kTracking;
     ba.mode = Mode::kBundleAdjustment;
-    for (MethodInfo* info : {&ct, &tr, &ba}) {
-        info->ours = true;
-        info->make = makerOf<RoevoMethod>(*info->mode);
-    }
+    for (MethodInfo* info : {&ct, &tr, &ba}) info->make = makerOf<RoevoMethod>(*info->mode);
     return {ct, tr, ba};
 }
 

@@ -378,7 +378,7 @@ FrameResult Odometry::Impl::report(const Outcome& outcome) {
     result.keyframe = tracking.pose.keyframe;
     result.T_world_camera = world.trajectory().worldPose(tracking.pose);
     result.covariance = world.covariance(tracking.pose);
-    const bool is_first = world.isLocalised() && !std::exchange(localised, world.isLocalised());
+    const bool is_first = world.isLocalised() && !std::exchange(localised, true);
     result.reason = describe(outcome, result, is_first ? world.loaded() : 0);
     result.new_keyframe = outcome.new_keyframe;
     result.found_at = outcome.found_at;
