@@ -20,7 +20,7 @@ namespace {
 using test::readFile;
 using test::runProgram;
 
-constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "46abb206d333dbc0";
+constexpr char kRecording[] = "53c4974eeec5163c", kTrajectory[] = "155586ac20f4fca4";
 
 /// FNV-1a, as 16 digits.
 std::string checksum(const std::string& bytes) {

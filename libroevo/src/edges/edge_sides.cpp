@@ -14,12 +14,13 @@ constexpr double kReach = 4;              ///< px to each side
 constexpr double kFurther = 8;            ///< px, where the other side is background
 constexpr double kClear = 0.6;            ///< px; nearer samples may show either side
 constexpr double kMostlyBehind = 0.5;     ///< share of a side's samples that makes it background
-constexpr double kMinSeen = 6;            ///< samples that can tell
+constexpr std::size_t kEvery = 2;         ///< neighbours pass much the same pixels: every other one is asked
+constexpr double kMinSeen = 3;            ///< samples that can tell
 constexpr double kAgree = 2;              ///< sigmas of the shorter line
 constexpr double kWindow = 20;            ///< points before and after that help
 constexpr double kLeast = 4;              ///< of them at an end of the edge
-constexpr double kMinSamples = 12;        ///< of a side
-constexpr double kCorrelated = 4;         ///< neighbouring depths err together: this many tell as much as one
+constexpr double kMinSamples = 6;         ///< of a side
+constexpr double kCorrelated = 2;         ///< neighbouring depths err together: this many tell as much as one
 constexpr double kLeastVariance = 1e-10;  ///< relative: 1e-5 of the depth
 /// Squared standard errors at which a correction counts half. 1 to 4 are about as good.
 constexpr double kDoubt = 2;
@@ -122,7 +123,7 @@ void correctBySides(const OrganizedEdges& edges, std::size_t first,
     strips.emplace_back();
     for (std::size_t k = 0; k < count; ++k) {
         strips.push_back(strips.back());
-        if (!(z[k] > 0)) continue;
+        if (k % kEvery != 0 || !(z[k] > 0)) continue;
         const kernels::EdgePoint point{positions[k].x(), positions[k].y(), edges.normal_x[first + k],
                                        edges.normal_y[first + k], z[k]};
         sample(view, point, jump, scale, strips.back());

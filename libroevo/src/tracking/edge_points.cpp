@@ -9,6 +9,28 @@
 #include "tracking/robust.h"
 
 namespace roevo {
+namespace {
+
+/// Depths around the points of one edge, m. Neighbours look at much the same pixels: every other one is
+/// looked up, and between two that agree the line through their inverse depths tells.
+/// @param pixels  of the points in the depth image
+/// @param jump    relative step of depth beyond which two are of different surfaces
+void depthsAlong(const std::vector<Eigen::Vector2d>& pixels, const ForegroundDepth& foreground, float jump,
+                 std::vector<float>& depths) {
+    const auto lookUp = [&](std::size_t k) {
+        return foreground.at(static_cast<float>(pixels[k].x()), static_cast<float>(pixels[k].y()));
+    };
+    depths.resize(pixels.size());
+    for (std::size_t k = 0; k < depths.size(); k += 2) depths[k] = lookUp(k);
+    for (std::size_t k = 1; k < depths.size(); k += 2) {
+        const float before = depths[k - 1], after = k + 1 < depths.size() ? depths[k + 1] : 0;
+        const bool agree = before > 0 && std::abs(before - after) <= jump * std::min(before, after);
+        depths[k] = agree ? 2 * before * after / (before + after) : lookUp(k);
+    }
+}
+
+}  // namespace
+
 float EdgePoints3D::medianDepth() const {
     if (size() == 0) return 0;
     std::vector<float> depths(points.z.begin(), points.z.begin() + static_cast<std::ptrdiff_t>(size()));
@@ -40,12 +62,9 @@ EdgePoints3D liftEdges(const OrganizedEdges& edges, const cv::Mat& depth, const 
     for (int e = 0; e < edges.numEdges(); ++e) {
         const IndexRange own = edges.pointsOf(e);
         pixels.clear();
-        patches.clear();
-        for (std::size_t i = own.first; i < own.end; ++i) {
-            const Eigen::Vector2d pixel = camera.distortPixel({edges.x[i], edges.y[i]});
-            pixels.push_back(pixel);
-            patches.push_back(foreground.at(static_cast<float>(pixel.x()), static_cast<float>(pixel.y())));
-        }
+        for (std::size_t i = own.first; i < own.end; ++i)
+            pixels.push_back(camera.distortPixel({edges.x[i], edges.y[i]}));
+        depthsAlong(pixels, foreground, jump, patches);
         z = patches;
         if (edge_options.two_sided_depth) correctBySides(edges, own.first, pixels, depth, jump, scale, z);
         const auto endPiece = [&] {
