@@ -30,11 +30,14 @@ std::string wrongUnit(const cv::Mat& depth, const SensorOptions& sensor) {
 
 }  // namespace
 
+double changeOfView(const Keyframe& keyframe, const Pose& T_keyframe_camera, const KeyframeOptions& options) {
+    return std::max(rotationAngle(T_keyframe_camera) / kDegree / options.max_rotation_deg,
+                    T_keyframe_camera.translation().norm() / options.max_translation / keyframe.median_depth);
+}
+
 bool keyframeIsDue(const Keyframe& reference, const Tracking& tracking, const KeyframeOptions& options) {
-    const Pose& T = tracking.pose.T_keyframe_camera;
     return tracking.matchedRatio() < options.min_overlap ||
-           rotationAngle(T) / kDegree > options.max_rotation_deg ||
-           T.translation().norm() > options.max_translation * reference.median_depth;
+           changeOfView(reference, tracking.pose.T_keyframe_camera, options) > 1;
 }
 
 Fault makeKeyframe(const Frame& frame, const RowMotion& rows, int needed, const PinholeCamera& camera,

@@ -9,6 +9,10 @@ namespace roevo {
 [[nodiscard]] bool keyframeIsDue(const Keyframe& reference, const Tracking& tracking,
                                  const KeyframeOptions& options);
 
+/// How differently a camera at this pose sees than the keyframe: 1 where that alone makes a new one due.
+[[nodiscard]] double changeOfView(const Keyframe& keyframe, const Pose& T_keyframe_camera,
+                                  const KeyframeOptions& options);
+
 /// Makes a keyframe of a frame. @return why it cannot be one (then `keyframe` is not to be used)
 /// @param rows    how the camera moved while the frame was read
 /// @param needed  edge points with depth

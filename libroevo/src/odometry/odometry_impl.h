@@ -73,6 +73,7 @@ struct Odometry::Impl {
     std::optional<Outcome> anchorAt(const RelativePose& found, const Tracking& failed);
     Outcome findAgain(Outcome outcome, double since_measured);
     Outcome bridge(Outcome outcome, double since_measured);
+    bool returnToFormer(Outcome& outcome);
     void renewReference(Outcome& outcome);
     void lookForOtherTrack(Outcome& outcome);
     void learn(Tracking& tracking, const Prediction& prediction);

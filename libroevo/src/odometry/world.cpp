@@ -23,11 +23,9 @@ constexpr double kAgreedTurn = 1 * kDegree;
 /// Times as much on a join: blurred images put places so far off, twins are much further apart, and where the
 /// map sees the place again it puts the rest right.
 constexpr double kJoinTolerance = 3;
-constexpr double kLeastWait = 0.2;     // s, between looks at frames that are no keyframes
-constexpr double kShareWaited = 0.1;   // of the time since the track was begun
-constexpr int kStillInView = 10;       // newest keyframes
-constexpr double kLeastOfShown = 0.5;  // points of a new keyframe, against what the old one still shows there
-constexpr double kDriftSigmas = 10;    // that the camera can be from where it is thought to be
+constexpr double kLeastWait = 0.2;    // s, between looks at frames that are no keyframes
+constexpr double kShareWaited = 0.1;  // of the time since the track was begun
+constexpr double kDriftSigmas = 10;   // that the camera can be from where it is thought to be
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();  // m
 
 /// What a scale of all depths that errs does to a motion: all frames share it, so that no residual shows it.
@@ -117,9 +115,8 @@ void World::advance(double timestamp, double seconds_per_row) {
     if (reference_) reference_->setRowMotion(reference_->row_motion.at(seconds_per_row));
 }
 
-/// Adds how far the camera has moved with the keyframes.
-void World::noteMotion(const Pose& before) {
-    const Pose after = trajectory_.lastPose();
+/// Adds how far the camera has moved, as it is seen now.
+void World::noteMotion(const Pose& before, const Pose& after) {
     change_.map_correction += (after.translation() - before.translation()).norm();
     change_.map_turn += rotationAngle(after * before.inverse());
 }
@@ -127,28 +124,12 @@ void World::noteMotion(const Pose& before) {
 void World::takeUpdate(const MapUpdate& update) {
     const Pose before = trajectory_.lastPose();
     trajectory_.apply(update);
-    noteMotion(before);
+    noteMotion(before, trajectory_.lastPose());
     change_.ms.mapping += update.milliseconds;
     change_.ms.mapping_cpu += update.cpu_milliseconds;
     change_.map_refusals.insert(change_.map_refusals.end(), update.refusals.begin(), update.refusals.end());
     if (update.keyframe == reference_->id && !update.verdicts.empty())
         reference_->weaken(update.verdicts, options_.mapping.pseudo_weight);
-}
-
-/// @param needed  points, at least. @return null, and why, where it cannot be a keyframe
-std::unique_ptr<Keyframe> World::make(const Frame& frame, const RowMotion& rows, int needed,
-                                      Fault& fault) const {
-    auto fresh = std::make_unique<Keyframe>();
-    fault = makeKeyframe(frame, rows, needed, camera_, options_, tracker_, *fresh);
-    return fault ? nullptr : std::move(fresh);
-}
-
-std::unique_ptr<Keyframe> World::outside(const Frame& frame, const RowMotion& rows) const {
-    Fault ignored;
-    auto fresh = make(frame, rows, options_.fine.min_inliers, ignored);
-    std::int32_t next = 0;
-    if (fresh) numberEdges(*fresh, nullptr, {}, next);
-    return fresh;
 }
 
 Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Pose& T_world_camera,
@@ -169,46 +150,6 @@ Fault World::beginTrack(const Frame& frame, const RowMotion& rows, const Pose& T
     track_begun_at_ = timestamp_;
     adopt(std::move(fresh), frame, RelativePose());
     return {};
-}
-
-Fault World::addKeyframe(const Frame& frame, const Tracking& tracked) {
-    // Where depth drops out, the reference is worth more than the scrap that would take its place. There is
-    // none where the first frame was recognised in a map
-    const double still_shown =
-        reference_ ? tracked.matches.shownShare() * static_cast<double>(reference_->edges.size()) : 0;
-    const int needed = std::max(options_.fine.min_inliers, static_cast<int>(kLeastOfShown * still_shown));
-    Fault fault;
-    auto fresh = make(frame, tracked.rows, needed, fault);
-    if (!fresh) return fault;
-    numberEdges(*fresh, reference_.get(), tracked.matches, next_cluster_);
-    recognise();
-    fresh->id = trajectory_.addKeyframe(frame.timestamp(), tracked.pose, fresh->clusters);
-    adopt(std::move(fresh), frame, tracked.pose);
-    return {};
-}
-
-void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked) {
-    std::vector<Rgb> colours = coloursOf(fresh->edges.image, of.images, camera_);
-    if (remembersPlaces()) {
-        relocaliser_.add(*fresh, of, colours, trajectory_.tracks(),
-                         closesLoops() ? fresh->id - kStillInView : 0);
-        recognised_at_ = timestamp_ + (options_.mapping.latency - 0.5) / kFrameRate;
-        waitForNextLook();
-    }
-    semi_dense_.add(fresh->edges.image, of.images, fresh->row_motion);
-    mapper_->insert({*fresh, std::move(colours), trajectory_.keyframePose(fresh->id), tracked,
-                     reference_.get(), seconds_per_row_},
-                    timestamp_);
-    previous_ = std::exchange(reference_, std::move(fresh));
-    noteTrack();
-}
-
-const Keyframe* World::previous(Pose& T_previous_reference) {
-    if (!previous_ || !trajectory_.areOfOneTrack(previous_->id, reference_->id)) return nullptr;
-    T_previous_reference =
-        trajectory_.keyframePose(previous_->id).inverse() * trajectory_.keyframePose(reference_->id);
-    previous_->setRowMotion(previous_->row_motion.at(seconds_per_row_));
-    return previous_.get();
 }
 
 void World::noteTrack() {
@@ -306,7 +247,7 @@ bool World::joinElsewhere(const Whereabouts& near) {
 void World::join(const Look& look) {
     const Pose before = trajectory_.lastPose();
     mapper_->correct(trajectory_.join(look.keyframe, look.place.pose));
-    noteMotion(before);
+    noteMotion(before, trajectory_.lastPose());
     change_.joined_at = look.place.pose.keyframe;
     join_look_.reset();
     noteTrack();
@@ -341,7 +282,7 @@ void World::closeLoop(const Look& newest) {
         trajectory_.closeLoop({{first->keyframe, first->place.pose}, {newest.keyframe, newest.place.pose}});
     if (correction.motions.empty()) return;
     mapper_->correct(correction);
-    noteMotion(before);
+    noteMotion(before, trajectory_.lastPose());
     change_.closed_at = newest.place.pose.keyframe;
     loop_look_.reset();
 }

@@ -71,6 +71,13 @@ class World {
     /// The reference before this one, of the same track, and where this one is from there. Null where there
     /// is none.
     [[nodiscard]] const Keyframe* previous(Pose& T_previous_reference);
+    /// Of the keyframes before the reference, that from which a camera is seen least differently by the
+    /// keyframe policy's measures, and where the camera is from there. Null where none is near, and where a
+    /// map refines keyframes.
+    [[nodiscard]] const Keyframe* nearest(const RelativePose& pose, Pose& T_nearest_camera);
+    /// That one becomes the reference again.
+    /// @param before, now  pose of the frame against the reference, and against that one
+    void returnTo(const RelativePose& before, const RelativePose& now);
     /// The pose against a keyframe that edges agree on with nothing known of the motion, if they do.
     [[nodiscard]] std::optional<RelativePose> confirm(const Keyframe& keyframe, const Frame& frame,
                                                       const Pose& T_keyframe_camera, const RowMotion& rows) {
@@ -93,6 +100,8 @@ class World {
   private:
     std::unique_ptr<Keyframe> make(const Frame& frame, const RowMotion& rows, int needed, Fault& fault) const;
     void waitForNextLook();
+    void makeReference(std::unique_ptr<Keyframe> keyframe);
+    const Keyframe* upToDate(Keyframe& keyframe) const;
     void adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const RelativePose& tracked);
     void recognise();
     struct Look {
@@ -111,7 +120,7 @@ class World {
     void closeLoop(const Look& newest);
     bool isWithinReach(const RelativePose& pose) const;
     void takeUpdate(const MapUpdate& update);
-    void noteMotion(const Pose& before);
+    void noteMotion(const Pose& before, const Pose& after);
     void noteTrack();
     bool closesLoops() const;
     bool remembersPlaces() const;
@@ -126,7 +135,8 @@ class World {
     Relocaliser relocaliser_;
     SemiDenseStore semi_dense_;
     Trajectory trajectory_;
-    std::unique_ptr<Keyframe> reference_, previous_;
+    std::unique_ptr<Keyframe> reference_;
+    std::vector<std::unique_ptr<Keyframe>> former_;  // that were the reference, the last one last
     std::int32_t next_cluster_ = 0;
     int loaded_ = 0;
     bool held_ = false;
