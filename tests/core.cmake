@@ -25,7 +25,7 @@ roevo_test(test_core_odometry
           core/test_odometry_covariance.cpp core/test_odometry_semi_dense.cpp core/test_tracker_overrides.cpp
   LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
 roevo_test(test_core_mapped_runs
-  SOURCES core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp
+  SOURCES core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp core/test_former_references.cpp
           core/test_relocalisation.cpp core/test_loop_closing.cpp core/test_kidnapping.cpp core/test_lack_of_resources.cpp
   LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
 roevo_test(test_core_map_file SOURCES core/test_map_file.cpp LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)

@@ -23,11 +23,12 @@ Pose Trajectory::finalPose(const Frame& frame) const {
     const Pose from_parent = worldPose(link);
     const auto next = static_cast<std::size_t>(link.keyframe) + 1;
     if (next >= links_.size() || links_[next].keyframe != link.keyframe) return from_parent;
-    if (frame.timestamp < keyframes_[next - 1].timestamp) return from_parent;  // tracked backwards
+    // Else it was tracked backwards, or long after
+    const double begin = keyframes_[next - 1].timestamp, end = keyframes_[next].timestamp;
+    if (frame.timestamp < begin || frame.timestamp > end) return from_parent;
     const Pose T_next_camera = links_[next].T_keyframe_camera.inverse() * link.T_keyframe_camera;
     const Pose from_next = keyframes_[next].T_world_camera * T_next_camera;
     // Where the camera hardly moves, changes are noise of tracking, and time shares better
-    const double begin = keyframes_[next - 1].timestamp, end = keyframes_[next].timestamp;
     const double passed = end > begin ? std::clamp((frame.timestamp - begin) / (end - begin), 0.0, 1.0) : 1;
     const double since = changeOfView(link.T_keyframe_camera) + kSameView * passed;
     const double left = changeOfView(T_next_camera) + kSameView * (1 - passed);
