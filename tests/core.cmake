@@ -17,7 +17,7 @@ roevo_test(test_core_mapping
   SOURCES core/test_covisibility.cpp core/test_semi_dense.cpp
           core/test_edge_smoothing.cpp core/test_edge_fusion.cpp core/test_bundle_adjustment.cpp core/test_bundle_ceres.cpp core/test_pseudo_edges.cpp
           core/test_local_mapper.cpp core/test_packed_keyframe.cpp core/test_pose_graph.cpp
-          core/test_window_posterior.cpp core/test_refine_all.cpp
+          core/test_window_posterior.cpp core/test_refine_all.cpp core/test_map_culling.cpp
   LIBS roevo_internal Ceres::ceres)
 roevo_test(test_core_odometry
   SOURCES core/test_trajectory.cpp core/test_trajectory_joins.cpp core/test_motion_smoother.cpp core/test_keyframe_maker.cpp core/test_fine_tracker.cpp
@@ -28,7 +28,7 @@ roevo_test(test_core_mapped_runs
   SOURCES core/test_odometry_mapping.cpp core/test_mapping_bad_input.cpp core/test_mapping_gauge.cpp core/test_mapping_reuse.cpp core/test_learned_readout.cpp core/test_former_references.cpp
           core/test_relocalisation.cpp core/test_loop_closing.cpp core/test_kidnapping.cpp core/test_lack_of_resources.cpp
   LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
-roevo_test(test_core_map_file SOURCES core/test_map_file.cpp LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
+roevo_test(test_core_map_file SOURCES core/test_map_file.cpp core/test_map_growth.cpp LIBS roevo_internal roevo_simulator roevo_evaluation SUITES)
 # In four entries, since they take long
 add_executable(test_option_extremes core/test_option_extremes.cpp support/main.cpp)
 target_link_libraries(test_option_extremes PRIVATE roevo_internal roevo_datasets roevo_evaluation GTest::gtest roevo_build_flags)

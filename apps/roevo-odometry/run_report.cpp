@@ -113,8 +113,18 @@ int RunReport::mapSegment() const {
 
 std::size_t RunReport::leftOut() const {
     if (map_out.file.empty()) return 0;
-    const int loaded = map_in ? map_in->keyframes : 0;
-    return keyframes.size() - static_cast<std::size_t>(map_out.keyframes - loaded);
+    std::map<int, std::size_t> sizes;  // of the tracks; with map_in, the first one of all is that
+    for (const KeyframeInfo& keyframe : keyframes) ++sizes[keyframe.track];
+    std::size_t joined = 0;
+    for (const auto& [track, size] : sizes)
+        if (map_in ? track == 0 : size > joined) joined = size;
+    return keyframes.size() - joined;
+}
+
+std::size_t RunReport::covered() const {
+    if (map_out.file.empty()) return 0;
+    const int added = map_out.keyframes - (map_in ? map_in->keyframes : 0);
+    return keyframes.size() - leftOut() - static_cast<std::size_t>(added);
 }
 
 double RunReport::pathLength() const {

@@ -82,6 +82,8 @@ struct RunReport {
     int mapSegment() const;
     /// Keyframes of pieces that are not in map_out.
     std::size_t leftOut() const;
+    /// Keyframes that are not in map_out because others in it show the same.
+    std::size_t covered() const;
     /// Of the final trajectory, m, without what is between its pieces.
     double pathLength() const;
     /// Where not all of the trajectory is in the world of map_in; else empty.

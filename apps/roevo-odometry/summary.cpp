@@ -190,6 +190,7 @@ Json mapOutJson(const RunReport& report) {
     if (report.map_out.file.empty()) return nullptr;
     return {{"file", report.map_out.file},
             {"keyframes", report.map_out.keyframes},
+            {"covered", report.covered()},
             {"left_out", report.leftOut()}};
 }
 
@@ -299,8 +300,11 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
         std::printf("map in      %s, %s: recognised after the last frame\n", report.map_in->file.c_str(),
                     keyframes(report.map_in->keyframes).c_str());
     if (!report.map_out.file.empty())
-        std::printf("map out     %s, %s\n", report.map_out.file.c_str(),
-                    keyframes(report.map_out.keyframes).c_str());
+        std::printf("map out     %s, %s%s\n", report.map_out.file.c_str(),
+                    keyframes(report.map_out.keyframes).c_str(),
+                    report.covered() > 0
+                        ? (", " + std::to_string(report.covered()) + " more show the same").c_str()
+                        : "");
     if (const std::size_t left_out = report.leftOut(); left_out > 0)
         std::printf("            %s of pieces that were not joined to these left out\n",
                     counted(left_out, "keyframe").c_str());

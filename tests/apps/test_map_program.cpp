@@ -84,8 +84,9 @@ TEST_F(MapProgram, AMapIsWrittenUsedAndExtended) {
             EXPECT_TRUE(readFile(map()) == before);
             continue;
         }
-        EXPECT_EQ(json["map_out"]["keyframes"].get<std::size_t>(),
-                  static_cast<std::size_t>(keyframes) + own.size());
+        EXPECT_EQ(
+            json["map_out"]["keyframes"].get<std::size_t>() + json["map_out"]["covered"].get<std::size_t>(),
+            static_cast<std::size_t>(keyframes) + own.size());
         EXPECT_FALSE(readFile(map()) == before) << "replaced";
     }
 }

@@ -242,7 +242,9 @@ TEST_P(MapFile, WhatWasAddedIsFoundLater) {
     const std::string extended = mapOf(odometry);
 
     Odometry later = odometryOf(today());
-    EXPECT_EQ(load(later, extended), static_cast<int>(odometry.keyframes().size()));
+    const int loaded = load(later, extended);
+    EXPECT_GT(loaded, keyframes);
+    EXPECT_LE(loaded, static_cast<int>(odometry.keyframes().size())) << "without what shows nothing new";
     EXPECT_TRUE(mapOf(later) == extended);
     const FrameResult result = later.processFrame(today().frames.back());
     EXPECT_GE(result.found_at, keyframes) << result.reason;

@@ -57,11 +57,23 @@ std::vector<CovisibilityGraph::Links> CovisibilityGraph::linksOf(int keyframe) c
 
 std::vector<std::vector<int>> CovisibilityGraph::clusters(
     const std::vector<const MapKeyframe*>& keyframes) const {
+    std::vector<std::pair<int, int>> edges;
+    for (const MapKeyframe* keyframe : keyframes)
+        edges.emplace_back(keyframe->id, keyframe->image.numEdges());
+    return clustersOf(edges, [&](int id) {
+        const auto found = links_.find(id);
+        return found == links_.end() ? nullptr : &found->second;
+    });
+}
+
+std::vector<std::vector<int>> clustersOf(
+    const std::vector<std::pair<int, int>>& keyframes,
+    const std::function<const std::vector<CovisibilityGraph::Links>*(int)>& linksOf) {
     std::map<int, std::size_t> first_edge;
     std::size_t count = 0;
-    for (const MapKeyframe* keyframe : keyframes) {
-        first_edge[keyframe->id] = count;
-        count += static_cast<std::size_t>(keyframe->image.numEdges());
+    for (const auto& [id, edges] : keyframes) {
+        first_edge[id] = count;
+        count += static_cast<std::size_t>(edges);
     }
     std::vector<std::size_t> parent(count);  // disjoint sets
     std::iota(parent.begin(), parent.end(), std::size_t{0});
@@ -70,22 +82,22 @@ std::vector<std::vector<int>> CovisibilityGraph::clusters(
         return edge;
     };
     for (const auto& [id, first] : first_edge) {
-        const auto found = links_.find(id);
-        if (found == links_.end()) continue;
-        for (const Links& group : found->second) {
+        const auto* const groups = linksOf(id);
+        if (groups == nullptr) continue;
+        for (const CovisibilityGraph::Links& group : *groups) {
             const auto other = first_edge.find(group.other);
             if (other == first_edge.end()) continue;
-            for (const Link& link : group.links)
+            for (const CovisibilityGraph::Link& link : group.links)
                 parent[find(first + link.edge)] = find(other->second + link.other_edge);
         }
     }
     std::vector<int> number(count, -1);
     int next = 0;
     std::vector<std::vector<int>> result;
-    for (const MapKeyframe* keyframe : keyframes) {
-        const std::size_t first = first_edge[keyframe->id];
+    for (const auto& [id, edges] : keyframes) {
+        const std::size_t first = first_edge[id];
         auto& of_edges = result.emplace_back();
-        for (int e = 0; e < keyframe->image.numEdges(); ++e) {
+        for (int e = 0; e < edges; ++e) {
             int& cluster = number[find(first + static_cast<std::size_t>(e))];
             if (cluster < 0) cluster = next++;
             of_edges.push_back(cluster);

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "mapping/map_keyframe.h"
@@ -45,5 +47,13 @@ class CovisibilityGraph {
     EdgeMatches matches_;
     ProjectedPoints3 projected_;
 };
+
+/// For every edge of some keyframes, the index of its cluster, counted from 0 in the order of first
+/// appearance.
+/// @param keyframes  their ids, and how many edges each has
+/// @param linksOf    of a keyframe, by its id; nullptr: none
+std::vector<std::vector<int>> clustersOf(
+    const std::vector<std::pair<int, int>>& keyframes,
+    const std::function<const std::vector<CovisibilityGraph::Links>*(int)>& linksOf);
 
 }  // namespace roevo

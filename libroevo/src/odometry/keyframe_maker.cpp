@@ -30,14 +30,14 @@ std::string wrongUnit(const cv::Mat& depth, const SensorOptions& sensor) {
 
 }  // namespace
 
-double changeOfView(const Keyframe& keyframe, const Pose& T_keyframe_camera, const KeyframeOptions& options) {
+double changeOfView(double median_depth, const Pose& T_keyframe_camera, const KeyframeOptions& options) {
     return std::max(rotationAngle(T_keyframe_camera) / kDegree / options.max_rotation_deg,
-                    T_keyframe_camera.translation().norm() / options.max_translation / keyframe.median_depth);
+                    T_keyframe_camera.translation().norm() / options.max_translation / median_depth);
 }
 
 bool keyframeIsDue(const Keyframe& reference, const Tracking& tracking, const KeyframeOptions& options) {
     return tracking.matchedRatio() < options.min_overlap ||
-           changeOfView(reference, tracking.pose.T_keyframe_camera, options) > 1;
+           changeOfView(reference.median_depth, tracking.pose.T_keyframe_camera, options) > 1;
 }
 
 Fault makeKeyframe(const Frame& frame, const RowMotion& rows, int needed, const PinholeCamera& camera,

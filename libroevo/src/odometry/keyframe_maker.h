@@ -10,7 +10,8 @@ namespace roevo {
                                  const KeyframeOptions& options);
 
 /// How differently a camera at this pose sees than the keyframe: 1 where that alone makes a new one due.
-[[nodiscard]] double changeOfView(const Keyframe& keyframe, const Pose& T_keyframe_camera,
+/// @param median_depth  of the keyframe, m
+[[nodiscard]] double changeOfView(double median_depth, const Pose& T_keyframe_camera,
                                   const KeyframeOptions& options);
 
 /// Makes a keyframe of a frame. @return why it cannot be one (then `keyframe` is not to be used)

@@ -24,6 +24,11 @@ struct StoredMap {
 /// @param kept  of each keyframe; the link of one that is kept is to another such
 void keepOnly(const std::vector<bool>& kept, StoredMap& map);
 
+/// Leaves out keyframes that show nothing new: older ones that stay see their edges, and one has about their
+/// view. What is linked to them is linked to others that are.
+/// @param first  those before it stay
+void leaveOutCovered(const KeyframeOptions& due, int first, StoredMap& map);
+
 /// What is wrong with a map, in words, else empty: numbers that are none, references to what is not there,
 /// sizes that do not fit.
 std::string faultOf(const StoredMap& map);

@@ -99,6 +99,7 @@ StoredMap World::map() {
     std::vector<bool> kept;
     for (const int track : tracks) kept.push_back(track == (loaded_ > 0 ? 0 : largest));
     keepOnly(kept, map);
+    leaveOutCovered(options_.keyframe, loaded_, map);
     return map;
 }
 

@@ -88,7 +88,7 @@ const Keyframe* World::nearest(const RelativePose& pose, Pose& T_nearest_camera)
     for (const auto& keyframe : former_) {
         if (!trajectory_.areOfOneTrack(keyframe->id, reference_->id)) continue;
         const Pose T = trajectory_.keyframePose(keyframe->id).inverse() * trajectory_.worldPose(pose);
-        const double change = changeOfView(*keyframe, T, options_.keyframe);
+        const double change = changeOfView(keyframe->median_depth, T, options_.keyframe);
         if (change >= least) continue;
         least = change;
         found = keyframe.get();
