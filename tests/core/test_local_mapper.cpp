@@ -166,6 +166,36 @@ TEST_F(Mapper, ThoseThatMoveWithARefusedKeyframeAreNotRefusedWithIt) {
     EXPECT_NEAR(errorOf(mapper, 3, 3), 0.014, 1e-3);
 }
 
+TEST_F(Mapper, WhatIsRefusedKeepsWhatWasRefinedBefore) {
+    options_.mapping.min_looks = 100;  // what others do not see is no illusion here
+    options_.mapping.window = 4;
+    options_.mapping.reuse_keyframes = false;
+    const auto curves = room();
+    const auto seen = [&](int id, int first, int step) {
+        std::vector<Sighting> sightings;
+        for (int c = first; c < static_cast<int>(curves.size()); c += step)
+            sightings.push_back({c, 0, -1, 0, false, {0, 0}});
+        MapKeyframe keyframe = makeKeyframe(id, placeOnPath(id), curves, sightings).keyframe;
+        keyframe.parent = id - 1;
+        keyframe.parent_information = 1e3 * Matrix6d::Identity();
+        if (id > 0) keyframe.T_parent_camera = placeOnPath(id - 1).inverse() * placeOnPath(id);
+        return keyframe;
+    };
+    LocalMapper mapper(mappingCamera(), options_);
+    EXPECT_EQ(reasonOf(mapper.insert(seen(0, 0, 1))), "");
+    EXPECT_EQ(reasonOf(mapper.insert(seen(1, 0, 2))), "");
+    EXPECT_EQ(reasonOf(mapper.insert(seen(2, 1, 2))), "");
+    MapKeyframe third = seen(3, 0, 2);  // sees what the first two see alone
+    third.T_parent_camera = Pose(Eigen::Translation3d(0.003, 0, 0)) * third.T_parent_camera;
+    EXPECT_EQ(reasonOf(mapper.insert(third)), "");
+    EXPECT_EQ(reasonOf(mapper.insert(seen(4, 1, 2))), "");
+    ASSERT_LT(errorOf(mapper, 3, 3), 0.001) << "else it is no test";
+    const MapUpdate update = mapper.insert(seen(5, 1, 2));  // those two have left the window
+    ASSERT_EQ(update.refusals.size(), 1U);
+    EXPECT_EQ(update.refusals[0].keyframe, 3);
+    EXPECT_LT(errorOf(mapper, 3, 3), 0.001);
+}
+
 TEST_F(Mapper, ComingBackFindsTheOldKeyframes) {
     options_.mapping.window = 4;
     double with = 0, without = 0;

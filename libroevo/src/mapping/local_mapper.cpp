@@ -254,18 +254,19 @@ void LocalMapper::takePoses(const std::vector<int>& inliers, MapUpdate& update) 
         if (refusal) update.refusals.push_back(*refusal);
         refused[slot] = refusal.has_value();
     }
+    std::map<int, Pose> motions;  // of the world, by keyframe that has moved
     for (std::size_t slot = 0; slot < window_.size(); ++slot) {
         WindowKeyframe& view = window_[slot];
         if (view.fixed) continue;
         MapKeyframe& keyframe = keyframes_.at(view.keyframe->id);
         if (refused[slot]) {
-            // Parents come before their children, so that this one's has its final pose
-            const auto parent = keyframes_.find(keyframe.parent);
-            view.T_world_camera = parent == keyframes_.end()
-                                      ? keyframe.T_world_camera
-                                      : parent->second.T_world_camera * keyframe.T_parent_camera;
+            // It stays beside its parent, which comes before it
+            const auto parent = motions.find(keyframe.parent);
+            view.T_world_camera =
+                parent == motions.end() ? keyframe.T_world_camera : parent->second * keyframe.T_world_camera;
+            if (parent == motions.end()) continue;
         }
-        if (refused[slot] && view.T_world_camera.matrix() == keyframe.T_world_camera.matrix()) continue;
+        motions.emplace(keyframe.id, view.T_world_camera * keyframe.T_world_camera.inverse());
         keyframe.T_world_camera = view.T_world_camera;
         update.poses.emplace_back(keyframe.id, view.T_world_camera);
     }
