@@ -127,14 +127,25 @@ TEST(RunReport, ThePathHasNoJumpsBetweenItsPieces) {
 
 TEST(RunReport, KeyframesThatTheMapDoesNotHaveAreCounted) {
     RunReport report = trackedReport();
-    report.keyframes = {{0, 10, {}, 0}, {1, 15, {}, 1}, {2, 16, {}, 1}};
+    const auto expect = [&](std::size_t left_out, std::size_t covered) {
+        EXPECT_EQ(report.leftOut(), left_out);
+        EXPECT_EQ(report.covered(), covered);
+    };
+    expect(0, 0);
+    report.keyframes = {{0, 10, {}, 0}, {1, 15, {}, 0}, {2, 16, {}, 0}};
     report.map_out = {"room.map", 3};
-    EXPECT_EQ(report.leftOut(), 0U);
+    expect(0, 0);
     report.map_out.keyframes = 2;
-    EXPECT_EQ(report.leftOut(), 1U);
+    expect(0, 1);
+    report.keyframes[1].track = report.keyframes[2].track = 1;  // not joined to the first
+    expect(1, 0);
     report.map_in = LoadedMap{"old.map", 5, false};
     report.map_out.keyframes = 5;
-    EXPECT_EQ(report.leftOut(), 3U) << "nothing of this recording";
+    report.keyframes = {{5, 10, {}, 5}, {6, 15, {}, 6}, {7, 16, {}, 6}};
+    expect(3, 0);  // nothing of this recording
+    report.keyframes = {{5, 10, {}, 0}, {6, 15, {}, 0}, {7, 16, {}, 7}};
+    report.map_out.keyframes = 6;
+    expect(1, 1);
 }
 
 TEST(RunReport, SegmentsAreTheTracksThatFramesAreInInTheEnd) {

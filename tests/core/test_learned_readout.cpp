@@ -1,6 +1,8 @@
 // The read-out time of a rolling shutter is learned from the images, and soon enough to be of use.
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "core/support/simulated.h"
 
 namespace roevo {
@@ -56,6 +58,24 @@ TEST_P(LearnedReadout, IsNearlyRightAfterFortyFramesAndHelps) {
 TEST_P(LearnedReadout, IsNoneWhereAllRowsAreReadAtOnce) {
     const testing::Sequence sequence = testing::simulate(rolling(0, GetParam()), kFrames);
     EXPECT_NEAR(learn(sequence, OdometryOptions()).readout, 0, 0.002);
+}
+
+TEST_P(LearnedReadout, IsKeptInAMap) {
+    const testing::Sequence sequence = testing::simulate(rolling(kReadout, GetParam()), kFrames);
+    for (const Mode mode : {Mode::kTracking, Mode::kBundleAdjustment}) {
+        OdometryOptions options;
+        options.mode = mode;
+        options.keyframe.max_translation = 0.03;
+        Odometry odometry(sequence.camera, options);
+        for (const RgbdFrame& frame : sequence.frames) (void)odometry.processFrame(frame);
+        std::ostringstream map;
+        (void)odometry.saveMap(map);
+        Odometry later(sequence.camera, options);
+        EXPECT_EQ(later.readoutTime(), 0);
+        std::istringstream in(map.str());
+        (void)later.loadMap(in);
+        EXPECT_NEAR(later.readoutTime(), kReadout, 0.006) << "known before the first frame";
+    }
 }
 
 // Where a camera was in a gap, and how fast, nobody knows: the mean velocity of the gap, taken for that of

@@ -47,7 +47,8 @@ Odometry& Odometry::operator=(Odometry&&) noexcept = default;
 int Odometry::loadMap(std::istream& in, MapUse use) {
     if (!impl_->world.empty() || impl_->world.loaded() > 0)
         throw std::logic_error("a map is loaded before the first frame, and once");
-    impl_->world.load(readMap(in), use == MapUse::kLocalise);
+    const auto seconds_per_row = impl_->world.load(readMap(in), use == MapUse::kLocalise);
+    if (seconds_per_row) impl_->motion.beginReadout(*seconds_per_row);
     return impl_->world.loaded();
 }
 int Odometry::saveMap(std::ostream& out) const {

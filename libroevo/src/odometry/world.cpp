@@ -53,7 +53,7 @@ bool World::remembersPlaces() const {
     return options_.loss.recognise || closesLoops();
 }
 
-void World::load(StoredMap map, bool held) {
+std::optional<double> World::load(StoredMap map, bool held) {
     if (!map.camera.seesAs(camera_))
         throw std::runtime_error("the map is of another camera (" + describe(map.camera) + "; now " +
                                  describe(camera_) + ")");
@@ -63,6 +63,9 @@ void World::load(StoredMap map, bool held) {
     loaded_ = static_cast<int>(map.graph.keyframes.size());
     held_ = held;
     if (loaded_ > 0) misplacements_[0].distance = kAnywhere;
+    std::optional<double> seconds_per_row;
+    for (const KeptKeyframe& keyframe : map.edges)
+        if (keyframe.row_motion.known()) seconds_per_row = keyframe.row_motion.seconds_per_row;
     std::vector<KnownPlace> places;
     for (std::size_t id = 0; id < map.places.size(); ++id)
         places.push_back({std::move(map.places[id]), map.edges[id].points, map.edges[id].median_depth,
@@ -71,6 +74,7 @@ void World::load(StoredMap map, bool held) {
     mapper_->load(map.graph.keyframes, std::move(map.edges));
     semi_dense_.load(std::move(map.surfaces));
     trajectory_.load(std::move(map.graph), held);
+    return seconds_per_row;
 }
 
 StoredMap World::map() {

@@ -23,8 +23,9 @@ class World {
 
     /// Begins with a map, before anything else.
     /// @param held  it stays as it is: nothing moves its keyframes
+    /// @return seconds per row, as its newest keyframe knows them; nothing where none does
     /// @throws std::runtime_error, in one line, where it cannot be used
-    void load(StoredMap map, bool held);
+    std::optional<double> load(StoredMap map, bool held);
     /// All keyframes that hang together, in a map: those that were loaded, else most of them.
     /// @throws std::runtime_error where places are not remembered; std::logic_error where a map is held
     StoredMap map();

@@ -58,6 +58,11 @@ class MotionModel {
     RowMotion firstRows(double interval, const Pose& T_keyframe_next) const;
     double secondsPerRow() const;
     ReadoutEstimator& readout() { return readout_; }
+    /// It was learned in an earlier recording of the same camera.
+    void beginReadout(double seconds_per_row) {
+        constexpr double kSigma = 2e-3;  // s: so well recordings of a few seconds tell it
+        readout_.begin(seconds_per_row, kSigma / image_height_);
+    }
 
   private:
     Pose poseAt(double timestamp) const;

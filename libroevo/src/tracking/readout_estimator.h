@@ -14,6 +14,11 @@ class ReadoutEstimator {
     /// one keyframe share its errors, so that many of them teach hardly more than one
     ReadoutEstimator(double sigma, double memory) : prior_(1 / (sigma * sigma)), memory_(memory) {}
 
+    /// Begins with what was learned before, seconds per row.
+    void begin(double seconds_per_row, double sigma) {
+        information_ = 1 / (sigma * sigma);
+        vector_ = information_ * seconds_per_row;
+    }
     /// @param evidence  of one frame, with gradients as they would be at zero read-out time
     /// @param frames    of 30 Hz since the last one
     void add(const PoseSystem& evidence, double frames = 1);
