@@ -29,6 +29,8 @@ class Method {
     /// Names of the stages that are timed apart; may be empty.
     virtual std::vector<std::string> stages() const = 0;
     virtual MethodFrame processFrame(const RgbdFrame& frame) = 0;
+    /// A frame whose stamp is not believed, which methods do not get: for those that judge stamps themselves.
+    virtual void refused(const RgbdFrame& /*frame*/) {}
 
     /// Final poses once all frames are in, for methods that refine them later; none: those of processFrame().
     virtual std::optional<std::vector<StampedPose>> finalTrajectory() { return std::nullopt; }

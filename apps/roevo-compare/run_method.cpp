@@ -5,13 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
+#include <map>
 #include <new>
 #include <numeric>
 #include <stdexcept>
 
 #include "core_contention.h"
 #include "evaluation/error_statistics.h"
+#include "odometry/input_check.h"
 #include "programs/atomic_file.h"
 #include "programs/memory_peak.h"
 #include "programs/program.h"
@@ -23,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kSceneFile[] = "map.3Dscene";
+const std::string kRejected = "rejected: ";
 
 struct FrameRow {
     double timestamp = 0;
@@ -60,13 +62,15 @@ class Runner {
   private:
     void process(const SourceFrame& frame, FrameRow& row);
     bool next(SourceFrame& frame);
+    /// How many frames were rejected, and why most of them.
+    std::string refusal(const MethodRun& run) const;
     StageStatistics statistics(const std::string& name,
                                const std::function<double(const FrameRow&)>& time) const;
 
     Method& method_;
     FrameSource& source_;
     const std::vector<std::string> stages_ = method_.stages();
-    double last_timestamp_ = -std::numeric_limits<double>::infinity();
+    StampCheck stamps_;
 };
 
 bool Runner::next(SourceFrame& frame) {
@@ -101,15 +105,14 @@ void Runner::processAll(std::size_t first, const RunProgress& progress) {
         FrameRow row;
         row.timestamp = frame.timestamp;
         row.ms_decode = frame.ms_decode;
-        std::string fault = frame.fault;
-        if (fault.empty() && !(frame.timestamp > last_timestamp_))
-            fault = "the time stamp is not later than that of the frame before";
+        const bool readable = frame.fault.empty();
+        const std::string fault = readable ? stamps_.take(frame.timestamp).words : frame.fault;
         row.rejected = !fault.empty();
-        if (row.rejected) {
-            row.result.reason = "rejected: " + fault;
-        } else {
-            last_timestamp_ = frame.timestamp;
+        if (!row.rejected) {
             process(frame, row);
+        } else {
+            if (readable) method_.refused(frame.frame);
+            row.result.reason = kRejected + fault;
         }
         rows.push_back(std::move(row));
         const double of_first = first > 0 ? static_cast<double>(rows.size()) / static_cast<double>(first) : 0;
@@ -149,6 +152,18 @@ StageStatistics Runner::statistics(const std::string& name,
             std::accumulate(times.begin(), times.end(), 0.0) / static_cast<double>(times.size())};
 }
 
+std::string Runner::refusal(const MethodRun& run) const {
+    std::map<std::string, std::size_t> reasons;
+    for (const FrameRow& row : rows)
+        if (row.rejected) ++reasons[row.result.reason];
+    const auto most = std::max_element(reasons.begin(), reasons.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    const std::string share =
+        most->second < run.rejected ? ", " + std::to_string(most->second) + " of them" : "";
+    return std::to_string(run.rejected) + " of " + std::to_string(run.frames) + " frames cannot be used" +
+           share + ": " + most->first.substr(kRejected.size());
+}
+
 MethodRun Runner::summary() const {
     MethodRun run;
     run.frames = rows.size();
@@ -166,6 +181,7 @@ MethodRun Runner::summary() const {
         run.background_ms = background->mean_ms;
     }
     if (!source_.warning().empty()) run.warnings.push_back(source_.warning());
+    if (run.rejected > 0) run.warnings.push_back(refusal(run));
     return run;
 }
 

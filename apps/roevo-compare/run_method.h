@@ -13,8 +13,7 @@ namespace roevo {
 using RunProgress = std::function<void(std::size_t frames, double share)>;
 
 /// Feeds the frames to the method, one after the other in this thread, and sums up what it made of them.
-/// Frames that cannot be read or whose stamp is not later than the one before are rejected: the method does
-/// not see them.
+/// Frames that cannot be read or whose stamp cannot be believed, as in the odometry, are rejected.
 /// @param first   at most this many frames; 0: all
 /// @param folder  gets frames.csv and, where the method has one, map.3Dscene
 /// @throws std::runtime_error in one line that names the frame: what the method threw; a pose that is not

@@ -74,6 +74,8 @@ class FakeMethod : public Method {
         return out;
     }
 
+    void refused(const RgbdFrame& frame) override { refused_stamps.push_back(frame.timestamp); }
+
     std::optional<std::vector<StampedPose>> finalTrajectory() override {
         return final_trajectory ? final_trajectory() : std::nullopt;
     }
@@ -82,6 +84,7 @@ class FakeMethod : public Method {
 
     std::vector<std::string> stage_names{"one", "two"};
     std::vector<double> seen;  ///< stamps of the frames that came
+    std::vector<double> refused_stamps;
     std::function<void(std::size_t frame, MethodFrame& out)> change;
     std::function<std::optional<std::vector<StampedPose>>()> final_trajectory;
     std::function<bool(const std::string& path)> scene;

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "compare_fakes.h"
+#include "compare_program.h"
 #include "roevo-compare/run_method.h"
 #include "support/run_program.h"
 
@@ -150,12 +151,49 @@ TEST_F(RunOfAMethod, FramesThatCannotBeUsedAreRejectedAndTheOthersGoOn) {
     EXPECT_EQ(result.rejected, 3u);
     EXPECT_EQ(result.tracked, 3u);
     EXPECT_EQ(result.trajectory.size(), 3u);
-    EXPECT_EQ(result.warnings, std::vector<std::string>{"the file ends in the middle"});
+    EXPECT_EQ(result.warnings,
+              (std::vector<std::string>{"the file ends in the middle",
+                                        "3 of 6 frames cannot be used, 1 of them: cannot read rgb/2.png"}));
     const auto lines = csvLines();
     ASSERT_EQ(lines.size(), 7u);
     EXPECT_NE(lines[3].find("rejected: cannot read rgb/2.png"), std::string::npos) << lines[3];
-    EXPECT_NE(lines[4].find("not later"), std::string::npos) << lines[4];
-    EXPECT_NE(lines[5].find("not later"), std::string::npos) << lines[5];
+    EXPECT_NE(lines[4].find("rejected: repeated time stamp"), std::string::npos) << lines[4];
+    EXPECT_NE(lines[5].find("rejected: time stamp goes backward"), std::string::npos) << lines[5];
+}
+
+TEST_F(RunOfAMethod, OneStampInTheFutureCostsThatFrameOnly) {
+    source.frames[2].timestamp = source.frames[2].frame.timestamp = 1e9;
+    source.frames[4].timestamp = source.frames[4].frame.timestamp = -11644473600;  // MRPT's invalid one
+    const MethodRun result = run();
+    EXPECT_EQ(method.seen, (std::vector<double>{1, 1.1, 1.3, 1.5}));
+    EXPECT_EQ(method.refused_stamps, (std::vector<double>{1e9, -11644473600}));
+    EXPECT_EQ(result.rejected, 2u);
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_NE(result.warnings[0].find("2 of 6 frames cannot be used, 1 of them: time stamp "),
+              std::string::npos)
+        << result.warnings[0];
+}
+
+using LeapingStamps = test::CompareProgram;
+
+TEST_F(LeapingStamps, CostTheFramesThatTheyCostTheOdometry) {
+    std::vector<test::TumFrame> recording = test::slidingRecording(12);
+    recording[4].timestamp += 1e9;
+    for (std::size_t i = 8; i < 12; ++i) recording[i].timestamp += 300;  // the camera paused
+    test::writeTumFolder(folder / "clip", recording);
+    const auto result = run({folder / "clip"}, {"--methods", "roevo-tr,difodo-240"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    const auto alone = test::runProgram(
+        "roevo-odometry",
+        {"--input", folder / "clip", "--output", folder / "alone", "--set", "odometry.mode=tr", "--quiet"});
+    ASSERT_EQ(alone.exit_code, 0) << alone.all();
+    EXPECT_EQ(kept("clip", "roevo-tr").rejected, 2u);
+    EXPECT_EQ(readFile(runFolder("clip", "roevo-tr") + "/trajectory.txt"),
+              readFile(folder / "alone/trajectory.txt"));
+    for (const std::string& text : {result.out, readFile(output() + "/table.md")})
+        EXPECT_NE(text.find("2 of 12 frames cannot be used, 1 of them: time stamp leaps ahead by "),
+                  std::string::npos)
+            << text;
 }
 
 TEST_F(RunOfAMethod, TakesNoMoreFramesThanWanted) {

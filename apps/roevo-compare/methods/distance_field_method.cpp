@@ -51,6 +51,7 @@ class DistanceFieldMethod : public Method {
         out.stage_ms = {result.ms.edges, result.ms.coarse, times.field, times.registration, rest};
         return out;
     }
+    void refused(const RgbdFrame& frame) override { (void)odometry_.processFrame(frame); }
 
   private:
     DistanceFieldMethod(const PinholeCamera& camera, const OdometryOptions& options,

@@ -42,6 +42,7 @@ class RoevoMethod : public Method {
         }
         return out;
     }
+    void refused(const RgbdFrame& frame) override { (void)odometry_.processFrame(frame); }
 
     std::optional<std::vector<StampedPose>> finalTrajectory() override {
         odometry_.refineAll();

@@ -28,9 +28,10 @@ std::vector<std::string> protocolLines(const Conditions& conditions) {
         std::string(conditions.frames ? "Same frames for every method, in the same order"
                                       : "Not the same frames for every method (see the remarks)") +
             ", as the lens saw them, depth registered to colour. Frames that cannot be read are given to "
-            "none and do not count. All use depth within the same limits; options of the sensor and of the "
+            "none and count as not tracked. All use depth within the same limits; options of the sensor and "
+            "of the "
             "motion model hold for all that know them.",
-        "Frames tracked: share of these frames to which the method measured the motion. Errors are over all "
+        "Frames tracked: share of all frames to which the method measured the motion. Errors are over all "
         "poses that a method gave, those that it predicted where it had lost track, too. Below 90 % it ranks "
         "behind all that tracked more, and its errors are marked.",
         conditions.config ? "One configuration for all sequences; no option is tuned to a sequence."
@@ -50,7 +51,7 @@ std::string errorProtocol(const Conditions& conditions) {
 }
 
 std::string shareProtocol(const Conditions& conditions) {
-    return std::string("Share of the usable frames to which the method measured the motion; ") +
+    return std::string("Share of all frames to which the method measured the motion; ") +
            (conditions.frames ? "the same frames for all." : "frames differ.");
 }
 

@@ -61,8 +61,8 @@ std::vector<SequenceResults> evaluateAll(const std::vector<SequenceComparison>& 
 }
 
 std::optional<double> trackedShare(const MethodRun& run) {
-    if (!run.ok() || run.frames <= run.rejected) return std::nullopt;
-    return static_cast<double>(run.tracked) / static_cast<double>(run.frames - run.rejected);
+    if (!run.ok() || run.frames == 0) return std::nullopt;
+    return static_cast<double>(run.tracked) / static_cast<double>(run.frames);
 }
 
 bool isComplete(const MethodRun& run) {

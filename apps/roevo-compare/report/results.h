@@ -7,7 +7,7 @@
 
 namespace roevo {
 
-/// Below this share of the usable frames a run ranks behind all that tracked more: its errors are of other,
+/// Below this share of the frames a run ranks behind all that tracked more: its errors are of other,
 /// usually easier frames.
 constexpr double kCompleteShare = 0.9;
 
@@ -19,7 +19,8 @@ struct SequenceResults {
 
 std::vector<SequenceResults> evaluateAll(const std::vector<SequenceComparison>& sequences);
 
-/// Share (0 to 1) of the usable frames that the method tracked; nothing when it was not run or had no frame.
+/// Share (0 to 1) of all frames that the method tracked: refused ones lower it; nothing when it was not run
+/// or had no frame.
 std::optional<double> trackedShare(const MethodRun& run);
 
 /// Enough frames tracked to be compared with the others.

@@ -68,19 +68,8 @@ void FramePreparer::findEdges(Frame& frame) {
 }
 
 Fault FramePreparer::faultOf(const RgbdFrame& images) {
-    if (const Fault fault = inputFault(images, camera_, last_timestamp_)) return fault;
-    if (!std::isfinite(last_timestamp_)) return {};
-    // One damaged stamp far ahead would have all frames after it rejected, as going backward: a leap is not
-    // believed until the next frame comes soon after it. Frames may be minutes apart, all of them
-    constexpr double kLeap = 60, kFarApart = 3600;  // s
-    const double ahead = images.timestamp - last_timestamp_;
-    const auto leap = std::exchange(leap_, std::nullopt);
-    const bool goes_on = leap && images.timestamp > *leap &&
-                         images.timestamp - *leap <= std::min(*leap - last_timestamp_, kFarApart);
-    if (ahead <= kLeap || goes_on) return {};
-    leap_ = images.timestamp;
-    return {"time stamp leaps ahead by " + std::to_string(static_cast<int>(std::min(ahead, 1e9))) +
-            " s; the next frame tells whether it is damaged"};
+    if (Fault fault = inputFault(images, camera_, stamps_.last())) return fault;
+    return stamps_.take(images.timestamp);
 }
 
 PreparedFrame::Content FramePreparer::prepare(RgbdFrame images) {
@@ -90,7 +79,6 @@ PreparedFrame::Content FramePreparer::prepare(RgbdFrame images) {
     out.timestamp = images.timestamp;
     out.fault = faultOf(images);
     if (out.fault) return out;
-    last_timestamp_ = images.timestamp;
     out.frame = spare();
     out.frame->images = std::move(images);
     findEdges(*out.frame);

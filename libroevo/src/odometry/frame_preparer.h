@@ -1,10 +1,8 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <vector>
 
 #include "camera/undistorter.h"
@@ -63,8 +61,7 @@ class FramePreparer {
     Undistorter undistorter_;
     EdgeExtractor extractor_;
     int levels_;
-    double last_timestamp_ = -std::numeric_limits<double>::infinity();  ///< of those without a fault
-    std::optional<double> leap_;  ///< s, stamp of the frame before, if it was not believed
+    StampCheck stamps_;
     std::mutex mutex_;
     std::vector<std::unique_ptr<Frame>> spare_;
 };
