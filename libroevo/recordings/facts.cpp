@@ -21,7 +21,8 @@ std::string factsText(std::size_t pairs, const PinholeCamera& camera, const cv::
     std::snprintf(numbers, sizeof numbers, ", fx %g fy %g cx %g cy %g", camera.fx, camera.fy, camera.cx,
                   camera.cy);
     text += numbers;
-    if (step > 0) {
+    constexpr double kSlowest = 20;  // s; above, one of the two stamps is damaged or missing
+    if (step > 0 && step < kSlowest) {
         std::snprintf(numbers, sizeof numbers, ", %.1f Hz", 1 / step);
         text += numbers;
     }

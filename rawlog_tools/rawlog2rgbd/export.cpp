@@ -50,6 +50,11 @@ class Exporter {
         result_.imu_samples += decoded.imu.size();
         result_.decode_seconds += decoded.seconds;
         if (!decoded.scan) return;
+        if (decoded.scan->timestamp == INVALID_TIMESTAMP) {  // as a number it is the year 1601
+            const std::size_t number = result_.frames + result_.left_out.size() + 1;
+            result_.left_out.push_back("frame " + std::to_string(number) + ": it has no time stamp");
+            return;
+        }
         const double timestamp = fromMrptTime(decoded.scan->timestamp);
         const std::string fault = decoded.fault.empty() ? write(decoded, timestamp) : decoded.fault;
         if (fault.empty()) return;

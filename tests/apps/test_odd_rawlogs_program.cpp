@@ -231,6 +231,17 @@ TEST_F(OddRawlogProgram, PointsOnly) {
     expectError(run(write({points})), 1, kName, {"r.rawlog", "3D points", "grab_depth"});
 }
 
+TEST_F(OddRawlogProgram, AScanWithoutATimeStampIsRejectedAndSaysNothingOfTheRate) {
+    std::vector<mrpt::obs::CObservation3DRangeScan::Ptr> scans;
+    for (const auto& frame : slidingRecording(6)) scans.push_back(scan(frame));
+    scans[0]->timestamp = INVALID_TIMESTAMP;
+    const auto result = run(write(scans));
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_EQ(result.out.find(" Hz"), std::string::npos) << result.out;
+    EXPECT_EQ(status(0), "rejected");
+    expectOthersTracked(0, 6);
+}
+
 TEST_F(OddRawlogProgram, LostImagesAreCountedTogether) {
     std::vector<mrpt::obs::CObservation3DRangeScan::Ptr> scans;
     for (const auto& frame : slidingRecording(6)) scans.push_back(scan(frame));

@@ -65,6 +65,18 @@ TEST_F(Rawlog2rgbdErrors, NoUsableFrame) {
     expectNothingWritten();
 }
 
+TEST_F(Rawlog2rgbdErrors, ScansWithoutATimeStampAreLeftOut) {
+    auto first = scanAt(0), third = scanAt(2);
+    first->timestamp = third->timestamp = INVALID_TIMESTAMP;
+    test::writeObjects(folder_ / "o.rawlog", {first, scanAt(1), third});
+    const ProgramResult outcome = run("o.rawlog");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.all();
+    EXPECT_CONTAINS(outcome.out, "1 frame written, 2 left out");
+    EXPECT_CONTAINS(outcome.all(), "frame 1: it has no time stamp");
+    EXPECT_CONTAINS(outcome.all(), "frame 3: it has no time stamp");
+    EXPECT_EQ(test::readFile(folder_ / "back/rgb.txt").find("11644473600"), std::string::npos);
+}
+
 TEST_F(Rawlog2rgbdErrors, SeveralSensors) {
     test::writeObjects(folder_ / "o.rawlog", {scanAt(0, "left"), scanAt(0, "right"), scanAt(1, "left")});
     expectError(run("o.rawlog"), 1, kName, {"2 left, 1 right", "--sensor-label"});
