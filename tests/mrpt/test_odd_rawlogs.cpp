@@ -211,6 +211,18 @@ TEST_F(OddRawlog, ATextIsNoLongerThanTheFileWhateverItsLengthSays) {
     }
 }
 
+TEST_F(OddRawlog, AnUnknownClassIsNamed) {
+    std::string bytes = test::bytesOf(*scanAt(0));
+    std::string unknown = test::bytesOf(mrpt::obs::CObservationIMU());
+    const std::string known = "CObservationIMU";
+    unknown.replace(unknown.find(known), known.size(), "CObservationGAS");
+    test::writeFile(folder_ / "o.rawlog", bytes + unknown + bytes);
+    RawlogReader reader(folder_ / "o.rawlog");
+    EXPECT_EQ(count(reader), 1u);
+    EXPECT_CONTAINS(reader.report().fault,
+                    "holds an unknown class ('mrpt::obs::CObservationGAS'): reading stopped at entry 2");
+}
+
 TEST_F(OddRawlog, OtherObservationsAreShownInTheOrderOfTheFile) {
     auto imu = mrpt::obs::CObservationIMU::Create();
     std::string order;

@@ -120,6 +120,15 @@ std::string listCounts(const std::map<std::string, std::size_t>& counts) {
     return text.empty() ? "nothing" : text;
 }
 
+/// " ('name')" of the class that MRPT's message says it does not know, or "".
+std::string unknownClass(const std::string& message) {
+    const std::string before = "has class '";
+    const std::size_t begin = message.find(before), end = message.find("' which is not registered");
+    if (begin == std::string::npos || end == std::string::npos) return {};
+    const std::size_t name = begin + before.size();
+    return " ('" + excerpt(message.substr(name, end - name)) + "')";
+}
+
 std::size_t sumOf(const std::map<std::string, std::size_t>& counts) {
     std::size_t sum = 0;
     for (const auto& [name, count] : counts) sum += count;
@@ -174,11 +183,11 @@ struct RawlogReader::Impl {
             object = mrpt::serialization::archiveFrom(stream).ReadObject();
         } catch (const std::bad_alloc&) {
             throw;  // there may be nothing wrong with the file
-        } catch (const std::exception&) {
-            noteEnd(stream.bytes - start);
+        } catch (const std::exception& fault) {
+            noteEnd(stream.bytes - start, unknownClass(fault.what()));
             return false;
         }
-        if (!object) return noteEnd(1), false;
+        if (!object) return noteEnd(1, ""), false;
         report.entries++;
         enqueue(object);
         if (const std::string damage = stream.jpegs.takeDamage(); !damage.empty()) noteDamagedImages(damage);
@@ -194,7 +203,7 @@ struct RawlogReader::Impl {
                 if (EmbeddedJpegs::isReplacement(scan->intensityImage)) scan->hasIntensityImage = false;
     }
 
-    void noteEnd(std::uint64_t bytes_into_object) {
+    void noteEnd(std::uint64_t bytes_into_object, const std::string& unknown_class) {
         at_end = true;
         if (stream.ran_dry && bytes_into_object == 0 && report.entries > 0) return;
         if (report.entries == 0)
@@ -203,7 +212,8 @@ struct RawlogReader::Impl {
                                                  : " is not a rawlog (its first object cannot be read)"));
         report.fault = path +
                        (stream.ran_dry ? " is truncated: it ends in the middle of entry "
-                                       : " is damaged or holds an unknown class: reading stopped at entry ") +
+                                       : " is damaged or holds an unknown class" + unknown_class +
+                                             ": reading stopped at entry ") +
                        std::to_string(report.entries + 1) + "; what came before was kept";
     }
 
