@@ -56,6 +56,19 @@ TEST_F(RoevoOdometryTest, AStillCameraStaysAndTheRobotIsWhereTheSensorPoseSays) 
     }
 }
 
+TEST_F(RoevoOdometryTest, PosesHaveTheTimeStampsOfTheirObservationsToTheTick) {
+    std::vector<mrpt::Clock::time_point> stamps;
+    for (int i = 0; i < 4; ++i) {
+        const auto scan = laterScan(*scan_, 0.033 * i);
+        scan->timestamp += mrpt::Clock::duration(2 * i + 1);  // of 100 ns
+        stamps.push_back(scan->timestamp);
+        ASSERT_TRUE(odometry_.processObservation(*scan).hasPose());
+    }
+    auto stamp = stamps.begin();
+    for (const auto& [time, pose] : odometry_.getTrajectory()) EXPECT_EQ(time, *stamp++);
+    EXPECT_EQ(stamp, stamps.end());
+}
+
 TEST_F(RoevoOdometryTest, WhereTheColourCameraIsOnTheSensorCounts) {
     scan_->sensorPose = CPose3D(0.3, -0.1, 0.8, 0.4, 0.2, -0.1);
     scan_->relativePoseIntensityWRTDepth = CPose3D(0.025, 0, 0, 0, 0, 0) + toMrpt(sensorFromOptical());

@@ -17,11 +17,11 @@ namespace {
 
 using namespace mrpt::obs;
 
-CActionCollection actionOf(const PosedScan& scan) {
+CActionCollection actionOf(const PosedScan& scan, mrpt::Clock::time_point time) {
     CActionCollection actions;
     if (!scan.motion) return actions;
     CActionRobotMovement3D movement;
-    movement.timestamp = toMrptTime(scan.timestamp);
+    movement.timestamp = time;
     movement.poseChange = *scan.motion;
     movement.rawOdometryIncrementReading = scan.motion->mean;
     movement.estimationMethod = CActionRobotMovement3D::emVisualOdometry;
@@ -29,9 +29,9 @@ CActionCollection actionOf(const PosedScan& scan) {
     return actions;
 }
 
-CObservation::Ptr poseOf(const PosedScan& scan) {
+CObservation::Ptr poseOf(const PosedScan& scan, mrpt::Clock::time_point time) {
     auto pose = CObservationRobotPose::Create();
-    pose->timestamp = toMrptTime(scan.timestamp);
+    pose->timestamp = time;
     pose->sensorLabel = "roevo";
     pose->pose = scan.pose;
     return pose;
@@ -63,9 +63,9 @@ void copyWithPoses(const std::string& rawlog, const std::string& sensor_label,
         const auto posed = by_time.find(fromMrptTime(scan->timestamp));
         if (posed == by_time.end()) continue;
         adopt(*scan, out);
-        frame.insert(poseOf(*posed->second));
+        frame.insert(poseOf(*posed->second, scan->timestamp));
         frame.insert(scan);
-        out.add(actionOf(*posed->second));
+        out.add(actionOf(*posed->second, scan->timestamp));
         out.add(frame);
         frame.clear();
         by_time.erase(posed);  // a second scan with its stamp was rejected

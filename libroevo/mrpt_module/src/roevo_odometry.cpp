@@ -138,6 +138,7 @@ FrameResult CRoevoOdometry::processObservation(const CObservation3DRangeScan& sc
         latest_ = result;
         // Of every frame: a later one may make it the keyframe
         context_.covariances[result.timestamp] = result.covariance;
+        context_.stamps[result.timestamp] = scan.timestamp;
     }
     report(result);
     return result;
@@ -187,7 +188,7 @@ mrpt::poses::CPose3DInterpolator CRoevoOdometry::getTrajectory() const {
     mrpt::poses::CPose3DInterpolator out;
     if (!odometry_) return out;
     for (const StampedPose& pose : odometry_->trajectory())
-        out.insert(toMrptTime(pose.timestamp),
+        out.insert(context_.stampOf(pose.timestamp),
                    toMrpt(pose.T_world_camera * context_.mountAt(pose.timestamp).inverse()));
     return out;
 }

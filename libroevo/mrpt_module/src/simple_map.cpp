@@ -32,6 +32,11 @@ const Pose& RobotContext::mountAt(double timestamp) const {
     return after->second;
 }
 
+mrpt::Clock::time_point RobotContext::stampOf(double timestamp) const {
+    const auto known = stamps.find(timestamp);
+    return known == stamps.end() ? toMrptTime(timestamp) : known->second;
+}
+
 mrpt::poses::CPose3DPDFGaussian RobotContext::robotPose(double timestamp, const Pose& T_world_camera) const {
     const auto known = covariances.find(timestamp);
     const Matrix6d covariance = known == covariances.end() ? Matrix6d(Matrix6d::Zero()) : known->second;
@@ -54,7 +59,7 @@ void buildSimpleMap(const std::vector<KeyframeInfo>& keyframes, const EdgeMap& k
     out.clear();
     for (const KeyframeInfo& keyframe : keyframes) {
         auto cloud = mrpt::obs::CObservationPointCloud::Create();
-        cloud->timestamp = toMrptTime(keyframe.timestamp);
+        cloud->timestamp = context.stampOf(keyframe.timestamp);
         cloud->sensorLabel = "roevo_edges";
         cloud->sensorPose = toMrpt(context.mountAt(keyframe.timestamp) * sensorFromOptical().inverse());
         auto points = mrpt::maps::CColouredPointsMap::Create();

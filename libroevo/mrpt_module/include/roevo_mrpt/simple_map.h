@@ -1,4 +1,5 @@
 #pragma once
+#include <mrpt/core/Clock.h>
 #include <mrpt/maps/CSimpleMap.h>
 
 #include <map>
@@ -14,10 +15,14 @@ namespace roevo {
 struct RobotContext {
     Pose T_map_world = Pose::Identity();  ///< from the odometry's world into the map's, which has z up
     std::map<double, Pose> mounts;        ///< T_robot_camera (optical axes) from this time on; one at least
+    std::map<double, mrpt::Clock::time_point> stamps;  ///< MRPT's, which count 100 ns; may lack some
     std::map<double, Matrix6d> covariances;  ///< FrameResult::covariance by stamp; where there is none: zero
 
     /// The last before, or else the first. @throws std::logic_error where there is none
     const Pose& mountAt(double timestamp) const;
+
+    /// MRPT's own stamp where it is known, else that of whole microseconds.
+    mrpt::Clock::time_point stampOf(double timestamp) const;
 
     /// The robot's pose with its covariance, given the camera's in the odometry's world. @throws as mountAt()
     mrpt::poses::CPose3DPDFGaussian robotPose(double timestamp, const Pose& T_world_camera) const;
