@@ -106,8 +106,8 @@ int run(int argc, char** argv) {
     cv::setNumThreads(
         1);  // decoding runs beside tracking already; more threads would blur the times per frame
     const RunReport report = runOdometry(settings);
-    for (const std::string& warning : {report.warning, report.cameraWarning(), report.evaluationWarning(),
-                                       report.scale_warning, report.mapWarning()})
+    for (const std::string& warning : {report.warning, report.rejectionWarning(), report.cameraWarning(),
+                                       report.evaluationWarning(), report.scale_warning, report.mapWarning()})
         if (!warning.empty()) printWarning(kName, warning);
     if (!settings.quiet) printSummary(report, settings.output_dir);
     if (profile) printProfile(report);

@@ -182,6 +182,23 @@ std::size_t RunReport::count(FrameStatus status) const {
         frames.begin(), frames.end(), [&](const FrameRecord& f) { return f.result.status == status; }));
 }
 
+namespace {
+
+/// "29 of them: " and the commonest reason among the frames that count; empty where none does.
+template <class Counts>
+std::string commonestReason(const std::vector<FrameRecord>& frames, const Counts& counts) {
+    std::map<std::string, std::vector<const FrameRecord*>> reasons;
+    for (const FrameRecord& f : frames)
+        if (counts(f.result)) reasons[reasonWithoutFile(f.result.reason)].push_back(&f);
+    if (reasons.empty()) return {};
+    const auto commonest = std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) {
+        return a.second.size() < b.second.size();
+    });
+    return format("%zu of them: ", commonest->second.size()) + commonest->second.front()->result.reason;
+}
+
+}  // namespace
+
 std::string RunReport::failure() const {
     const auto broken = std::find_if(trajectory.begin(), trajectory.end(),
                                      [](const StampedPose& p) { return !p.T_world_camera.isFinite(); });
@@ -192,17 +209,18 @@ std::string RunReport::failure() const {
             broken->timestamp);
     const std::size_t initialised = count(FrameStatus::kInitialised);
     if (count(FrameStatus::kOk) > 0 || (initialised > 0 && frames.size() == initialised)) return {};
-    std::map<std::string, std::vector<const FrameRecord*>> reasons;
-    for (const FrameRecord& f : frames)
-        if (f.result.status != FrameStatus::kInitialised)
-            reasons[reasonWithoutFile(f.result.reason)].push_back(&f);
-    if (reasons.empty()) return "there is no frame";
-    const auto commonest = std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) {
-        return a.second.size() < b.second.size();
-    });
-    return format("none of the %zu frames could be tracked; %zu of them: ", frames.size(),
-                  commonest->second.size()) +
-           commonest->second.front()->result.reason;
+    const std::string why = commonestReason(
+        frames, [](const FrameResult& result) { return result.status != FrameStatus::kInitialised; });
+    if (why.empty()) return "there is no frame";
+    return format("none of the %zu frames could be tracked; ", frames.size()) + why;
+}
+
+std::string RunReport::rejectionWarning() const {
+    const std::size_t rejected = count(FrameStatus::kRejected);
+    if (rejected == 0 || 2 * rejected < frames.size()) return {};
+    return format("%zu of the %zu frames are rejected, ", rejected, frames.size()) +
+           commonestReason(frames,
+                           [](const FrameResult& result) { return result.status == FrameStatus::kRejected; });
 }
 
 std::string reasonWithoutFile(const std::string& reason) {

@@ -92,6 +92,8 @@ struct RunReport {
     std::string evaluationWarning() const;
     /// That the camera's intrinsics seem to be of another image size; else empty.
     std::string cameraWarning() const;
+    /// Where half of the frames or more are rejected: why most of these are; else empty.
+    std::string rejectionWarning() const;
 
     /// Empty when at least one frame was tracked (or the only frame initialised), else the commonest reason.
     /// Poses that are not numbers are a failure, too: no result is printed then.

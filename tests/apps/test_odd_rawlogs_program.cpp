@@ -242,6 +242,22 @@ TEST_F(OddRawlogProgram, AScanWithoutATimeStampIsRejectedAndSaysNothingOfTheRate
     expectOthersTracked(0, 6);
 }
 
+TEST_F(OddRawlogProgram, ManyFramesThatAreNotUsedAreWarnedOf) {
+    std::vector<mrpt::obs::CObservation3DRangeScan::Ptr> scans;
+    for (const auto& frame : slidingRecording(8)) scans.push_back(scan(frame));
+    for (std::size_t i : {3u, 5u, 6u, 7u}) scans[i]->timestamp = scans[i - 2]->timestamp;
+    scans.insert(scans.begin() + 2, 3, scan(slidingRecording(1).front()));
+    for (std::size_t i : {2u, 3u, 4u}) scans[i]->hasRangeImage = false;
+    const auto result = run(write(scans), {"--quiet"});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_NE(result.err.find("warning: 3 scan(s) of RGBD without a range image left out"), std::string::npos)
+        << result.err;
+    EXPECT_NE(result.err.find("warning: 4 of the 8 frames are rejected, 3 of them: time stamp goes backward"),
+              std::string::npos)
+        << result.err;
+    EXPECT_NE(summary()["input"]["warning"].get<std::string>().find("3 scan(s) of RGBD"), std::string::npos);
+}
+
 TEST_F(OddRawlogProgram, LostImagesAreCountedTogether) {
     std::vector<mrpt::obs::CObservation3DRangeScan::Ptr> scans;
     for (const auto& frame : slidingRecording(6)) scans.push_back(scan(frame));

@@ -149,6 +149,9 @@ std::string RawlogReport::warning() const {
     if (const std::size_t left_out = sumOf(points_only); left_out > 0)
         append(text, std::to_string(left_out) + " scan(s) with 3D points but no range image left out (" +
                          listCounts(points_only) + ")");
+    if (const auto blind = without_range.find(label); blind != without_range.end())
+        append(text, std::to_string(blind->second) + " scan(s) of " +
+                         (label.empty() ? kNoName : excerpt(label)) + " without a range image left out");
     if (damaged_images > 0)
         append(text, std::to_string(damaged_images) + (damaged_images == 1 ? " entry" : " entries") +
                          " with a damaged JPEG image, which is left out (" + first_damaged_image + ")");
@@ -238,7 +241,7 @@ struct RawlogReader::Impl {
         if (!scan) return nullptr;
         makeFlagsSound(*scan);
         if (!scan->hasRangeImage) {
-            if (scan->hasPoints3D) report.points_only[scan->sensorLabel]++;
+            (scan->hasPoints3D ? report.points_only : report.without_range)[scan->sensorLabel]++;
             return nullptr;
         }
         if (any_label && report.labels.empty()) report.label = scan->sensorLabel;

@@ -19,7 +19,8 @@ struct RawlogReport {
     std::map<std::string, std::size_t> classes;  ///< class name -> how many observations (and other entries)
     std::map<std::string, std::size_t> labels;   ///< sensor label -> how many scans with a range image
     std::map<std::string, std::size_t>
-        points_only;                  ///< sensor label -> scans with 3D points, but no range image
+        points_only;  ///< sensor label -> scans with 3D points, but no range image
+    std::map<std::string, std::size_t> without_range;  ///< sensor label -> scans with neither
     std::size_t damaged_images = 0;   ///< entries with a JPEG image inside that cannot be decoded
     std::string first_damaged_image;  ///< the first of them, and what libjpeg says
     std::string label;                ///< the sensor that is being read
