@@ -1,15 +1,19 @@
 // --simplemap and --rawlog-with-poses: what MRPT reads from them is what the run's own files say.
+#include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/maps/CColouredPointsMap.h>
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CActionRobotMovement3D.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationIMU.h>
+#include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt/obs/CRawlog.h>
 #include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/serialization/CArchive.h>
 
 #include <opencv2/core.hpp>
 
@@ -59,6 +63,31 @@ class MrptOutputsProgram : public test::OdometryProgram {
         return run(rawlog(), more);
     }
     std::string rawlog() const { return folder_ / "mounted.rawlog"; }
+
+    /// The same as pairs of actions and sensory frames: wheels that turn by 1 cm, the scan, one of a camera
+    /// at the rear, and one of the first camera without depth. All stamps are 300 ns later.
+    std::string withWheelsAndRearCamera() const {
+        record();
+        RawlogReader reader(rawlog());
+        mrpt::io::CFileGZOutputStream stream(folder_ / "robot.rawlog");
+        auto archive = mrpt::serialization::archiveFrom(stream);
+        while (const auto scan = reader.next()) {
+            scan->timestamp += mrpt::Clock::duration(3);
+            mrpt::obs::CActionRobotMovement2D wheels;
+            wheels.timestamp = scan->timestamp;
+            wheels.computeFromOdometry({0.01, 0, 0}, {});
+            mrpt::obs::CActionCollection actions;
+            actions.insert(wheels);
+            const auto rear = mrpt::obs::CObservation3DRangeScan::Create(*scan);
+            rear->sensorLabel = "REAR";
+            const auto blind = mrpt::obs::CObservation3DRangeScan::Create(*scan);
+            blind->hasRangeImage = false;
+            mrpt::obs::CSensoryFrame frame;
+            for (const auto& each : {scan, rear, blind}) frame.insert(each);
+            archive << actions << frame;
+        }
+        return folder_ / "robot.rawlog";
+    }
 
     std::vector<StampedPose> robot() const { return readTumTrajectory(output() + "/trajectory_robot.txt"); }
     Pose robotAt(double timestamp) const {
@@ -178,6 +207,40 @@ TEST_F(MrptOutputsProgram, TheRawlogWithPosesGivesTheSamePosesAgain) {
     fs::remove_all(RawlogWriter::imagesDirectory(rawlog()));
     ASSERT_EQ(run(posed, {"--quiet", "--set", "keyframe.max_translation=0.01"}).exit_code, 0);
     EXPECT_EQ(readFile(output() + "/trajectory.txt"), trajectory);
+}
+
+TEST_F(MrptOutputsProgram, OtherScansAndActionsOfTheRawlogAreKept) {
+    const std::string robot = withWheelsAndRearCamera(), posed = folder_ / "posed.rawlog";
+    const auto result = run(robot, {"--sensor-label", "RGBD", "--quiet", "--rawlog-with-poses", posed});
+    ASSERT_EQ(result.exit_code, 0) << result.all();
+    EXPECT_NE(result.err.find("8 scan(s) of RGBD without a range image left out"), std::string::npos)
+        << result.err;
+    mrpt::obs::CRawlog log;
+    ASSERT_TRUE(log.loadFromRawLogFile(posed));
+    std::map<std::string, std::size_t> kept;
+    double wheels = 0;
+    for (std::size_t i = 0; i < log.size(); ++i) {
+        if (log.getType(i) == mrpt::obs::CRawlog::etActionCollection) {
+            // MRPT's particle filters would take it in place of the motion that was seen
+            EXPECT_FALSE(log.getAsAction(i)->getActionByClass<mrpt::obs::CActionRobotMovement2D>());
+            continue;
+        }
+        std::optional<mrpt::Clock::time_point> posed_at;
+        for (const auto& each : *log.getAsObservations(i)) {
+            const auto scan = std::dynamic_pointer_cast<mrpt::obs::CObservation3DRangeScan>(each);
+            ++kept[scan && !scan->hasRangeImage ? "blind" : each->sensorLabel];
+            if (each->sensorLabel == "roevo") posed_at = each->timestamp;
+            if (const auto odometry = std::dynamic_pointer_cast<mrpt::obs::CObservationOdometry>(each))
+                wheels = odometry->odometry.x();
+        }
+        for (const auto& each : *log.getAsObservations(i))
+            if (const auto scan = std::dynamic_pointer_cast<mrpt::obs::CObservation3DRangeScan>(each))
+                if (posed_at && scan->hasRangeImage && scan->sensorLabel == "RGBD") {
+                    EXPECT_EQ(scan->timestamp, *posed_at) << "to the tick";
+                }
+    }
+    for (const char* what : {"RGBD", "REAR", "blind", "roevo"}) EXPECT_EQ(kept[what], kWrittenFrames) << what;
+    EXPECT_NEAR(wheels, 0.01 * kWrittenFrames, 1e-9);
 }
 
 TEST_F(MrptOutputsProgram, OnlyFramesWithAPoseAreInTheRawlog) {

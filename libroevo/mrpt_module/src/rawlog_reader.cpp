@@ -163,9 +163,10 @@ struct RawlogReader::Impl {
     fs::path images;
     bool any_label = true;
     WatchedStream stream;
-    std::deque<mrpt::obs::CObservation::Ptr> queue;  // observations of the entry read last
+    std::deque<mrpt::serialization::CSerializable::Ptr> queue;  // what the entry read last holds
     RawlogReport report;
-    std::function<void(const mrpt::obs::CObservation&)> listener;
+    std::function<void(const mrpt::obs::CObservation&)> on_other;
+    std::function<void(const mrpt::obs::CActionCollection&)> on_actions;
     bool at_end = false;
     double stated_size = 0, compressed_size = 0;  // bytes
 
@@ -201,8 +202,8 @@ struct RawlogReader::Impl {
     void noteDamagedImages(const std::string& damage) {
         if (report.damaged_images++ == 0)
             report.first_damaged_image = "entry " + std::to_string(report.entries) + ": " + damage;
-        for (const auto& observation : queue)
-            if (const auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation))
+        for (const auto& object : queue)
+            if (const auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(object))
                 if (EmbeddedJpegs::isReplacement(scan->intensityImage)) scan->hasIntensityImage = false;
     }
 
@@ -222,22 +223,19 @@ struct RawlogReader::Impl {
 
     void enqueue(const mrpt::serialization::CSerializable::Ptr& object) {
         using namespace mrpt::obs;
-        if (const auto observation = std::dynamic_pointer_cast<CObservation>(object)) {
-            queue.push_back(observation);
-        } else if (const auto frame = std::dynamic_pointer_cast<CSensoryFrame>(object)) {
+        if (const auto frame = std::dynamic_pointer_cast<CSensoryFrame>(object)) {
             for (const auto& each : *frame) queue.push_back(each);
         } else if (const auto whole = std::dynamic_pointer_cast<CRawlog>(object)) {
             for (std::size_t i = 0; i < whole->size(); i++) enqueue(whole->getAsGeneric(i));
         } else {
-            report.classes[object->GetRuntimeClass()->className]++;
+            queue.push_back(object);
         }
     }
 
-    /// Counts the observation; what it is as a scan with a range image, or null.
-    CObservation3DRangeScan::Ptr classify(const mrpt::obs::CObservation::Ptr& observation) {
-        report.classes[observation->GetRuntimeClass()->className]++;
-        auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation);
-        if (!scan && listener) listener(*observation);
+    /// Counts the object; what it is as a scan with a range image, or null.
+    CObservation3DRangeScan::Ptr classify(const mrpt::serialization::CSerializable::Ptr& object) {
+        report.classes[object->GetRuntimeClass()->className]++;
+        auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(object);
         if (!scan) return nullptr;
         makeFlagsSound(*scan);
         if (!scan->hasRangeImage) {
@@ -249,20 +247,24 @@ struct RawlogReader::Impl {
         return scan;
     }
 
-    /// The observation as a scan of the wanted sensor, or null.
-    CObservation3DRangeScan::Ptr accept(const mrpt::obs::CObservation::Ptr& observation) {
-        auto scan = classify(observation);
-        if (!scan) return nullptr;
-        if (scan->sensorLabel != report.label) {
-            if (any_label && report.range_images <= kInterleaved) throwAmbiguous();
-            return nullptr;
+    /// The object as a scan of the wanted sensor, or null.
+    CObservation3DRangeScan::Ptr accept(const mrpt::serialization::CSerializable::Ptr& object) {
+        auto scan = classify(object);
+        if (scan && scan->sensorLabel == report.label) {
+            report.range_images++;
+            return scan;
         }
-        report.range_images++;
-        return scan;
+        if (scan && any_label && report.range_images <= kInterleaved) throwAmbiguous();
+        using namespace mrpt::obs;
+        if (const auto* observation = dynamic_cast<const CObservation*>(object.get());
+            observation && on_other)
+            on_other(*observation);
+        if (const auto* actions = dynamic_cast<const CActionCollection*>(object.get()); actions && on_actions)
+            on_actions(*actions);
+        return nullptr;
     }
 
     [[noreturn]] void throwAmbiguous() {
-        listener = nullptr;
         do {
             for (; !queue.empty(); queue.pop_front()) classify(queue.front());
         } while (!at_end && readEntry());
@@ -327,9 +329,9 @@ CObservation3DRangeScan::Ptr RawlogReader::next() {
     Impl& m = *impl_;
     for (;;) {
         while (!m.queue.empty()) {
-            const auto observation = m.queue.front();
+            const auto object = m.queue.front();
             m.queue.pop_front();
-            if (auto scan = m.accept(observation)) {
+            if (auto scan = m.accept(object)) {
                 m.locateFiles(*scan);
                 return scan;
             }
@@ -341,7 +343,11 @@ CObservation3DRangeScan::Ptr RawlogReader::next() {
 }
 
 void RawlogReader::onOther(std::function<void(const mrpt::obs::CObservation&)> listener) {
-    impl_->listener = std::move(listener);
+    impl_->on_other = std::move(listener);
+}
+
+void RawlogReader::onActions(std::function<void(const mrpt::obs::CActionCollection&)> listener) {
+    impl_->on_actions = std::move(listener);
 }
 
 double RawlogReader::progress() const {

@@ -19,8 +19,8 @@ struct PosedScan {
 
 /// Copies the scans of a rawlog that have a pose, as MRPT's localisation and mapping want them: for each a
 /// CActionCollection with a CActionRobotMovement3D (visual odometry), then a CSensoryFrame with a
-/// CObservationRobotPose, the scan itself, and what other sensors observed since the scan before. Scans
-/// without a pose are left out.
+/// CObservationRobotPose, the scan itself, and all other observations and actions since the scan before.
+/// Planar movements become a CObservationOdometry. Scans without a pose are left out.
 /// @param sensor_label  as RawlogReader has it
 /// @param out  images of the scans are linked or copied; finish() is left to the caller
 /// @throws std::runtime_error

@@ -6,6 +6,7 @@
 #include <string>
 
 namespace mrpt::obs {
+class CActionCollection;
 class CObservation;
 class CObservation3DRangeScan;
 }  // namespace mrpt::obs
@@ -54,8 +55,10 @@ class RawlogReader {
     /// first scans (listing all with their counts; one that turns up later is left out with a warning).
     std::shared_ptr<mrpt::obs::CObservation3DRangeScan> next();
 
-    /// Called by next() with every observation that is no CObservation3DRangeScan, in the order of the file.
+    /// Called by next() with every observation that it does not hand out, in the order of the file.
     void onOther(std::function<void(const mrpt::obs::CObservation&)> listener);
+    /// The same of actions.
+    void onActions(std::function<void(const mrpt::obs::CActionCollection&)> listener);
 
     /// How much of the file has been read, 0 to 1.
     double progress() const;
