@@ -161,12 +161,10 @@ void processFrames(FrameSource& source, Odometry& odometry, const RunSettings& s
     Ahead<FrameAhead> frames(decode, findEdges, threadCount(settings.options.threads));
     while (auto ahead = frames.next()) {
         SourceFrame& frame = ahead->source;
-        if (settings.realtime && frame.fault.empty() && !clock.await(frame.timestamp)) {
-            frame.fault = "dropped: the one before was not done in time";
-            ++report.dropped;
-        }
+        const bool dropped = settings.realtime && frame.fault.empty() && !clock.await(frame.timestamp);
+        if (dropped) frame.fault = "dropped: the one before was not done in time";
         const FrameResult result = track(odometry, *ahead, !settings.realtime);
-        report.frames.push_back({result, frame.ms_decode});
+        report.frames.push_back({result, frame.ms_decode, dropped});
         if (frame.camera_on_robot && result.hasPose()) {
             report.camera_on_robot.push_back({frame.timestamp, *frame.camera_on_robot});
             report.mounted = report.mounted || frame.mounted;

@@ -182,6 +182,11 @@ std::size_t RunReport::count(FrameStatus status) const {
         frames.begin(), frames.end(), [&](const FrameRecord& f) { return f.result.status == status; }));
 }
 
+std::size_t RunReport::dropped() const {
+    return static_cast<std::size_t>(
+        std::count_if(frames.begin(), frames.end(), [](const FrameRecord& f) { return f.dropped; }));
+}
+
 namespace {
 
 /// "29 of them: " and the commonest reason among the frames that count; empty where none does.
@@ -189,7 +194,7 @@ template <class Counts>
 std::string commonestReason(const std::vector<FrameRecord>& frames, const Counts& counts) {
     std::map<std::string, std::vector<const FrameRecord*>> reasons;
     for (const FrameRecord& f : frames)
-        if (counts(f.result)) reasons[reasonWithoutFile(f.result.reason)].push_back(&f);
+        if (counts(f)) reasons[reasonWithoutFile(f.result.reason)].push_back(&f);
     if (reasons.empty()) return {};
     const auto commonest = std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) {
         return a.second.size() < b.second.size();
@@ -210,17 +215,19 @@ std::string RunReport::failure() const {
     const std::size_t initialised = count(FrameStatus::kInitialised);
     if (count(FrameStatus::kOk) > 0 || (initialised > 0 && frames.size() == initialised)) return {};
     const std::string why = commonestReason(
-        frames, [](const FrameResult& result) { return result.status != FrameStatus::kInitialised; });
+        frames, [](const FrameRecord& f) { return f.result.status != FrameStatus::kInitialised; });
     if (why.empty()) return "there is no frame";
     return format("none of the %zu frames could be tracked; ", frames.size()) + why;
 }
 
 std::string RunReport::rejectionWarning() const {
-    const std::size_t rejected = count(FrameStatus::kRejected);
-    if (rejected == 0 || 2 * rejected < frames.size()) return {};
-    return format("%zu of the %zu frames are rejected, ", rejected, frames.size()) +
-           commonestReason(frames,
-                           [](const FrameResult& result) { return result.status == FrameStatus::kRejected; });
+    const std::size_t rejected = count(FrameStatus::kRejected) - dropped();
+    const std::size_t taken = frames.size() - dropped();
+    if (rejected == 0 || 2 * rejected < taken) return {};
+    return format("%zu of the %zu frames are rejected, ", rejected, taken) +
+           commonestReason(frames, [](const FrameRecord& f) {
+               return f.result.status == FrameStatus::kRejected && !f.dropped;
+           });
 }
 
 std::string reasonWithoutFile(const std::string& reason) {

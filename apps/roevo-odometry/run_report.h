@@ -12,6 +12,7 @@ namespace roevo {
 struct FrameRecord {
     FrameResult result;
     double ms_decode = 0;
+    bool dropped = false;  ///< came while tracking was busy (--realtime)
 };
 
 /// How often the camera was lost, and what became of it.
@@ -60,7 +61,6 @@ struct RunReport {
     std::size_t map_edges = 0, map_points = 0, semi_dense_points = 0;
     std::vector<StampedPose> camera_on_robot;  ///< T_robot_camera of the frames with a pose
     bool mounted = false;                    ///< some frame's sensor sat elsewhere than on the robot's origin
-    std::size_t dropped = 0;                 ///< frames that came while tracking was busy (--realtime)
     std::vector<MapRefusal> final_refusals;  ///< of what was refined together at the end
     double final_seconds = 0;                ///< of refining all keyframes together at the end
     double wall_seconds = 0;
@@ -70,6 +70,7 @@ struct RunReport {
     std::string scale_warning;             ///< the ground truth has another scale, in one line, or empty
 
     std::size_t count(FrameStatus status) const;
+    std::size_t dropped() const;
     Losses losses() const;
     /// The piece of the trajectory that each frame belongs to, from 1 on in the order of time; 0 without a
     /// pose. Pieces that were joined later are one.
@@ -92,7 +93,8 @@ struct RunReport {
     std::string evaluationWarning() const;
     /// That the camera's intrinsics seem to be of another image size; else empty.
     std::string cameraWarning() const;
-    /// Where half of the frames or more are rejected: why most of these are; else empty.
+    /// Where half of the frames that were not dropped or more are rejected: why most of these are; else
+    /// empty.
     std::string rejectionWarning() const;
 
     /// Empty when at least one frame was tracked (or the only frame initialised), else the commonest reason.

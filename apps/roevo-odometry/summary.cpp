@@ -259,7 +259,7 @@ std::string summaryJson(const RunReport& report) {
         {"joined", losses.joined}, {"loops_closed", losses.loops_closed}, {"pieces", losses.pieces}};
     json["timings_ms"] = timingsJson(report);
     json["mapping"] = mappingJson(report);
-    json["dropped_frames"] = report.dropped;
+    json["dropped_frames"] = report.dropped();
     json["wall_time_s"] = report.wall_seconds;
     json["memory_peak_mb"] = memoryPeakMb();
     json["path_length_m"] = report.pathLength();
@@ -317,9 +317,9 @@ void printSummary(const RunReport& report, const std::string& output_dir) {
         std::printf(
             "mapping     %.1f ms per keyframe (mean), beside tracking; all together at the end %.1f s\n",
             meanOf(times), report.final_seconds);
-    if (report.dropped > 0)
+    if (report.dropped() > 0)
         std::printf("dropped     %s came while tracking was busy\n",
-                    counted(report.dropped, "frame").c_str());
+                    counted(report.dropped(), "frame").c_str());
     std::printf("path        %.2f m\n", report.pathLength());
     std::printf("map         %s, %s; %s of the surface next to them\n",
                 counted(report.map_edges, "edge").c_str(), counted(report.map_points, "point").c_str(),

@@ -35,6 +35,25 @@ TEST(RunReport, APoseThatIsNotANumberIsAFailureThatSaysWhere) {
     }
 }
 
+/// Dropped frames are told by themselves, and it is no fault of the recording that they are many.
+TEST(RunReport, HalfOfTheFramesRejectedIsWarnedOfButNotThatTheyWereDropped) {
+    RunReport report = trackedReport();
+    report.frames.resize(10, report.frames.back());
+    for (std::size_t i = 1; i < 7; ++i) {
+        FrameRecord& frame = report.frames[i];
+        frame.result.status = FrameStatus::kRejected;
+        frame.result.reason = "dropped: not done in time";
+        frame.dropped = true;
+    }
+    EXPECT_EQ(report.dropped(), 6U);
+    EXPECT_EQ(report.rejectionWarning(), "");
+    report.frames[7].result.status = report.frames[8].result.status = FrameStatus::kRejected;
+    report.frames[7].result.reason = report.frames[8].result.reason = "it is dark";
+    EXPECT_EQ(report.rejectionWarning(), "2 of the 4 frames are rejected, 2 of them: it is dark");
+    report.frames[8].result.status = FrameStatus::kOk;
+    EXPECT_EQ(report.rejectionWarning(), "");
+}
+
 TEST(RunReport, LossesReadWellOneAndMany) {
     Losses losses;
     losses.lost = 1;

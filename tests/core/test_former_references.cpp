@@ -1,4 +1,4 @@
-// Without a map that is refined, older keyframes are tracked against again where they show about the same.
+// Mode tr: older keyframes are tracked against again where they show about the same.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -13,19 +13,16 @@ using namespace testing;
 constexpr int kTimesAwayAndBack = 6;  ///< away and back
 constexpr int kPath = kTimesAwayAndBack * (kRendered - 1) + 1;
 
-class FormerReferences : public ::testing::TestWithParam<Mode> {
-  protected:
-    static OdometryOptions options() {
-        OdometryOptions options = manyKeyframes();
-        options.mode = GetParam();
-        return options;
-    }
-};
+OdometryOptions trackingOnly() {
+    OdometryOptions options = manyKeyframes();
+    options.mode = Mode::kTracking;
+    return options;
+}
 
 /// A room that was seen needs no more keyframes, however often the camera comes by.
-TEST_P(FormerReferences, KeyframesDoNotGrowWithTime) {
+TEST(FormerReferences, KeyframesDoNotGrowWithTime) {
     const Sequence path = backAndForth(kPath);
-    const MappedRun run = runOver(path, options());
+    const MappedRun run = runOver(path, trackingOnly());
     std::set<int> last_way;
     for (int i = 0; i < kPath; ++i) {
         const FrameResult& result = run.results[static_cast<std::size_t>(i)];
@@ -40,9 +37,9 @@ TEST_P(FormerReferences, KeyframesDoNotGrowWithTime) {
 }
 
 /// Nor do errors. What a keyframe has wrong is the same every time.
-TEST_P(FormerReferences, ErrorsDoNotGrowWithTime) {
+TEST(FormerReferences, ErrorsDoNotGrowWithTime) {
     const Sequence path = backAndForth(kPath);
-    const MappedRun run = runOver(path, options());
+    const MappedRun run = runOver(path, trackingOnly());
     ASSERT_EQ(run.live_poses.size(), path.frames.size());
     double first = 0, last = 0;
     for (int k = 0; k < 2 * kRendered - 2; ++k) {
@@ -60,8 +57,8 @@ TEST_P(FormerReferences, ErrorsDoNotGrowWithTime) {
 }
 
 /// Where the reference changes, the pose jumps by what was drifted; the result says by how much.
-TEST_P(FormerReferences, ReturningSaysHowFarItMovesTheCamera) {
-    Odometry odometry(room().camera, options());
+TEST(FormerReferences, ReturningSaysHowFarItMovesTheCamera) {
+    Odometry odometry(room().camera, trackingOnly());
     int returns = 0;
     int reference = 0;
     for (const RgbdFrame& frame : backAndForth(kPath).frames) {
@@ -78,20 +75,18 @@ TEST_P(FormerReferences, ReturningSaysHowFarItMovesTheCamera) {
 }
 
 /// A loss right after a return is mended as any other.
-TEST_P(FormerReferences, AreRecognisedAfterALoss) {
+TEST(FormerReferences, AreRecognisedAfterALoss) {
     Sequence path = backAndForth(kPath);
     const int hidden = 2 * kRendered - 2;  // back at the start
     for (int i = hidden; i < hidden + 12; ++i)
         path.frames[static_cast<std::size_t>(i)] = black(path.frames[static_cast<std::size_t>(i)].timestamp);
-    const MappedRun run = runOver(path, options());
+    const MappedRun run = runOver(path, trackingOnly());
     for (std::size_t i = static_cast<std::size_t>(hidden) + 20; i < path.frames.size(); ++i) {
         ASSERT_TRUE(run.results[i].hasPose()) << i << ": " << run.results[i].reason;
         const Pose& truth = path.truth[i].T_world_camera;
         EXPECT_LT(distance(run.final_poses[i].T_world_camera, truth), 0.01) << i;
     }
 }
-
-INSTANTIATE_TEST_SUITE_P(Modes, FormerReferences, ::testing::Values(Mode::kCoarse, Mode::kTracking));
 
 }  // namespace
 }  // namespace roevo

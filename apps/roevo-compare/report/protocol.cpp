@@ -29,8 +29,7 @@ std::vector<std::string> protocolLines(const Conditions& conditions) {
                                       : "Not the same frames for every method (see the remarks)") +
             ", as the lens saw them, depth registered to colour. Frames that cannot be read are given to "
             "none and count as not tracked. All use depth within the same limits; options of the sensor and "
-            "of the "
-            "motion model hold for all that know them.",
+            "of the motion model hold for all that know them.",
         "Frames tracked: share of all frames to which the method measured the motion. Errors are over all "
         "poses that a method gave, those that it predicted where it had lost track, too. Below 90 % it ranks "
         "behind all that tracked more, and its errors are marked.",

@@ -43,9 +43,9 @@ struct FrameResult {
     int closed_at = -1;                 ///< keyframe that a loop was closed to
     double matched_ratio = 0;           ///< share of the keyframe's visible edges that were associated, 0..1
     int inliers = 0;                    ///< associated edge points (in tr: that passed the chi-square test)
-    /// m: how far the map, a place that was recognised, or an older keyframe that is the reference again
-    /// moved the camera before this frame's pose was known; positions before and after differ by it without
-    /// any motion.
+    /// m: how far the map, a place that was recognised, or (in tr) an older keyframe that is the reference
+    /// again moved the camera before this frame's pose was known; positions before and after differ by it
+    /// without any motion.
     double map_correction = 0;
     double map_turn = 0;                   ///< rad: how far the camera turned, likewise
     std::vector<MapRefusal> map_refusals;  ///< where mapping left something as it was

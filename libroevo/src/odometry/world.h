@@ -73,8 +73,8 @@ class World {
     /// is none.
     [[nodiscard]] const Keyframe* previous(Pose& T_previous_reference);
     /// Of the keyframes before the reference, that from which a camera is seen least differently by the
-    /// keyframe policy's measures, and where the camera is from there. Null where none is near, and where a
-    /// map refines keyframes.
+    /// keyframe policy's measures, and where the camera is from there. Null where none is near, and in other
+    /// modes than tr.
     [[nodiscard]] const Keyframe* nearest(const RelativePose& pose, Pose& T_nearest_camera);
     /// That one becomes the reference again.
     /// @param before, now  pose of the frame against the reference, and against that one

@@ -63,8 +63,7 @@ void World::adopt(std::unique_ptr<Keyframe> fresh, const Frame& of, const Relati
 
 void World::makeReference(std::unique_ptr<Keyframe> keyframe) {
     if (reference_) former_.push_back(std::move(reference_));
-    if (former_.size() > (options_.mode == Mode::kBundleAdjustment ? 1 : kMostFormer))
-        former_.erase(former_.begin());
+    if (former_.size() > (options_.mode == Mode::kTracking ? kMostFormer : 1)) former_.erase(former_.begin());
     reference_ = std::move(keyframe);
 }
 
@@ -82,7 +81,7 @@ const Keyframe* World::previous(Pose& T_previous_reference) {
 }
 
 const Keyframe* World::nearest(const RelativePose& pose, Pose& T_nearest_camera) {
-    if (options_.mode == Mode::kBundleAdjustment) return nullptr;
+    if (options_.mode != Mode::kTracking) return nullptr;  // docs/choices.md, Keyframes
     Keyframe* found = nullptr;
     double least = 1;
     for (const auto& keyframe : former_) {
